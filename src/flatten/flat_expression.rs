@@ -166,3 +166,32 @@ fn replace_end(e: &mut Expression, size: usize) {
         _ => {}
     }
 }
+
+/// The indices, from 1, of an element in an array, the last dimension fastest.
+pub fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
+    let mut indices = vec![0; dims.len()];
+    for (index, size) in indices.iter_mut().zip(dims).rev() {
+        *index = at % size + 1;
+        at /= size;
+    }
+    indices
+}
+
+/// The element of a value that belongs to one element of an array of components.
+pub fn picked(value: Expression, indices: &[usize]) -> Expression {
+    if indices.is_empty() {
+        return value;
+    }
+    let span = value.span;
+    let subscript =
+        |at: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span));
+    let subscripts = indices.iter().map(subscript).collect();
+    Expression::new(ExpressionKind::Subscripted { base: Box::new(value), subscripts }, span)
+}
+
+/// A call with positional arguments.
+pub fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
+    let function = ComponentReference::from_name(name, span);
+    let arguments = Box::new(Arguments { positional, ..Arguments::default() });
+    Expression::new(ExpressionKind::Call { function, arguments }, span)
+}

@@ -25,6 +25,7 @@ mod expressions;
 mod flat_expression;
 mod flat_model;
 mod functions;
+mod ids;
 mod instantiate;
 mod library;
 mod lookup;
@@ -40,6 +41,8 @@ pub use library::{ClassId, Library, LibraryFiles};
 
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -47,9 +50,7 @@ use crate::syntax::ast::{
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
 use errors::{NOT_A_MODEL, TOO_LARGE};
-use instantiate::instantiation::Instantiation;
 use lookup::modification::Modifier;
-use lookup::scope::ScopeId;
 use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
@@ -115,23 +116,24 @@ fn flattened(
     modification: &[Argument],
 ) -> Result<(Flattened, Option<Diagnostic>), Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
-    let mut tree = Instantiation::new(library);
+    let mut instantiation = Instantiation::new(library);
     let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
-    let found = tree.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
-    let lookup::names::Type::Class(id) = found else {
+    let found = instantiation.classes.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
+    let lookup::types::Type::Class(id) = found else {
         return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
     };
-    let text = tree.text(id).clone();
+    let text = instantiation.classes.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
     let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
     if !wrong.is_empty() {
         return Err(distinct(wrong));
     }
-    tree.check_complete(id, text.span()).map_err(one)?;
+    instantiation.classes.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
-    tree.model_name = text.name.last().unwrap_or(tree.model_name);
-    let root = tree.model(id, modifier).map_err(one)?;
-    tree.complete(root).map_err(distinct)?;
+    instantiation.classes.tree.model_name =
+        text.name.last().unwrap_or(instantiation.classes.tree.model_name);
+    let root = instantiation.classes.model(id, modifier).map_err(one)?;
+    instantiation.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
         name: text.name.to_string(),
         description: described(&text.definition),
@@ -141,20 +143,20 @@ fn flattened(
         ..FlatModel::default()
     };
     let mut errors = Vec::new();
-    let connections = std::rc::Rc::new(tree.connections(root, &mut errors));
-    tree.connections = Some(connections.clone());
-    tree.add_equations(root, &mut model, &mut errors);
+    let connections = std::rc::Rc::new(instantiation.connections(root, &mut errors));
+    instantiation.connections = Some(connections.clone());
+    instantiation.add_equations(root, &mut model, &mut errors);
     if errors.is_empty() {
-        tree.add_connection_equations(&connections, &mut model).map_err(one)?;
+        instantiation.add_connection_equations(&connections, &mut model).map_err(one)?;
     }
-    tree.add_variables(root, &mut model, &mut errors);
+    instantiation.add_variables(root, &mut model, &mut errors);
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
-    let classes = tree.local_balances(&connections, &model).map_err(distinct)?;
-    let unit_warnings = tree.unit_warnings(&model);
-    let mut warnings = tree.warnings;
-    for (name, function) in tree.functions {
+    let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
+    let unit_warnings = instantiation.classes.unit_warnings(&model);
+    let mut warnings = instantiation.warnings;
+    for (name, function) in instantiation.functions.table {
         model.functions.extend(function.map(|function| (name, function)));
     }
     let imbalance = balance::check(&model, &classes).err();

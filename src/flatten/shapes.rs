@@ -2,11 +2,12 @@
 //! variables whose values are not known at translation.
 
 use super::balance::path;
-use super::expressions::resolve::Local;
-use super::instantiate::instantiation::{Instantiation, picked};
 use super::lookup::modification::Bound;
-use super::lookup::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -147,8 +148,8 @@ impl Instantiation<'_> {
         if reference.as_ident().is_some_and(|name| name == "time") {
             return Some(Vec::new());
         }
-        let at = *self.variable_of.get(path(reference).as_str())?;
-        let dims = self.variables[at].0.dims.clone();
+        let at = *self.classes.tree.variable_of.get(path(reference).as_str())?;
+        let dims = self.classes.tree.variables[at].0.dims.clone();
         let subscripts = reference.parts.last()?.subscripts.clone();
         self.subscripted_shape(dims, &subscripts)
     }
@@ -239,7 +240,7 @@ impl Instantiation<'_> {
         if !arguments.iterators.is_empty() {
             return Some(Vec::new());
         }
-        if let Some(Some(function)) = self.functions.get(name).cloned() {
+        if let Some(Some(function)) = self.functions.table.get(name).cloned() {
             return self.function_shape(&function, arguments);
         }
         let positional = &arguments.positional;

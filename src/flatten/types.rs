@@ -3,11 +3,12 @@
 
 use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::instantiate::instantiation::Instantiation;
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::instantiate::tree::Tree;
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
@@ -24,7 +25,14 @@ const REAL_FUNCTIONS: &[&str] = &[
 /// Functions that read sizes of their argument and not its value.
 const SIZE_FUNCTIONS: &[&str] = &["size", "ndims"];
 
-impl Instantiation<'_> {
+/// What the types of resolved expressions follow from: the variables and the functions that they
+/// name.
+pub struct Types<'t> {
+    pub tree: &'t Tree,
+    pub functions: &'t FunctionTable,
+}
+
+impl Types<'_> {
     /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
     pub fn check_value(
         &self,
@@ -99,7 +107,7 @@ impl Instantiation<'_> {
 
     /// The variable in an expression that changes most often, with its variability.
     fn most_variable(&self, e: &Expression) -> Option<(String, Variability)> {
-        let mut search = MostVariable { instantiation: self, most: None };
+        let mut search = MostVariable { types: self, most: None };
         search.expression(e);
         search.most
     }
@@ -112,8 +120,8 @@ impl Instantiation<'_> {
     }
 
     fn named(&self, reference: &ComponentReference) -> Option<&Variable> {
-        let at = self.variable_of.get(path(reference).as_str())?;
-        Some(&self.variables[*at].0)
+        let at = self.tree.variable_of.get(path(reference).as_str())?;
+        Some(&self.tree.variables[*at].0)
     }
 
     /// The element type of an expression; `None` where its text does not show it.
@@ -171,7 +179,7 @@ impl Instantiation<'_> {
     }
 
     fn call_type(&self, function: &ComponentReference, arguments: &Arguments) -> Option<BaseType> {
-        if let Some(Some(user)) = self.functions.get(&function.name()) {
+        if let Some(Some(user)) = self.functions.table.get(&function.name()) {
             return match user.outputs.first()?.value_type {
                 ValueType::Real => Some(BaseType::Real),
                 ValueType::Integer => Some(BaseType::Integer),
@@ -234,7 +242,7 @@ impl Instantiation<'_> {
 
 /// Searches the variable that changes most often.
 struct MostVariable<'i, 'a> {
-    instantiation: &'i Instantiation<'a>,
+    types: &'i Types<'a>,
     most: Option<(String, Variability)>,
 }
 
@@ -248,7 +256,7 @@ impl Visit for MostVariable<'_, '_> {
     }
 
     fn reference(&mut self, reference: &ComponentReference) {
-        if let Some(found) = self.instantiation.variability_of(reference)
+        if let Some(found) = self.types.variability_of(reference)
             && self.most.as_ref().is_none_or(|(_, known)| found > *known)
         {
             self.most = Some((path(reference), found));

@@ -5,7 +5,6 @@ mod local;
 mod sets;
 
 pub use local::LocalBalance;
-pub use local::Written;
 
 use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};

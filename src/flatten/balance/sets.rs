@@ -1,11 +1,12 @@
 //! The sets that some connections make by themselves.
 
-use super::super::connections::{Edge, Face};
+use super::super::connections::ScalarPair;
+use crate::flatten::connections::sets::Face;
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 
 /// The connected faces, in sets of two or more.
-pub fn of_edges(edges: &[Edge]) -> Vec<Vec<Face>> {
+pub fn of_edges(edges: &[ScalarPair]) -> Vec<Vec<Face>> {
     let mut number: FxHashMap<Face, usize> = FxHashMap::default();
     let mut faces = Vec::new();
     let mut parent: Vec<usize> = Vec::new();

@@ -6,7 +6,7 @@ use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::MISPLACED;
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{

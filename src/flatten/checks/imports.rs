@@ -1,7 +1,7 @@
 //! Import clauses (MLS §13.2).
 
-use super::access::{self, element};
 use super::scope::Scope;
+use super::visible_elements::{self, element};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_IMPORT;
@@ -73,7 +73,8 @@ fn protected(class: Scope<'_>, target: &Name, span: Span) -> Option<Diagnostic> 
     let package = class.class_named(&global(&target.parent()))?;
     let name = target.last()?;
     let found = element(package, name)?;
-    (found.visibility == Visibility::Protected).then(|| access::protected(name, package, span))
+    (found.visibility == Visibility::Protected)
+        .then(|| visible_elements::protected(name, package, span))
 }
 
 /// What is imported by its name is a package or an element of one, or a class at the top level;

@@ -3,7 +3,7 @@
 //! ones (§5.3.4, §13.2).
 
 use crate::flatten::library::{ClassId, Library};
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{ClassSpecifier, ImportKind};
 use rustc_hash::FxHashSet;

@@ -23,6 +23,7 @@ mod scope;
 mod types;
 mod usage;
 mod variability;
+mod visible_elements;
 
 use super::library::{ClassId, Library};
 use crate::diag::Diagnostic;

@@ -5,7 +5,7 @@ use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_OPERATOR;
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;
 use crate::syntax::ast::{CausalityPrefix, Restriction};
 

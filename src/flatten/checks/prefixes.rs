@@ -6,7 +6,7 @@ use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_PREFIX;
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ClassSpecifier, ConnectionPrefix, Restriction, TypePrefixes, VariabilityPrefix,

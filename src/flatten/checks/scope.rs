@@ -3,7 +3,7 @@
 use super::lineage::Lineage;
 use super::lookup::Type;
 use crate::flatten::library::{ClassId, Library, Question};
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,

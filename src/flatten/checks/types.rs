@@ -8,7 +8,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,

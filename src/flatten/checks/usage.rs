@@ -7,7 +7,7 @@ use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{CONDITIONAL_COMPONENT, ILLEGAL_ACCESS, ILLEGAL_ARGUMENT, MISPLACED};
-use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{

@@ -3,14 +3,16 @@
 
 use super::super::equations::is_graph_statement;
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH};
-use super::super::expressions::resolve::Local;
-use super::super::instantiate::instance::{MemberState, NodeId};
-use super::super::instantiate::instantiation::Instantiation;
-use super::super::lookup::scope::ScopeId;
-use super::ends::{End, Ends};
-use super::sets::Connections;
+use super::super::instantiate::instance::MemberState;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -43,10 +45,10 @@ impl Instantiation<'_> {
             }
         }
         connections.context = None;
-        if let Err(error) = self.build_graph(&mut connections) {
+        if let Err(error) = self.classes.build_graph(&mut connections) {
             errors.push(error);
         }
-        self.drop_unconnected(root, &mut connections);
+        self.classes.drop_unconnected(root, &mut connections);
         connections
     }
 
@@ -57,8 +59,11 @@ impl Instantiation<'_> {
         connects: &mut Vec<Connect>,
         errors: &mut Vec<Diagnostic>,
     ) {
-        let Some(scope) = self.scope_of(node) else { return };
-        let parts = self.elements(scope).and_then(|elements| Ok((elements, self.members(node)?)));
+        let Some(scope) = self.classes.tree.scope_of(node) else { return };
+        let parts = self
+            .classes
+            .elements(scope)
+            .and_then(|elements| Ok((elements, self.classes.members(node)?)));
         let Ok((elements, members)) = parts else { return };
         for (_, state) in members {
             let nodes = match state {
@@ -71,7 +76,7 @@ impl Instantiation<'_> {
             }
         }
         for context in elements.lineage() {
-            let text = self.text(context).clone();
+            let text = self.classes.text(context).clone();
             for section in text.sections() {
                 let Section::Equations { initial: false, equations, .. } = section else {
                     continue;
@@ -100,7 +105,9 @@ impl Instantiation<'_> {
             return Ok(());
         }
         match &equation.kind {
-            EquationKind::Connect { left, right } if self.is_deselected(context, left, right) => {
+            EquationKind::Connect { left, right }
+                if self.classes.is_deselected(context, left, right) =>
+            {
                 Ok(())
             }
             EquationKind::Connect { left, right } => {
@@ -174,11 +181,11 @@ impl Instantiation<'_> {
             .at(span));
         }
         let sides = (left_ends.outside, right_ends.outside);
-        connections.context = Some(self.node_of(*context));
+        connections.context = Some(self.classes.node_of(*context));
         for (one, other) in left_ends.ends.iter().zip(&right_ends.ends) {
             connections.count(*one);
             connections.count(*other);
-            self.pair(*one, *other, sides, span, connections)?;
+            self.classes.pair(*one, *other, sides, span, connections)?;
         }
         Ok(())
     }

@@ -8,12 +8,16 @@
 //! as in the connections made inside that component.
 
 mod collect;
+pub mod end;
 mod ends;
 mod expandable;
-mod graph;
+pub mod graph;
 mod operators;
-mod sets;
+mod overconstrained;
+mod pairs;
+mod set_equations;
+pub mod sets;
 mod stream;
 
-pub use sets::{Connections, Edge, Face};
+pub use sets::ScalarPair;
 pub use stream::arranged;

@@ -2,13 +2,19 @@
 
 use super::super::FlatModel;
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instantiate::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiate::instantiation::Instantiation;
-use super::ends::{End, Ends};
-use super::graph::call;
-use super::sets::{Connections, Face};
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::connections::sets::Face;
+use crate::flatten::flat_expression::call;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -37,8 +43,8 @@ impl Instantiation<'_> {
             let End::Scalar(leaf, element) = *end else {
                 return Err(fault!(INVALID_CONNECTION, "expected a stream variable").at(span));
             };
-            if self.connection_of(leaf) != Some(ConnectionPrefix::Stream) {
-                let path = &self.nodes[leaf.0].path;
+            if self.classes.tree.connection_of(leaf) != Some(ConnectionPrefix::Stream) {
+                let path = &self.classes.tree.nodes[leaf.0].path;
                 return Err(
                     fault!(INVALID_CONNECTION, "`{path}` is not a stream variable").at(span)
                 );
@@ -46,52 +52,10 @@ impl Instantiation<'_> {
             let inside = self.in_stream(leaf, element, connections, span, 0)?;
             values.push(match actual {
                 false => inside,
-                true => self.actual_stream(leaf, element, inside, span)?,
+                true => self.classes.actual_stream(leaf, element, inside, span)?,
             });
         }
         Ok(arranged(values, &ends.dims, span))
-    }
-
-    fn actual_stream(
-        &mut self,
-        leaf: NodeId,
-        element: usize,
-        inside: Expression,
-        span: Span,
-    ) -> Result<Expression, Diagnostic> {
-        let flow = self.flow_beside(leaf, span)?;
-        let zero = Expression::new(ExpressionKind::Real(0.0), span);
-        let condition = binary(BinaryOperator::Greater, self.scalar(flow, 0, span), zero);
-        let own = self.scalar(leaf, element, span);
-        let choice =
-            ExpressionKind::If { branches: vec![(condition, inside)], otherwise: Box::new(own) };
-        let order = Expression::new(ExpressionKind::Integer(0), span);
-        Ok(call(&Name::parse("smooth"), vec![order, Expression::new(choice, span)], span))
-    }
-
-    /// The flow variable of the connector that holds a stream variable.
-    fn flow_beside(&mut self, leaf: NodeId, span: Span) -> Result<NodeId, Diagnostic> {
-        let path = self.nodes[leaf.0].path.clone();
-        let missing = || {
-            fault!(
-                INVALID_CONNECTION,
-                "the connector of `{path}` does not have exactly one flow variable"
-            )
-            .at(span)
-        };
-        let holder = self.nodes[leaf.0].parent.ok_or_else(missing)?;
-        let mut flows = Vec::new();
-        for (_, state) in self.members(holder)? {
-            if let MemberState::Single(one) = state
-                && self.connection_of(one) == Some(ConnectionPrefix::Flow)
-            {
-                flows.push(one);
-            }
-        }
-        match flows.as_slice() {
-            [flow] => Ok(*flow),
-            _ => Err(missing()),
-        }
     }
 
     /// What would flow in through a connector (MLS §15.2).
@@ -107,7 +71,7 @@ impl Instantiation<'_> {
         let others: Vec<Face> =
             connections.set_of(own).into_iter().filter(|face| *face != own).collect();
         if others.is_empty() {
-            return Ok(self.scalar(leaf, element, span));
+            return Ok(self.classes.tree.scalar(leaf, element, span));
         }
         self.mixture(&others, connections, span, level)
     }
@@ -129,11 +93,11 @@ impl Instantiation<'_> {
         let (mut numerator, mut denominator): (Option<Expression>, Option<Expression>) =
             (None, None);
         for face in faces {
-            let flow = self.flow_beside(face.leaf, span)?;
+            let flow = self.classes.flow_beside(face.leaf, span)?;
             if self.never_flows_out(flow, face.outside) {
                 continue;
             }
-            let weight = self.weight(flow, face.outside, span);
+            let weight = self.classes.tree.weight(flow, face.outside, span);
             let value = self.outflow(*face, connections, span, level)?;
             let product = binary(BinaryOperator::Multiply, weight.clone(), value);
             numerator = Some(sum(numerator, product));
@@ -160,33 +124,20 @@ impl Instantiation<'_> {
         if face.outside {
             self.in_stream(face.leaf, face.element, connections, span, level + 1)
         } else {
-            Ok(self.scalar(face.leaf, face.element, span))
+            Ok(self.classes.tree.scalar(face.leaf, face.element, span))
         }
-    }
-
-    /// max(flow into the set, ε), without events.
-    fn weight(&self, flow: NodeId, outside: bool, span: Span) -> Expression {
-        let mut out = self.scalar(flow, 0, span);
-        if !outside {
-            let kind =
-                ExpressionKind::Unary { operator: UnaryOperator::Minus, operand: Box::new(out) };
-            out = Expression::new(kind, span);
-        }
-        let small = Expression::new(ExpressionKind::Real(SMALL_FLOW), span);
-        let largest = call(&Name::parse("max"), vec![out, small], span);
-        call(&Name::parse("noEvent"), vec![largest], span)
     }
 
     /// Whether `min` or `max` of the flow say that nothing leaves the component here.
     fn never_flows_out(&mut self, flow: NodeId, outside: bool) -> bool {
-        let NodeKind::Variable(leaf) = &self.nodes[flow.0].kind else { return false };
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[flow.0].kind else { return false };
         let attribute = Ident::new(if outside { "max" } else { "min" });
         let Some(bound) = leaf.modifier.elements.get(&attribute) else { return false };
         let Some(bound) = bound.binding.clone() else { return false };
         let Some(value) = bound.value else { return false };
-        let read = std::mem::take(&mut self.read);
+        let read = std::mem::take(&mut self.values.read);
         let known = self.known_value(&value, bound.context);
-        self.read = read;
+        self.values.read = read;
         let number = match known {
             Ok(Value::Real(number)) => number,
             Ok(Value::Integer(number)) => number as f64,
@@ -206,12 +157,71 @@ impl Instantiation<'_> {
     ) -> Result<(), Diagnostic> {
         for face in faces.iter().filter(|face| face.outside) {
             let others: Vec<Face> = faces.iter().copied().filter(|other| other != face).collect();
-            let left = self.scalar(face.leaf, face.element, span);
+            let left = self.classes.tree.scalar(face.leaf, face.element, span);
             let right = self.mixture(&others, connections, span, 0)?;
             let kind = EquationKind::Equal { left, right };
             model.equations.push(Equation { kind, comment: Default::default(), span });
         }
         Ok(())
+    }
+}
+
+impl Classes<'_> {
+    fn actual_stream(
+        &mut self,
+        leaf: NodeId,
+        element: usize,
+        inside: Expression,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let flow = self.flow_beside(leaf, span)?;
+        let zero = Expression::new(ExpressionKind::Real(0.0), span);
+        let condition = binary(BinaryOperator::Greater, self.tree.scalar(flow, 0, span), zero);
+        let own = self.tree.scalar(leaf, element, span);
+        let choice =
+            ExpressionKind::If { branches: vec![(condition, inside)], otherwise: Box::new(own) };
+        let order = Expression::new(ExpressionKind::Integer(0), span);
+        Ok(call(&Name::parse("smooth"), vec![order, Expression::new(choice, span)], span))
+    }
+
+    /// The flow variable of the connector that holds a stream variable.
+    fn flow_beside(&mut self, leaf: NodeId, span: Span) -> Result<NodeId, Diagnostic> {
+        let path = self.tree.nodes[leaf.0].path.clone();
+        let missing = || {
+            fault!(
+                INVALID_CONNECTION,
+                "the connector of `{path}` does not have exactly one flow variable"
+            )
+            .at(span)
+        };
+        let holder = self.tree.nodes[leaf.0].parent.ok_or_else(missing)?;
+        let mut flows = Vec::new();
+        for (_, state) in self.members(holder)? {
+            if let MemberState::Single(one) = state
+                && self.tree.connection_of(one) == Some(ConnectionPrefix::Flow)
+            {
+                flows.push(one);
+            }
+        }
+        match flows.as_slice() {
+            [flow] => Ok(*flow),
+            _ => Err(missing()),
+        }
+    }
+}
+
+impl Tree {
+    /// max(flow into the set, ε), without events.
+    fn weight(&self, flow: NodeId, outside: bool, span: Span) -> Expression {
+        let mut out = self.scalar(flow, 0, span);
+        if !outside {
+            let kind =
+                ExpressionKind::Unary { operator: UnaryOperator::Minus, operand: Box::new(out) };
+            out = Expression::new(kind, span);
+        }
+        let small = Expression::new(ExpressionKind::Real(SMALL_FLOW), span);
+        let largest = call(&Name::parse("max"), vec![out, small], span);
+        call(&Name::parse("noEvent"), vec![largest], span)
     }
 }
 

@@ -2,15 +2,15 @@
 //! where the element is an expression of the loop variables, and are written out where a loop
 //! variable chooses a component of an array of components, which only a number can.
 
-use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::TOO_LARGE;
+use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::literal;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::scope::ScopeId;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind, ForIndex};
 use crate::syntax::visit::Visit;
@@ -35,7 +35,7 @@ impl Instantiation<'_> {
         match self.iterated(element, &indices, context, local) {
             Ok((resolved, iterators)) => {
                 // Records are told apart element by element.
-                if self.record_of(&resolved, local).is_some()
+                if self.types().record_of(&resolved, local).is_some()
                     && let Some(written) = self.written_out(element, &indices, context, local)
                 {
                     return written;
@@ -65,7 +65,7 @@ impl Instantiation<'_> {
         let visit = |uses: &mut dyn Visit| uses.expression(element);
         let indices = self.with_ranges(&arguments.iterators, context, local, &visit)?;
         let (element, iterators) = match self.iterated(element, &indices, context, local) {
-            Ok((resolved, iterators)) => match self.record_of(&resolved, local) {
+            Ok((resolved, iterators)) => match self.types().record_of(&resolved, local) {
                 Some(_) => match self.written_out(element, &indices, context, local) {
                     Some(elements) => (elements?, Vec::new()),
                     None => (resolved, iterators),
@@ -102,13 +102,15 @@ impl Instantiation<'_> {
         let mut resolved = Vec::with_capacity(indices.len());
         for index in indices {
             let range = match &index.range {
-                Some(range) => match self.type_range(range, context, &inner)? {
+                Some(range) => match self.classes.type_range(range, context, &inner)? {
                     Some(values) => Some(values),
                     None => Some(self.resolve(range, context, &inner)?),
                 },
                 None => None,
             };
-            if range.as_ref().and_then(|range| self.type_of(range)) == Some(BaseType::Boolean) {
+            if range.as_ref().and_then(|range| self.types().type_of(range))
+                == Some(BaseType::Boolean)
+            {
                 Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
             }
             resolved.push(ForIndex { name: index.name, range });

@@ -1,16 +1,19 @@
 //! Values known at translation: constants of packages, and parameters that shape the model
 //! (MLS §3.8, §4.5).
 
-use super::resolve::Local;
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
-use crate::flatten::instantiate::instance::{NodeId, NodeKind};
-use crate::flatten::instantiate::instantiation::{Instantiation, picked};
-use crate::flatten::lookup::names::Type;
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::NodeKind;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Type;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -18,7 +21,6 @@ use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ReferencePart, Restriction, VariabilityPrefix,
 };
 use crate::value::{ArrayValue, Value};
-use indexmap::IndexSet;
 use std::sync::Arc;
 
 impl Instantiation<'_> {
@@ -28,26 +30,26 @@ impl Instantiation<'_> {
         e: &Expression,
         context: ScopeId,
     ) -> Result<Value, Diagnostic> {
-        let outer = std::mem::take(&mut self.read);
+        let outer = std::mem::take(&mut self.values.read);
         let value = self.known_value(e, context);
-        let read = std::mem::replace(&mut self.read, outer);
-        self.structural.extend(read);
+        let read = std::mem::replace(&mut self.values.read, outer);
+        self.values.structural.extend(read);
         value
     }
 
     /// The value of an expression whose names are resolved already.
     pub fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
-        let outer = std::mem::take(&mut self.read);
+        let outer = std::mem::take(&mut self.values.read);
         let value = self.known_flat_value(e);
-        let read = std::mem::replace(&mut self.read, outer);
-        self.structural.extend(read);
+        let read = std::mem::replace(&mut self.values.read, outer);
+        self.values.structural.extend(read);
         value
     }
 
     /// The value of an expression of flat names of constants and parameters.
     pub fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
         let local = Local { values: true, flat: true, ..Local::default() };
-        let resolved = self.resolve(e, self.flat_scope(), &local)?;
+        let resolved = self.resolve(e, self.classes.flat_scope(), &local)?;
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
@@ -60,39 +62,39 @@ impl Instantiation<'_> {
 
     /// The value of a constant or parameter, by its place.
     pub fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
-        match self.values.get(&variable) {
+        match self.values.known.get(&variable) {
             Some(Some((value, read))) => {
-                self.read.extend(read.iter().copied());
+                self.values.read.extend(read.iter().copied());
                 return Ok(value.clone());
             }
             Some(None) => {
-                let name = &self.variables[variable].0.name;
+                let name = &self.classes.tree.variables[variable].0.name;
                 return Err(
                     fault!(NOT_CONSTANT, "the value of `{name}` depends on itself").at(span)
                 );
             }
             None => {}
         }
-        self.values.insert(variable, None);
-        let outer = std::mem::take(&mut self.read);
+        self.values.known.insert(variable, None);
+        let outer = std::mem::take(&mut self.values.read);
         let found = self.found_value(variable, span);
-        let mut read = std::mem::replace(&mut self.read, outer);
+        let mut read = std::mem::replace(&mut self.values.read, outer);
         read.insert(variable);
-        self.read.extend(read.iter().copied());
+        self.values.read.extend(read.iter().copied());
         match found {
             Ok(value) => {
-                self.values.insert(variable, Some((value.clone(), read)));
+                self.values.known.insert(variable, Some((value.clone(), read)));
                 Ok(value)
             }
             Err(error) => {
-                self.values.remove(&variable);
+                self.values.known.remove(&variable);
                 Err(error)
             }
         }
     }
 
     fn found_value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
-        let (declared, node) = &self.variables[variable];
+        let (declared, node) = &self.classes.tree.variables[variable];
         let (name, base) = (declared.name.clone(), declared.base.clone());
         let dims = declared.dims.clone();
         if declared.variability > Variability::Parameter {
@@ -100,7 +102,7 @@ impl Instantiation<'_> {
                 help: "only constants and parameters are known at translation")
             .at(span));
         }
-        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else {
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else {
             return Err(fault!(NOT_CONSTANT, "`{name}` has no value").at(span));
         };
         let bound = leaf.modifier.binding.clone();
@@ -126,28 +128,28 @@ impl Instantiation<'_> {
         let first = reference.parts[0].name;
         let mut scope = if reference.global { ScopeId::TOP } else { context };
         while scope != ScopeId::TOP {
-            if scope != context && self.has_component(scope, first)? {
+            if scope != context && self.classes.has_component(scope, first)? {
                 return self.enclosing_constant(scope, reference, context, local);
             }
-            if let Some(nested) = self.find_class(scope, first)? {
+            if let Some(nested) = self.classes.find_class(scope, first)? {
                 let found = if nested.outer {
-                    self.lookup_simple(scope, first)?
+                    self.classes.lookup_simple(scope, first)?
                 } else {
-                    Some(self.instance(&nested)?)
+                    Some(self.classes.instance(&nested)?)
                 };
                 return self.inside_class(found, &reference.parts[1..], reference, context, local);
             }
-            for name in self.imported_names(scope, first) {
+            for name in self.classes.imported_names(scope, first) {
                 if let Some(found) = self.imported_constant(&name, reference, context, local)? {
                     return Ok(found);
                 }
             }
-            if self.is_encapsulated(scope) {
+            if self.classes.is_encapsulated(scope) {
                 break;
             }
-            scope = self.scope(scope).parent.unwrap_or(ScopeId::TOP);
+            scope = self.classes.scope(scope).parent.unwrap_or(ScopeId::TOP);
         }
-        let found = self.lookup(ScopeId::TOP, &Name::from(first))?;
+        let found = self.classes.lookup(ScopeId::TOP, &Name::from(first))?;
         self.inside_class(found, &reference.parts[1..], reference, context, local)
     }
 
@@ -160,11 +162,11 @@ impl Instantiation<'_> {
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let first = reference.parts[0].name;
-        let node = self.node_of(scope);
-        if self.is_constant(node, first) {
+        let node = self.classes.node_of(scope);
+        if self.classes.is_constant(node, first) {
             return self.walk(node, &reference.parts, reference, context, local);
         }
-        let class = &self.text(scope).name;
+        let class = &self.classes.text(scope).name;
         Err(fault!(
             NOT_CONSTANT,
             "`{first}` is a component of the enclosing class `{class}`, not a constant";
@@ -180,16 +182,18 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Option<Expression>, Diagnostic> {
-        if let Some(found) = self.lookup(ScopeId::TOP, name)? {
+        if let Some(found) = self.classes.lookup(ScopeId::TOP, name)? {
             let rest = &reference.parts[1..];
             return self.inside_class(Some(found), rest, reference, context, local).map(Some);
         }
         let package = Name { global: true, ..name.parent() };
-        let Some(Type::Class(package)) = self.lookup(ScopeId::TOP, &package)? else {
+        let Some(Type::Class(package)) = self.classes.lookup(ScopeId::TOP, &package)? else {
             return Ok(None);
         };
-        let (Some(last), node) = (name.last(), self.node_of(package)) else { return Ok(None) };
-        if !self.has_component(package, last)? || !self.is_constant(node, last) {
+        let (Some(last), node) = (name.last(), self.classes.node_of(package)) else {
+            return Ok(None);
+        };
+        if !self.classes.has_component(package, last)? || !self.classes.is_constant(node, last) {
             return Ok(None);
         }
         let mut parts = reference.parts.clone();
@@ -209,21 +213,21 @@ impl Instantiation<'_> {
         let mut found = found;
         for (at, part) in path.iter().enumerate() {
             let Some(class) = found else { break };
-            if let Some(definition) = self.enumeration(class, reference.span)? {
+            if let Some(definition) = self.classes.enumeration(class, reference.span)? {
                 let literal = definition.literals.iter().position(|known| *known == part.name);
                 let Some(ordinal) = literal.filter(|_| at + 1 == path.len()) else { break };
                 let kind = ExpressionKind::Integer(ordinal as i64 + 1);
                 return Ok(Expression::new(kind, reference.span));
             }
             let Type::Class(scope) = class else { break };
-            if self.has_component(scope, part.name)? {
-                let node = self.node_of(scope);
-                if !self.is_constant(node, part.name) {
+            if self.classes.has_component(scope, part.name)? {
+                let node = self.classes.node_of(scope);
+                if !self.classes.is_constant(node, part.name) {
                     break;
                 }
                 return self.walk(node, &path[at..], reference, context, local);
             }
-            found = self.lookup_inside(found, &[part.name])?;
+            found = self.classes.lookup_inside(found, &[part.name])?;
             if at + 1 == path.len()
                 && let Some(function) = self.function_reference(found, reference.span)?
             {
@@ -235,7 +239,7 @@ impl Instantiation<'_> {
         {
             return Ok(function);
         }
-        Err(self.unknown_name(reference, context))
+        Err(self.classes.unknown_name(reference, context))
     }
 
     /// The name of a function, to be passed to another one (MLS §12.4.2).
@@ -245,14 +249,16 @@ impl Instantiation<'_> {
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
         let Some(Type::Class(class)) = found else { return Ok(None) };
-        if !matches!(self.text(class).restriction(), Restriction::Function { .. }) {
+        if !matches!(self.classes.text(class).restriction(), Restriction::Function { .. }) {
             return Ok(None);
         }
         let Some(name) = self.function(class)? else { return Ok(None) };
         let reference = ComponentReference::from_name(&name, span);
         Ok(Some(Expression::new(ExpressionKind::Reference(reference), span)))
     }
+}
 
+impl Classes<'_> {
     /// Whether a class has a component of this name, itself or inherited.
     pub fn has_component(&mut self, scope: ScopeId, name: Ident) -> Result<bool, Diagnostic> {
         if scope == ScopeId::TOP {
@@ -266,14 +272,14 @@ impl Instantiation<'_> {
         if self.members(package).is_err() {
             return false;
         }
-        self.declaration_of(package, name).is_some_and(|declaration| {
+        self.tree.declaration_of(package, name).is_some_and(|declaration| {
             declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant)
         })
     }
 
     /// The scope in which flat names mean variables.
     pub fn flat_scope(&self) -> ScopeId {
-        self.scope_of(self.root_node).unwrap_or(ScopeId::TOP)
+        self.tree.scope_of(self.tree.root).unwrap_or(ScopeId::TOP)
     }
 }
 
@@ -330,7 +336,7 @@ struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
-        Ok(self.0.functions.get(name).cloned().flatten().map(Callee::Function))
+        Ok(self.0.functions.table.get(name).cloned().flatten().map(Callee::Function))
     }
 
     fn call_builtin(
@@ -343,9 +349,9 @@ impl Host for Functions<'_, '_> {
     }
 
     fn interrupted(&mut self) -> Option<Fault> {
-        self.0.steps += 1;
+        self.0.values.steps += 1;
         let limit = budget::step_limit();
-        (self.0.steps > limit).then(|| {
+        (self.0.values.steps > limit).then(|| {
             fault!(TOO_LARGE, "evaluating the values needed at translation takes more than {} \
                                steps",
                 budget::in_millions(limit); help: "{}", budget::REMEDY)
@@ -357,6 +363,3 @@ impl Host for Functions<'_, '_> {
             .at(reference.span))
     }
 }
-
-/// Variables read while a value is found.
-pub type Read = IndexSet<usize>;

@@ -1,16 +1,19 @@
 //! Enumerations and Boolean as ranges, sizes and subscripts (MLS §10.1, §10.5, §11.2.2.2), and
 //! their conversions (§4.9.5.2, §4.9.5.3). In the flat model the literals are their ordinals.
 
-use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::TYPE_MISMATCH;
-use crate::flatten::instantiate::instance::NodeId;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::names::{Predefined, Type};
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
+use crate::flatten::types::Types;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -21,7 +24,7 @@ use crate::syntax::ast::{
 /// How many short classes a type may lead through.
 const MAX_CHAIN: usize = 100;
 
-impl Instantiation<'_> {
+impl Classes<'_> {
     /// All values of the type that an expression names, as a vector; `None` if it names none.
     pub fn type_range(
         &mut self,
@@ -54,24 +57,13 @@ impl Instantiation<'_> {
         name: Ident,
         dimension: usize,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let Some(declared) = self.declaration_of(node, name) else { return Ok(None) };
+        let Some(declared) = self.tree.declaration_of(node, name) else { return Ok(None) };
         match declared.dims.get(dimension) {
             Some((Subscript::Index(size), scope)) => {
                 self.type_range(size, *scope, &Local::default())
             }
             _ => Ok(None),
         }
-    }
-
-    /// Whether the subscripts of one dimension of a component are of type Boolean.
-    pub fn is_sized_by_boolean(
-        &mut self,
-        node: NodeId,
-        name: Ident,
-        dimension: usize,
-    ) -> Result<bool, Diagnostic> {
-        let values = self.subscript_type(node, name, dimension)?;
-        Ok(values.is_some_and(|values| self.type_of(&values) == Some(BaseType::Boolean)))
     }
 
     /// A dimension that is sized by an enumeration or by Boolean has subscripts of that type alone
@@ -110,29 +102,18 @@ impl Instantiation<'_> {
         }
         Ok(false)
     }
+}
 
-    /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
-    pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
-        if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
-            return index;
-        }
-        let span = index.span;
-        let place = |n| Expression::new(ExpressionKind::Integer(n), span);
-        match index.kind {
-            ExpressionKind::Boolean(truth) => place(1 + i64::from(truth)),
-            ExpressionKind::Array(elements) => {
-                let places =
-                    elements.into_iter().map(|e| self.boolean_subscript(e, local)).collect();
-                Expression::new(ExpressionKind::Array(places), span)
-            }
-            _ => {
-                let kind = ExpressionKind::If {
-                    branches: vec![(index, place(2))],
-                    otherwise: Box::new(place(1)),
-                };
-                Expression::new(kind, span)
-            }
-        }
+impl Instantiation<'_> {
+    /// Whether the subscripts of one dimension of a component are of type Boolean.
+    pub fn is_sized_by_boolean(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<bool, Diagnostic> {
+        let values = self.classes.subscript_type(node, name, dimension)?;
+        Ok(values.is_some_and(|values| self.types().type_of(&values) == Some(BaseType::Boolean)))
     }
 
     /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
@@ -148,10 +129,10 @@ impl Instantiation<'_> {
         if !arguments.named.is_empty() || !arguments.iterators.is_empty() {
             return Ok(None);
         }
-        match self.lookup(context, &function.name())? {
+        match self.classes.lookup(context, &function.name())? {
             Some(Type::Predefined(Predefined::Integer)) => {
                 let value = self.resolve(argument, context, local)?;
-                Ok(Some(match self.type_of(&value) {
+                Ok(Some(match self.types().type_of(&value) {
                     Some(BaseType::Integer) => value,
                     // Also where the type is not known here, as that of a record's component.
                     _ => ordinal(value),
@@ -161,7 +142,9 @@ impl Instantiation<'_> {
                 self.literal_name(argument, context, local)
             }
             Some(found @ Type::Class(_)) => {
-                let Some(definition) = self.enumeration(found, span)? else { return Ok(None) };
+                let Some(definition) = self.classes.enumeration(found, span)? else {
+                    return Ok(None);
+                };
                 let value = self.resolve(argument, context, local)?;
                 let count = definition.literals.len() as i64;
                 match value.kind {
@@ -189,7 +172,7 @@ impl Instantiation<'_> {
         let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
         let span = argument.span;
         let resolved = self.resolve(argument, context, local)?;
-        let definition = match self.type_of(&resolved) {
+        let definition = match self.types().type_of(&resolved) {
             Some(BaseType::Enumeration(definition)) => definition,
             Some(BaseType::Integer) => {
                 let prefix = crate::name::Name {
@@ -197,11 +180,11 @@ impl Instantiation<'_> {
                     global: reference.global,
                 };
                 let first = reference.parts[0].name;
-                if prefix.parts.is_empty() || self.has_component(context, first)? {
+                if prefix.parts.is_empty() || self.classes.has_component(context, first)? {
                     return Ok(None);
                 }
-                let Some(found) = self.lookup(context, &prefix)? else { return Ok(None) };
-                match self.enumeration(found, span)? {
+                let Some(found) = self.classes.lookup(context, &prefix)? else { return Ok(None) };
+                match self.classes.enumeration(found, span)? {
                     Some(definition) => definition,
                     None => return Ok(None),
                 }
@@ -219,6 +202,32 @@ impl Instantiation<'_> {
             vec![Subscript::Index(resolved)],
             span,
         )))
+    }
+}
+
+impl Types<'_> {
+    /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
+    pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
+        if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
+            return index;
+        }
+        let span = index.span;
+        let place = |n| Expression::new(ExpressionKind::Integer(n), span);
+        match index.kind {
+            ExpressionKind::Boolean(truth) => place(1 + i64::from(truth)),
+            ExpressionKind::Array(elements) => {
+                let places =
+                    elements.into_iter().map(|e| self.boolean_subscript(e, local)).collect();
+                Expression::new(ExpressionKind::Array(places), span)
+            }
+            _ => {
+                let kind = ExpressionKind::If {
+                    branches: vec![(index, place(2))],
+                    otherwise: Box::new(place(1)),
+                };
+                Expression::new(kind, span)
+            }
+        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! Ranges that a loop does not write and its body shows: the sizes of the arrays that its variable
 //! is a subscript of (MLS §11.2.2.1).
 
-use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::{MemberState, NodeKind};
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::scope::ScopeId;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Subscript,
@@ -138,16 +138,18 @@ impl Instantiation<'_> {
         one: &Use,
         context: ScopeId,
     ) -> Result<Option<Extent>, Diagnostic> {
-        let mut node = self.node_of(context);
-        if !self.has_component(context, one.array.parts[0].name)? {
+        let mut node = self.classes.node_of(context);
+        if !self.classes.has_component(context, one.array.parts[0].name)? {
             return Ok(None);
         }
         let count = one.array.parts.len();
         for (at, part) in one.array.parts.iter().enumerate() {
             let is_last = at + 1 == count;
             let dims = match self.member(node, part.name)?.map(MemberState::seen) {
-                Some(MemberState::Single(next)) => match &self.nodes[next.0].kind {
-                    NodeKind::Variable(leaf) => self.variables[leaf.variable].0.dims.clone(),
+                Some(MemberState::Single(next)) => match &self.classes.tree.nodes[next.0].kind {
+                    NodeKind::Variable(leaf) => {
+                        self.classes.tree.variables[leaf.variable].0.dims.clone()
+                    }
                     NodeKind::Composite(_) => {
                         node = next;
                         continue;

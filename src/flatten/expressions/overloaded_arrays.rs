@@ -1,10 +1,10 @@
 //! Operations on arrays of operator records that follow from those of their elements: sums
 //! (MLS §10.3.4) and products with matrices (MLS §14.4).
 
-use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use crate::flatten::expressions::local::Local;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
@@ -19,7 +19,7 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let Some(record) = self.record_of(argument, local) else { return Ok(None) };
+        let Some(record) = self.types().record_of(argument, local) else { return Ok(None) };
         if !matches!(argument.kind, ExpressionKind::Array(_)) {
             return Err(fault!(
                 TYPE_MISMATCH,

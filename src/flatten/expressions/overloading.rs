@@ -1,15 +1,16 @@
 //! Overloaded operators of operator records (MLS ch. 14): an operation on records becomes a call of
 //! the one function of its operator that fits the operands, or, on arrays, one call for each element.
 
-use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::names::Type;
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::lookup::types::Type;
+use crate::flatten::types::Types;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -27,7 +28,8 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let types = (self.element_type_of(left, local), self.element_type_of(right, local));
+        let types =
+            (self.types().element_type_of(left, local), self.types().element_type_of(right, local));
         let records: Vec<Name> =
             [&types.0, &types.1].into_iter().filter_map(|t| record_name(t.as_ref())).collect();
         if records.is_empty() {
@@ -87,7 +89,7 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let operand_type = self.element_type_of(operand, local);
+        let operand_type = self.types().element_type_of(operand, local);
         let Some(record) = record_name(operand_type.as_ref()) else { return Ok(None) };
         let call = self.operator_call(&record, sign, std::slice::from_ref(operand), local, span)?;
         match (call, &operand.kind) {
@@ -105,19 +107,6 @@ impl Instantiation<'_> {
         }
     }
 
-    /// The type of an expression, or of the elements of an array constructor.
-    fn element_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
-        match &e.kind {
-            ExpressionKind::Array(elements) => self.element_type_of(elements.first()?, local),
-            _ => self.value_type_of(e, local),
-        }
-    }
-
-    /// The record that an expression, or the elements of an array constructor, are of.
-    pub fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
-        record_name(self.element_type_of(e, local).as_ref())
-    }
-
     /// The constructor of an operator record that fits resolved arguments; `None` if it has none,
     /// or none that fits, and the record's own constructor is meant.
     pub fn overloaded_constructor(
@@ -126,11 +115,11 @@ impl Instantiation<'_> {
         arguments: &Arguments,
         local: &Local,
     ) -> Result<Option<Name>, Diagnostic> {
-        if self.text(class).restriction() != Restriction::OperatorRecord {
+        if self.classes.text(class).restriction() != Restriction::OperatorRecord {
             return Ok(None);
         }
         for (name, function) in self.operator_functions(class, "'constructor'")? {
-            if self.fits_call(&function, arguments, local) {
+            if self.types().fits_call(&function, arguments, local) {
                 return Ok(Some(name));
             }
         }
@@ -145,10 +134,12 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let Some(class) = self.record_scopes.get(record).copied() else { return Ok(None) };
+        let Some(class) = self.functions.record_scopes.get(record).copied() else {
+            return Ok(None);
+        };
         let arguments = Arguments { positional: operands.to_vec(), ..Arguments::default() };
         for (name, function) in self.operator_functions(class, sign)? {
-            if self.fits_call(&function, &arguments, local) {
+            if self.types().fits_call(&function, &arguments, local) {
                 let function = ComponentReference::from_name(&name, span);
                 let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
                 return Ok(Some(Expression::new(kind, span)));
@@ -163,18 +154,20 @@ impl Instantiation<'_> {
         class: ScopeId,
         sign: &str,
     ) -> Result<Vec<(Name, Arc<Function>)>, Diagnostic> {
-        let Some(nested) = self.find_class(class, Ident::new(sign))? else { return Ok(Vec::new()) };
-        let Type::Class(operator) = self.instance(&nested)? else { return Ok(Vec::new()) };
+        let Some(nested) = self.classes.find_class(class, Ident::new(sign))? else {
+            return Ok(Vec::new());
+        };
+        let Type::Class(operator) = self.classes.instance(&nested)? else { return Ok(Vec::new()) };
         let mut scopes = vec![operator];
-        if self.text(operator).restriction() == Restriction::Operator {
+        if self.classes.text(operator).restriction() == Restriction::Operator {
             scopes.clear();
-            let id = self.text(operator).id;
+            let id = self.classes.text(operator).id;
             let names: Vec<Ident> = id.map_or(Vec::new(), |id| {
-                self.library.class(id).children().map(|(name, _)| name).collect()
+                self.classes.library.class(id).children().map(|(name, _)| name).collect()
             });
             for name in names {
-                if let Some(inner) = self.find_class(operator, name)?
-                    && let Type::Class(scope) = self.instance(&inner)?
+                if let Some(inner) = self.classes.find_class(operator, name)?
+                    && let Type::Class(scope) = self.classes.instance(&inner)?
                 {
                     scopes.push(scope);
                 }
@@ -183,12 +176,27 @@ impl Instantiation<'_> {
         let mut functions = Vec::with_capacity(scopes.len());
         for scope in scopes {
             if let Some(name) = self.function(scope)?
-                && let Some(Some(function)) = self.functions.get(&name)
+                && let Some(Some(function)) = self.functions.table.get(&name)
             {
                 functions.push((name, function.clone()));
             }
         }
         Ok(functions)
+    }
+}
+
+impl Types<'_> {
+    /// The type of an expression, or of the elements of an array constructor.
+    fn element_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
+        match &e.kind {
+            ExpressionKind::Array(elements) => self.element_type_of(elements.first()?, local),
+            _ => self.value_type_of(e, local),
+        }
+    }
+
+    /// The record that an expression, or the elements of an array constructor, are of.
+    pub fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
+        record_name(self.element_type_of(e, local).as_ref())
     }
 
     /// Whether a call with these arguments can be one of the function, without conversions but
@@ -236,7 +244,7 @@ impl Instantiation<'_> {
     pub fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
         match &e.kind {
             ExpressionKind::Call { function, .. } => {
-                if let Some(Some(function)) = self.functions.get(&function.name()) {
+                if let Some(Some(function)) = self.functions.table.get(&function.name()) {
                     let output = function.outputs.first()?;
                     return output.dims.is_empty().then(|| output.value_type.clone());
                 }

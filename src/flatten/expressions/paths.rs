@@ -1,16 +1,20 @@
 //! References followed through the components of instances, to variables, to the elements of arrays
 //! of components, and to records as a whole (MLS §5.3.2, §10.5).
 
-use super::resolve::Local;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{
     NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, UNKNOWN_NAME,
 };
+use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::{at_end, flat_reference, literal, subscripted};
-use crate::flatten::instantiate::instance::{MemberState, NodeId, NodeKind};
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::MemberState;
+use crate::flatten::instantiate::instance::NodeKind;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -33,14 +37,17 @@ impl Instantiation<'_> {
             return self.whole_instance(node, whole, context, local);
         };
         let Some(state) = self.member(node, part.name)? else {
-            return Err(self.unknown_component(node, part.name, whole.span));
+            return Err(self.classes.unknown_component(node, part.name, whole.span));
         };
         if let (MemberState::Outer(_), Some(next)) = (&state, rest.first()) {
-            self.check_outer_element(node, part.name, next.name, whole.span)?;
+            self.classes.check_outer_element(node, part.name, next.name, whole.span)?;
         }
         let state = state.seen();
-        if !local.flat && parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
-            let path = &self.nodes[node.0].path;
+        if !local.flat
+            && parts.len() < whole.parts.len()
+            && self.classes.tree.is_protected(node, part.name)
+        {
+            let path = &self.classes.tree.nodes[node.0].path;
             return Err(fault!(
                 PROTECTED_ACCESS,
                 "`{}` is protected in `{}`",
@@ -50,13 +57,13 @@ impl Instantiation<'_> {
             .at(whole.span));
         }
         if !local.flat && !part.subscripts.is_empty() {
-            self.check_subscript_types(node, part)?;
+            self.classes.check_subscript_types(node, part)?;
         }
         match state {
             MemberState::Single(id) => {
-                if let NodeKind::Variable(_) = self.nodes[id.0].kind {
+                if let NodeKind::Variable(_) = self.classes.tree.nodes[id.0].kind {
                     if let Some(next) = rest.first() {
-                        let path = &self.nodes[id.0].path;
+                        let path = &self.classes.tree.nodes[id.0].path;
                         return Err(fault!(
                             UNKNOWN_NAME,
                             "`{path}` is a variable and has no component `{}`",
@@ -76,7 +83,8 @@ impl Instantiation<'_> {
             }
             MemberState::Array(dims, nodes) => {
                 let subscripts = self.subscripts(&part.subscripts, context, local)?;
-                let is_constant = nodes.first().is_some_and(|node| self.in_package(*node));
+                let is_constant =
+                    nodes.first().is_some_and(|node| self.classes.tree.in_package(*node));
                 if is_constant && subscripts.iter().any(|s| local.is_open(s)) {
                     // The index is known where the function is carried out: it chooses among all.
                     let all = self.choose(&dims, &[], part.name, whole.span)?;
@@ -205,16 +213,17 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let Some(class) = self.composite_of(node).map(|composite| composite.class) else {
+        let Some(class) = self.classes.tree.composite_of(node).map(|composite| composite.class)
+        else {
             return self.variable_reference(node, Vec::new(), whole.span, local);
         };
-        if !self.is_record(class) {
-            let path = &self.nodes[node.0].path;
+        if !self.classes.is_record(class) {
+            let path = &self.classes.tree.nodes[node.0].path;
             return Err(
                 fault!(NOT_SUPPORTED, "`{path}` is not a record and has no value").at(whole.span)
             );
         }
-        let members = self.members(node)?;
+        let members = self.classes.members(node)?;
         let mut named = Vec::with_capacity(members.len());
         for (name, _) in members {
             let part = ReferencePart { name, subscripts: Vec::new() };
@@ -235,15 +244,15 @@ impl Instantiation<'_> {
         span: Span,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else {
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else {
             return Err(fault!(UNKNOWN_NAME, "not a variable").at(span));
         };
         let variable = leaf.variable;
-        if local.values || self.in_package(node) {
+        if local.values || self.classes.tree.in_package(node) {
             let value = self.value(variable, span)?;
             return Ok(subscripted(literal(&value, span), subscripts, span));
         }
-        let mut reference = flat_reference(&self.nodes[node.0].path, span);
+        let mut reference = flat_reference(&self.classes.tree.nodes[node.0].path, span);
         if let Some(last) = reference.parts.last_mut() {
             last.subscripts = subscripts;
         }
@@ -307,8 +316,8 @@ impl Instantiation<'_> {
         let mut given = subscripts.iter().cloned();
         let first = reference.parts[0].name;
         let is_component = !reference.global && local.get(first).is_none();
-        let mut node = match is_component && self.has_component(context, first)? {
-            true => Some(self.node_of(context)),
+        let mut node = match is_component && self.classes.has_component(context, first)? {
+            true => Some(self.classes.node_of(context)),
             false => None,
         };
         let count = found.parts.len();
@@ -343,27 +352,31 @@ impl Instantiation<'_> {
             _ => (None, None),
         })
     }
+}
 
+impl Tree {
     /// Whether a component is protected in the class of its node.
     fn is_protected(&self, node: NodeId, name: Ident) -> bool {
         self.declaration_of(node, name).is_some_and(|declaration| declaration.protected)
     }
 
+    pub fn component_names(&self, node: NodeId) -> Vec<Ident> {
+        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
+        members.map_or(Vec::new(), |members| members.keys().copied().collect())
+    }
+}
+
+impl Classes<'_> {
     pub fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
-        let text = self.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
+        let text = self.tree.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
         let Some(text) = text else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
         };
         let class = &text.name;
-        let known = self.component_names(node);
+        let known = self.tree.component_names(node);
         let known = known.iter().map(|known| known.as_str());
         fault!(UNKNOWN_NAME, "`{class}` has no component `{name}`")
             .help_if(suggest::did_you_mean(name.as_str(), known))
             .at(span)
-    }
-
-    pub fn component_names(&self, node: NodeId) -> Vec<Ident> {
-        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
-        members.map_or(Vec::new(), |members| members.keys().copied().collect())
     }
 }

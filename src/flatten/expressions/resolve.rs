@@ -2,81 +2,25 @@
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
 use crate::diag::{Diagnostic, suggest};
-use crate::eval::{self, ValueType};
+use crate::eval::{self};
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, NOT_SUPPORTED, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::lookup::names::Type;
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
     Subscript, UnaryOperator,
 };
-use crate::syntax::visit::{Visit, walk_reference};
 use crate::value::Value;
-use std::rc::Rc;
 
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
-
-/// What the resolution of an expression knows besides its scope.
-#[derive(Clone, Default)]
-pub struct Local {
-    /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
-    /// their value.
-    pub names: Vec<(Ident, Option<Expression>)>,
-    /// Inputs of a function.
-    pub read_only: Vec<Ident>,
-    /// Types of the variables of a function.
-    pub types: Rc<Vec<(Ident, ValueType)>>,
-    /// Whether variables are replaced by their values, which must be constant.
-    pub values: bool,
-    /// Whether impure functions may be called: in parameters, initial sections and when-clauses
-    /// (MLS §12.3).
-    pub impure: bool,
-    /// Whether names are flat paths, to which protected components are no secret.
-    pub flat: bool,
-}
-
-impl Local {
-    /// What a local name stands for, if there is one: its value where it has one.
-    pub fn get(&self, name: Ident) -> Option<&Option<Expression>> {
-        self.names.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value)
-    }
-
-    /// Whether a subscript needs a local name that has no value yet.
-    pub fn is_open(&self, subscript: &Subscript) -> bool {
-        let mut names = OpenNames { local: self, found: false };
-        if let Subscript::Index(e) = subscript {
-            names.expression(e);
-        }
-        names.found
-    }
-
-    /// This with more names that stay as they are.
-    pub fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
-        let mut local = self.clone();
-        local.names.extend(names.into_iter().map(|name| (name, None)));
-        local
-    }
-}
-
-/// Looks for local names without a value.
-struct OpenNames<'a> {
-    local: &'a Local,
-    found: bool,
-}
-
-impl Visit for OpenNames<'_> {
-    fn reference(&mut self, reference: &ComponentReference) {
-        walk_reference(self, reference);
-        let first = reference.parts.first().and_then(|part| self.local.get(part.name));
-        self.found |= first.is_some_and(Option::is_none);
-    }
-}
 
 impl Instantiation<'_> {
     /// The expression with its names resolved.
@@ -263,11 +207,11 @@ impl Instantiation<'_> {
             .map(|subscript| match subscript {
                 Subscript::All(span) => Ok(Subscript::All(*span)),
                 Subscript::Index(e) => {
-                    let index = match self.type_range(e, context, local)? {
+                    let index = match self.classes.type_range(e, context, local)? {
                         Some(values) => values,
                         None => self.resolve(e, context, local)?,
                     };
-                    Ok(Subscript::Index(self.boolean_subscript(index, local)))
+                    Ok(Subscript::Index(self.types().boolean_subscript(index, local)))
                 }
             })
             .collect()
@@ -294,12 +238,12 @@ impl Instantiation<'_> {
         }
         if function.as_ident().is_some_and(|name| name == "getInstanceName")
             && context != ScopeId::TOP
-            && !self.in_package(self.node_of(context))
+            && !self.classes.tree.in_package(self.classes.node_of(context))
         {
-            let name = self.instance_name(context);
+            let name = self.classes.instance_name(context);
             return Ok(Expression::new(ExpressionKind::String(name.into()), span));
         }
-        if self.is_array_constructor(function, arguments, context)? {
+        if self.classes.is_array_constructor(function, arguments, context)? {
             if let ([element], false) =
                 (arguments.positional.as_slice(), arguments.iterators.is_empty())
             {
@@ -320,18 +264,22 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
-        let in_model = context != ScopeId::TOP && !self.in_package(self.node_of(context));
-        let name = match self.lookup(context, &function.name())? {
+        let in_model =
+            context != ScopeId::TOP && !self.classes.tree.in_package(self.classes.node_of(context));
+        let name = match self.classes.lookup(context, &function.name())? {
             Some(Type::Class(class)) => {
                 self.overloaded_constructor(class, &arguments, local)?.unwrap_or(name)
             }
-            _ if in_model && !self.functions.contains_key(&name) && !is_builtin(&name, local) => {
-                return Err(self.unknown_function(context, &name, function.span));
+            _ if in_model
+                && !self.functions.table.contains_key(&name)
+                && !is_builtin(&name, local) =>
+            {
+                return Err(self.classes.unknown_function(context, &name, function.span));
             }
             _ => name,
         };
         let impure =
-            self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
+            self.functions.table.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
         if impure && !local.impure && in_model {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure; calls of impure functions in models \
@@ -340,34 +288,14 @@ impl Instantiation<'_> {
                 .at(span),
             );
         }
-        let arguments = self.with_defaults(&name, arguments, span);
-        let (name, arguments) = self.specialized(name, arguments, span, 0)?;
+        let arguments = self.functions.with_defaults(&name, arguments, span);
+        let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
         if let Some(calls) = self.vectorized(&name, &arguments, span)? {
             return Ok(calls);
         }
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
-    }
-
-    /// Whether a call is `array(a, b)`, another form of `{a, b}` (MLS §10.4).
-    fn is_array_constructor(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-        context: ScopeId,
-    ) -> Result<bool, Diagnostic> {
-        let is_named = function.as_ident().is_some_and(|name| name == "array");
-        let lists = arguments.named.is_empty() && !arguments.positional.is_empty();
-        Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
-    }
-
-    /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
-    fn instance_name(&self, context: ScopeId) -> String {
-        match self.nodes[self.node_of(context).0].path.as_str() {
-            "" => self.model_name.to_string(),
-            path => format!("{}.{path}", self.model_name),
-        }
     }
 
     /// A reference as an expression: `time`, a loop variable, a component or a constant.
@@ -385,8 +313,8 @@ impl Instantiation<'_> {
                     _ => self.local_reference(reference, context, local),
                 };
             }
-            if self.has_component(context, first.name)? {
-                let node = self.node_of(context);
+            if self.classes.has_component(context, first.name)? {
+                let node = self.classes.node_of(context);
                 return self.walk(node, &reference.parts, reference, context, local);
             }
             if reference.as_ident().is_some_and(|name| name == "time") {
@@ -417,11 +345,33 @@ impl Instantiation<'_> {
         let resolved = ComponentReference { global: false, parts, span: reference.span };
         Ok(Expression::new(ExpressionKind::Reference(resolved), reference.span))
     }
+}
+
+impl Classes<'_> {
+    /// Whether a call is `array(a, b)`, another form of `{a, b}` (MLS §10.4).
+    fn is_array_constructor(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+    ) -> Result<bool, Diagnostic> {
+        let is_named = function.as_ident().is_some_and(|name| name == "array");
+        let lists = arguments.named.is_empty() && !arguments.positional.is_empty();
+        Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
+    }
+
+    /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
+    fn instance_name(&self, context: ScopeId) -> String {
+        match self.tree.nodes[self.node_of(context).0].path.as_str() {
+            "" => self.tree.model_name.to_string(),
+            path => format!("{}.{path}", self.tree.model_name),
+        }
+    }
 
     /// The diagnostic for a name that is neither a component nor a constant.
     pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
         let name = reference.name();
-        let known = self.component_names(self.node_of(context));
+        let known = self.tree.component_names(self.node_of(context));
         let first = name.first().map_or("", Ident::as_str);
         fault!(UNKNOWN_NAME, "`{name}` is not declared")
             .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))

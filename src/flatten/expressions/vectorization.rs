@@ -5,8 +5,9 @@ use crate::diag::Diagnostic;
 use crate::eval::FunctionBody;
 use crate::fault;
 use crate::flatten::errors::SIZE_MISMATCH;
+use crate::flatten::flat_expression::indices_of;
 use crate::flatten::flat_expression::subscripted;
-use crate::flatten::instantiate::instantiation::{Instantiation, indices_of};
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
@@ -22,7 +23,7 @@ impl Instantiation<'_> {
         arguments: &Arguments,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let Some(Some(function)) = self.functions.get(name).cloned() else { return Ok(None) };
+        let Some(Some(function)) = self.functions.table.get(name).cloned() else { return Ok(None) };
         if !arguments.iterators.is_empty()
             || function.body == FunctionBody::RecordConstructor
             || function.outputs.len() != 1
@@ -83,7 +84,7 @@ impl Instantiation<'_> {
 
     /// The sizes that an argument has beyond those of its input, if it has more.
     fn extra_dims(&mut self, argument: &Expression, wanted: usize) -> Option<Vec<usize>> {
-        if self.rank_of(argument).is_some_and(|rank| rank <= wanted) {
+        if self.types().rank_of(argument).is_some_and(|rank| rank <= wanted) {
             return None;
         }
         let dims = self.shape_of(argument)?;

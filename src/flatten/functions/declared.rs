@@ -4,14 +4,18 @@ use crate::diag::Diagnostic;
 use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
-use crate::flatten::expressions::resolve::Local;
+use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::literal;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::{MemberState, Shape};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::library::Library;
+use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::modification::Modifier;
-use crate::flatten::lookup::names::{Predefined, Type};
-use crate::flatten::lookup::scope::{ScopeId, Text};
+use crate::flatten::lookup::scope::Text;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -46,13 +50,15 @@ impl Library {
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let mut instantiation = Instantiation::new(self);
-        instantiation.asked_function = Some(name.clone());
-        let Some(Type::Class(id)) = instantiation.class_named(name)? else { return Ok(None) };
+        instantiation.functions.asked = Some(name.clone());
+        let Some(Type::Class(id)) = instantiation.classes.class_named(name)? else {
+            return Ok(None);
+        };
         let Some(full) = instantiation.function(id)? else { return Ok(None) };
         let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
-        let own = instantiation.functions.shift_remove(&full).flatten();
+        let own = instantiation.functions.table.shift_remove(&full).flatten();
         functions.extend(own.map(|function| (full, function)));
-        for (name, function) in instantiation.functions {
+        for (name, function) in instantiation.functions.table {
             functions.extend(function.map(|function| (name, function)));
         }
         Ok(Some(functions))
@@ -68,7 +74,7 @@ impl Instantiation<'_> {
         context: ScopeId,
         span: Span,
     ) -> Result<Name, Diagnostic> {
-        match self.lookup(context, name)? {
+        match self.classes.lookup(context, name)? {
             Some(Type::Class(id)) => match self.function(id)? {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
@@ -88,23 +94,23 @@ impl Instantiation<'_> {
         span: Span,
     ) -> Result<Option<Name>, Diagnostic> {
         let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
-        if rest.is_empty() || name.global || !self.has_component(context, *first)? {
+        if rest.is_empty() || name.global || !self.classes.has_component(context, *first)? {
             return Ok(None);
         }
-        let mut node = self.node_of(context);
+        let mut node = self.classes.node_of(context);
         for (at, part) in name.parts.iter().enumerate() {
             match self.member(node, *part)?.map(MemberState::seen) {
                 Some(MemberState::Single(next)) => node = next,
                 _ => {
-                    let Some(scope) = self.scope_of(node) else { return Ok(None) };
-                    if at > 0 && self.is_protected_class(scope, *part) {
-                        let path = &self.nodes[node.0].path;
+                    let Some(scope) = self.classes.tree.scope_of(node) else { return Ok(None) };
+                    if at > 0 && self.classes.is_protected_class(scope, *part) {
+                        let path = &self.classes.tree.nodes[node.0].path;
                         return Err(
                             fault!(PROTECTED_ACCESS, "`{part}` is protected in `{path}`").at(span)
                         );
                     }
                     let found = Some(Type::Class(scope));
-                    return match self.lookup_inside(found, &name.parts[at..])? {
+                    return match self.classes.lookup_inside(found, &name.parts[at..])? {
                         Some(Type::Class(id)) => self.function(id),
                         _ => Ok(None),
                     };
@@ -112,19 +118,6 @@ impl Instantiation<'_> {
             }
         }
         Ok(None)
-    }
-
-    /// Whether a class declares another one behind `protected`.
-    fn is_protected_class(&self, scope: ScopeId, name: Ident) -> bool {
-        let class = self.text(scope).id.map(|id| self.library.class(id));
-        class.is_some_and(|class| {
-            class.elements().any(|(visibility, element)| match element {
-                Element::Class(nested) => {
-                    nested.class.name.node == name && visibility == Visibility::Protected
-                }
-                _ => false,
-            })
-        })
     }
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.
@@ -138,19 +131,21 @@ impl Instantiation<'_> {
 
     /// Makes a function ready and returns its full name; `None` if the class is no function.
     pub fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
-        if let Some(known) = self.function_names.get(&id) {
+        if let Some(known) = self.functions.names.get(&id) {
             return Ok(Some(known.clone()));
         }
-        let class = self.long_class(id)?;
+        let class = self.classes.long_class(id)?;
         let is_function = matches!(
-            self.text(class).restriction(),
+            self.classes.text(class).restriction(),
             Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
         );
         if !is_function {
             return self.object_constructor(class);
         }
-        if let ClassSpecifier::Derivative(derivative) = &self.text(class).definition.specifier {
-            let (name, span) = (self.text(id).name.clone(), derivative.target.span);
+        if let ClassSpecifier::Derivative(derivative) =
+            &self.classes.text(class).definition.specifier
+        {
+            let (name, span) = (self.classes.text(id).name.clone(), derivative.target.span);
             return Err(fault!(NOT_SUPPORTED,
                 "`{name}` is a partial derivative of a function, which is not supported yet";
                 help: "write the derivative as a separate function")
@@ -158,20 +153,20 @@ impl Instantiation<'_> {
         }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(id, class);
-        self.functions.insert(name.clone(), None);
-        self.function_names.insert(id, name.clone());
-        if self.is_record(class) {
-            self.record_scopes.insert(name.clone(), class);
+        self.functions.table.insert(name.clone(), None);
+        self.functions.names.insert(id, name.clone());
+        if self.classes.is_record(class) {
+            self.functions.record_scopes.insert(name.clone(), class);
         }
-        let function = match self.is_record(class) {
+        let function = match self.classes.is_record(class) {
             false => self.ready(&name, class),
             true => self.constructor(&name, class),
         };
         match function {
             Ok(function) => Ok(Some(self.keep_function(id, name, function))),
             Err(error) => {
-                self.functions.shift_remove(&name);
-                self.function_names.remove(&id);
+                self.functions.table.shift_remove(&name);
+                self.functions.names.remove(&id);
                 Err(error)
             }
         }
@@ -179,12 +174,12 @@ impl Instantiation<'_> {
 
     /// The function `constructor` of an external object (MLS §12.9.7), which its class stands for.
     fn object_constructor(&mut self, class: ScopeId) -> Result<Option<Name>, Diagnostic> {
-        let text = self.text(class).clone();
-        let base = self.predefined_base(class, &text)?.map(|(base, _)| base);
+        let text = self.classes.text(class).clone();
+        let base = self.classes.predefined_base(class, &text)?.map(|(base, _)| base);
         if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
             return Ok(None);
         }
-        match self.lookup(class, &Name::from(Ident::new("constructor")))? {
+        match self.classes.lookup(class, &Name::from(Ident::new("constructor")))? {
             Some(Type::Class(id)) => self.function(id),
             _ => Ok(None),
         }
@@ -214,71 +209,52 @@ impl Instantiation<'_> {
     /// The name of a function, with a number if another function has it: the same text in another
     /// environment.
     fn free_name(&mut self, id: ScopeId, class: ScopeId) -> Name {
-        let name = self.text(id).name.clone();
-        let is_plain = self.asked_function.is_none() || self.is_record(class);
-        if !self.functions.contains_key(&name) && (is_plain || self.is_found_as(&name, id)) {
+        let name = self.classes.text(id).name.clone();
+        let is_plain = self.functions.asked.is_none() || self.classes.is_record(class);
+        if !self.functions.table.contains_key(&name)
+            && (is_plain || self.classes.is_found_as(&name, id))
+        {
             return name;
         }
         // The function that is asked for keeps the name that it has there.
-        if let Some(asked) = self.asked_function.as_ref().filter(|_| self.functions.is_empty()) {
+        if let Some(asked) =
+            self.functions.asked.as_ref().filter(|_| self.functions.table.is_empty())
+        {
             return asked.clone();
         }
-        let numbered = (2..).map(|number| self.numbered(&name, number));
-        numbered.into_iter().find(|name| !self.functions.contains_key(name)).unwrap_or(name.clone())
-    }
-
-    /// Whether the library has this very function under its name, not the same text in another
-    /// environment: a package that extends others modifies what their functions see.
-    fn is_found_as(&mut self, name: &Name, id: ScopeId) -> bool {
-        !matches!(self.class_named(name), Ok(Some(Type::Class(found))) if found != id)
-    }
-
-    /// The name with a number. Functions of one instantiation alone are told apart by it; those
-    /// asked for one by one meet, so that their names say for which one they were made.
-    fn numbered(&self, name: &Name, number: usize) -> Name {
-        let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
-        let origin =
-            self.asked_function.as_ref().map_or(String::new(), |name| format!(" in {name}"));
-        name.parent().child(Ident::new(&format!("'{last}${number}{origin}'")))
+        let numbered = (2..).map(|number| self.functions.numbered(&name, number));
+        numbered
+            .into_iter()
+            .find(|name| !self.functions.table.contains_key(name))
+            .unwrap_or(name.clone())
     }
 
     /// Stores a function, unless one that differs in the name alone is known already.
     fn keep_function(&mut self, id: ScopeId, name: Name, function: Function) -> Name {
-        let text = self.text(id).name.clone();
-        if name != text && self.asked_function.as_ref() != Some(&name) {
+        let text = self.classes.text(id).name.clone();
+        if name != text && self.functions.asked.as_ref() != Some(&name) {
             let mut at = 1;
             let mut candidate = text.clone();
             while candidate != name {
                 let renamed = Function { name: candidate.clone(), ..function.clone() };
-                let known = self.functions.get(&candidate).cloned().flatten();
+                let known = self.functions.table.get(&candidate).cloned().flatten();
                 if known.is_some_and(|known| same_function(&known, &renamed)) {
-                    self.functions.shift_remove(&name);
-                    self.function_names.insert(id, candidate.clone());
+                    self.functions.table.shift_remove(&name);
+                    self.functions.names.insert(id, candidate.clone());
                     return candidate;
                 }
                 at += 1;
-                candidate = self.numbered(&text, at);
+                candidate = self.functions.numbered(&text, at);
             }
         }
-        self.functions.insert(name.clone(), Some(Arc::new(function)));
+        self.functions.table.insert(name.clone(), Some(Arc::new(function)));
         name
-    }
-
-    fn long_class(&mut self, mut id: ScopeId) -> Result<ScopeId, Diagnostic> {
-        for _ in 0..100 {
-            let ClassSpecifier::Short(_) = &self.text(id).definition.specifier else { break };
-            match self.bases(id)?.first() {
-                Some(base) => id = *base,
-                None => break,
-            }
-        }
-        Ok(id)
     }
 
     /// The name of a record's constructor, made ready.
     pub fn record_constructor(&mut self, class: ScopeId, span: Span) -> Result<Name, Diagnostic> {
         self.function(class)?.ok_or_else(|| {
-            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.text(class).name).at(span)
+            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.classes.text(class).name).at(span)
         })
     }
 
@@ -302,16 +278,16 @@ impl Instantiation<'_> {
             };
             list.push(declared.component);
         }
-        let lineage: Vec<ScopeId> = self.elements(class)?.lineage().collect();
-        let text = self.text(class).clone();
-        self.check_complete(class, text.span())?;
+        let lineage: Vec<ScopeId> = self.classes.elements(class)?.lineage().collect();
+        let text = self.classes.text(class).clone();
+        self.classes.check_complete(class, text.span())?;
         let purity = match text.restriction() {
             Restriction::Function { purity, .. } => purity,
             _ => None,
         };
         let mut annotations = Vec::new();
         for scope in &lineage {
-            let own = annotation(self.text(*scope).sections());
+            let own = annotation(self.classes.text(*scope).sections());
             annotations.extend(self.derivatives(own, *scope));
         }
         Ok(Function {
@@ -331,7 +307,7 @@ impl Instantiation<'_> {
     fn constructor(&mut self, name: &Name, class: ScopeId) -> Result<Function, Diagnostic> {
         let fields: Vec<FunctionComponent> =
             self.components_of(class)?.into_iter().map(|declared| declared.component).collect();
-        let span = self.text(class).span();
+        let span = self.classes.text(class).span();
         let table = fields.iter().map(|field| (field.name, field.clone())).collect();
         let output = FunctionComponent {
             name: Ident::new("'constructed record'"),
@@ -357,18 +333,18 @@ impl Instantiation<'_> {
 
     /// The components of a function or record, inherited ones included.
     fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
-        let elements = self.elements(class)?;
+        let elements = self.classes.elements(class)?;
         let mut local = Local::default().with(elements.names());
-        let is_function = !self.is_record(class);
+        let is_function = !self.classes.is_record(class);
         let lineage: Vec<ScopeId> = elements.lineage().collect();
         let mut components = Vec::new();
         for (_, declared) in elements.iter() {
-            let expanded = self.expand(declared)?;
+            let expanded = self.classes.expand(declared)?;
             let mut dims = Vec::with_capacity(declared.dims.len());
             for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
                 dims.push(match subscript {
                     Subscript::All(span) => Subscript::All(*span),
-                    Subscript::Index(e) => match self.type_range(e, *context, &local)? {
+                    Subscript::Index(e) => match self.classes.type_range(e, *context, &local)? {
                         Some(values) => {
                             let dims = self.shape_of(&values).unwrap_or_default();
                             let size = dims.first().copied().unwrap_or(0) as i64;
@@ -463,7 +439,7 @@ impl Instantiation<'_> {
             }
         };
         let name = self.record_constructor(class, span)?;
-        match self.functions.get(&name) {
+        match self.functions.table.get(&name) {
             Some(Some(constructor)) => {
                 let fields = constructor.inputs.iter().map(|f| (f.name, f.clone())).collect();
                 Ok(ValueType::Record(name, Arc::new(fields)))
@@ -476,7 +452,7 @@ impl Instantiation<'_> {
         let mut statements = Vec::new();
         let mut has_algorithm = false;
         for context in lineage.iter().copied() {
-            let text: Text = self.text(context).clone();
+            let text: Text = self.classes.text(context).clone();
             for section in text.sections() {
                 match section {
                     Section::Algorithm { initial: false, statements: own, span } => {
@@ -542,7 +518,7 @@ impl Instantiation<'_> {
         local: &Local,
     ) -> Option<Result<Vec<Statement>, Diagnostic>> {
         let StatementKind::For { indices, body } = &statement.kind else { return None };
-        if !self.is_in_model(context) || body.iter().any(breaks) {
+        if !self.classes.is_in_model(context) || body.iter().any(breaks) {
             return None;
         }
         let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
@@ -557,11 +533,6 @@ impl Instantiation<'_> {
             }
         }
         Some(Ok(all))
-    }
-
-    /// Whether a scope is of a model, not of a function.
-    fn is_in_model(&self, context: ScopeId) -> bool {
-        context != ScopeId::TOP && !self.in_package(self.node_of(context))
     }
 
     fn statement(
@@ -592,7 +563,7 @@ impl Instantiation<'_> {
                     |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
                 let indices = self.with_ranges(indices, context, local, &visit)?;
                 let (mut indices, inner) = self.iterators(&indices, context, local)?;
-                if self.is_in_model(context) {
+                if self.classes.is_in_model(context) {
                     indices.iter_mut().for_each(|index| self.settle_range(index));
                 }
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
@@ -660,6 +631,53 @@ impl Instantiation<'_> {
                 Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span))
             }
         }
+    }
+}
+
+impl Classes<'_> {
+    /// Whether a class declares another one behind `protected`.
+    fn is_protected_class(&self, scope: ScopeId, name: Ident) -> bool {
+        let class = self.text(scope).id.map(|id| self.library.class(id));
+        class.is_some_and(|class| {
+            class.elements().any(|(visibility, element)| match element {
+                Element::Class(nested) => {
+                    nested.class.name.node == name && visibility == Visibility::Protected
+                }
+                _ => false,
+            })
+        })
+    }
+
+    /// Whether the library has this very function under its name, not the same text in another
+    /// environment: a package that extends others modifies what their functions see.
+    fn is_found_as(&mut self, name: &Name, id: ScopeId) -> bool {
+        !matches!(self.class_named(name), Ok(Some(Type::Class(found))) if found != id)
+    }
+
+    fn long_class(&mut self, mut id: ScopeId) -> Result<ScopeId, Diagnostic> {
+        for _ in 0..100 {
+            let ClassSpecifier::Short(_) = &self.text(id).definition.specifier else { break };
+            match self.bases(id)?.first() {
+                Some(base) => id = *base,
+                None => break,
+            }
+        }
+        Ok(id)
+    }
+
+    /// Whether a scope is of a model, not of a function.
+    fn is_in_model(&self, context: ScopeId) -> bool {
+        context != ScopeId::TOP && !self.tree.in_package(self.node_of(context))
+    }
+}
+
+impl FunctionTable {
+    /// The name with a number. Functions of one instantiation alone are told apart by it; those
+    /// asked for one by one meet, so that their names say for which one they were made.
+    fn numbered(&self, name: &Name, number: usize) -> Name {
+        let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
+        let origin = self.asked.as_ref().map_or(String::new(), |name| format!(" in {name}"));
+        name.parent().child(Ident::new(&format!("'{last}${number}{origin}'")))
     }
 }
 

@@ -4,13 +4,13 @@
 
 use crate::eval::Function;
 use crate::flatten::flat_expression::subscripted;
-use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::functions::table::FunctionTable;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind, NamedArgument};
 use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_expression};
 
-impl Instantiation<'_> {
+impl FunctionTable {
     /// The arguments of a call with such defaults added.
     pub fn with_defaults(
         &self,
@@ -18,7 +18,7 @@ impl Instantiation<'_> {
         mut arguments: Arguments,
         span: Span,
     ) -> Arguments {
-        let Some(Some(function)) = self.functions.get(function) else { return arguments };
+        let Some(Some(function)) = self.table.get(function) else { return arguments };
         if !arguments.iterators.is_empty() {
             return arguments;
         }

@@ -4,3 +4,4 @@
 pub mod declared;
 pub mod defaults;
 pub mod specialization;
+pub mod table;

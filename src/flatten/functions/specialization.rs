@@ -6,7 +6,7 @@ use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::errors::TYPE_MISMATCH;
-use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::functions::table::FunctionTable;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -39,7 +39,7 @@ impl Passed {
     }
 }
 
-impl Instantiation<'_> {
+impl FunctionTable {
     /// The function and the arguments of a call without functions among the arguments. A call
     /// inside a function that passes on an input of its own stays until that function is copied.
     pub fn specialized(
@@ -49,7 +49,7 @@ impl Instantiation<'_> {
         span: Span,
         depth: usize,
     ) -> Result<(Name, Arguments), Diagnostic> {
-        let Some(Some(function)) = self.functions.get(&name).cloned() else {
+        let Some(Some(function)) = self.table.get(&name).cloned() else {
             return Ok((name, arguments));
         };
         let takes = |input: &FunctionComponent| input.value_type == ValueType::Function;
@@ -103,7 +103,7 @@ impl Instantiation<'_> {
                     .at(value.span));
             }
         };
-        if !self.functions.contains_key(&function) {
+        if !self.table.contains_key(&function) {
             return Ok(None);
         }
         let bound = self.without_functions(function, bound, value.span, depth)?;
@@ -119,7 +119,7 @@ impl Instantiation<'_> {
         span: Span,
         depth: usize,
     ) -> Result<Option<(Name, Vec<NamedArgument>)>, Diagnostic> {
-        let Some(Some(function)) = self.functions.get(&name).cloned() else {
+        let Some(Some(function)) = self.table.get(&name).cloned() else {
             return Ok(Some((name, bound)));
         };
         let is_function = |argument: &NamedArgument| {
@@ -160,7 +160,7 @@ impl Instantiation<'_> {
             key.push(')');
         }
         let copy = name.parent().child(Ident::new(&format!("'{key}'")));
-        if self.functions.contains_key(&copy) {
+        if self.table.contains_key(&copy) {
             return Ok(copy);
         }
         if depth > MAX_DEPTH {
@@ -170,14 +170,14 @@ impl Instantiation<'_> {
             )
             .at(span));
         }
-        self.functions.insert(copy.clone(), None);
+        self.table.insert(copy.clone(), None);
         let mut made = function.clone();
         made.name = copy.clone();
         made.inputs.retain(|input| passed.iter().all(|one| one.input != input.name));
         for one in passed {
             made.inputs.extend(self.bound_inputs(one, span)?);
         }
-        let mut writing = Writing { tree: self, passed, depth, error: None };
+        let mut writing = Writing { functions: self, passed, depth, error: None };
         for component in made.inputs.iter_mut().chain(&mut made.outputs).chain(&mut made.locals) {
             if let Some(binding) = &mut component.binding {
                 writing.expression(binding);
@@ -189,7 +189,7 @@ impl Instantiation<'_> {
         if let Some(error) = writing.error {
             return Err(error);
         }
-        self.functions.insert(copy.clone(), Some(Arc::new(made)));
+        self.table.insert(copy.clone(), Some(Arc::new(made)));
         Ok(copy)
     }
 
@@ -199,7 +199,7 @@ impl Instantiation<'_> {
         passed: &Passed,
         span: Span,
     ) -> Result<Vec<FunctionComponent>, Diagnostic> {
-        let Some(Some(function)) = self.functions.get(&passed.function) else {
+        let Some(Some(function)) = self.table.get(&passed.function) else {
             return Ok(Vec::new());
         };
         passed
@@ -230,14 +230,14 @@ fn input_name(input: Ident, bound: Ident) -> Ident {
 }
 
 /// Writes passed functions in the place of the inputs that they are passed for.
-struct Writing<'w, 'a> {
-    tree: &'w mut Instantiation<'a>,
+struct Writing<'w> {
+    functions: &'w mut FunctionTable,
     passed: &'w [Passed],
     depth: usize,
     error: Option<Diagnostic>,
 }
 
-impl Writing<'_, '_> {
+impl Writing<'_> {
     fn bound(&self, one: &Passed, span: Span) -> Vec<NamedArgument> {
         let argument = |bound: &NamedArgument| {
             let name = Name::from(input_name(one.input, bound.name.node));
@@ -251,7 +251,7 @@ impl Writing<'_, '_> {
     /// The inputs of a passed function that a partial application leaves; none if there is no
     /// partial application.
     fn free_inputs(&self, one: &Passed) -> Vec<Ident> {
-        let Some(Some(function)) = self.tree.functions.get(&one.function) else {
+        let Some(Some(function)) = self.functions.table.get(&one.function) else {
             return Vec::new();
         };
         if one.bound.is_empty() {
@@ -272,7 +272,7 @@ impl Writing<'_, '_> {
     }
 }
 
-impl Rewrite for Writing<'_, '_> {
+impl Rewrite for Writing<'_> {
     fn expression(&mut self, e: &mut Expression) {
         rewrite_expression(self, e);
         let span = e.span;
@@ -312,7 +312,7 @@ impl Rewrite for Writing<'_, '_> {
                     arguments.named.extend(given.collect::<Vec<_>>());
                     arguments.named.extend(bound);
                 }
-                let called = self.tree.specialized(
+                let called = self.functions.specialized(
                     function.name(),
                     (**arguments).clone(),
                     span,

@@ -6,11 +6,16 @@
 //! reached (D. E. Knuth, "Estimating the efficiency of backtrack programs", Math. Comp. 29 (1975)
 //! 121-136, without chance).
 
-use super::instance::{Declaration, MemberState, NodeId, Shape};
-use super::instantiation::{Instantiation, MAX_INSTANCES};
+use super::instance::Declaration;
+use super::instance::MemberState;
+use super::instance::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::TOO_LARGE;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::tree::MAX_INSTANCES;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -60,35 +65,34 @@ impl Growth {
     pub fn leave(&mut self) {
         self.levels.pop();
     }
-}
 
-impl Instantiation<'_> {
     /// An error if the components that are being completed lead to more than a model may have.
     /// Asked after the completion of each, it is answered whenever their number has doubled.
-    pub fn check_growth(&mut self) -> Result<(), Diagnostic> {
-        let count = self.nodes.len();
-        if count < UNSUSPICIOUS.max(2 * self.growth.estimated) {
+    pub fn check(&mut self, classes: &mut Classes<'_>) -> Result<(), Diagnostic> {
+        let count = classes.tree.nodes.len();
+        if count < UNSUSPICIOUS.max(2 * self.estimated) {
             return Ok(());
         }
-        self.growth.estimated = count;
-        let levels = self.growth.levels.clone();
+        self.estimated = count;
         let mut expected = Expected::default();
-        for level in levels.iter().rev() {
-            let Some(declaration) = self.declaration_at(level.holder, level.member) else {
+        for level in self.levels.iter().rev() {
+            let Some(declaration) = classes.tree.declaration_at(level.holder, level.member) else {
                 continue;
             };
             let built = count.saturating_sub(level.before);
-            let alike = self.alike(level, &declaration);
+            let alike = classes.alike(level, &declaration);
             expected = expected.raised(built, 1 + level.elements, alike);
             if expected.is_too_large() {
-                return Err(self.too_many(level.holder, declaration.span, &expected));
+                return Err(classes.too_many(level.holder, declaration.span, &expected));
             }
         }
         Ok(())
     }
+}
 
+impl Classes<'_> {
     fn too_many(&self, holder: NodeId, span: Span, expected: &Expected) -> Diagnostic {
-        let class = self.scope_of(holder).map(|scope| self.text(scope).name.clone());
+        let class = self.tree.scope_of(holder).map(|scope| self.text(scope).name.clone());
         fault!(
             TOO_LARGE,
             "the model has more than {MAX_INSTANCES} components: `{}` alone would contain {}",
@@ -99,15 +103,11 @@ impl Instantiation<'_> {
         .at(span)
     }
 
-    fn declaration_at(&self, holder: NodeId, member: usize) -> Option<Arc<Declaration>> {
-        let members = self.composite_of(holder)?.members.as_ref()?;
-        members.get_index(member).map(|(_, member)| member.declaration.clone())
-    }
-
     /// How many components behind one in the same instance, which are not built yet, are declared as
     /// it is, and how many of its class at all.
     fn alike(&mut self, level: &Level, declaration: &Declaration) -> [usize; 2] {
-        let members = self.composite_of(level.holder).and_then(|holder| holder.members.as_ref());
+        let members =
+            self.tree.composite_of(level.holder).and_then(|holder| holder.members.as_ref());
         let Some(members) = members else { return [0; 2] };
         let pending: Vec<Arc<Declaration>> = members
             .values()
@@ -136,6 +136,13 @@ impl Instantiation<'_> {
             Shape::Class(class) => Some(self.text(class).definition.span),
             _ => None,
         }
+    }
+}
+
+impl Tree {
+    fn declaration_at(&self, holder: NodeId, member: usize) -> Option<Arc<Declaration>> {
+        let members = self.composite_of(holder)?.members.as_ref()?;
+        members.get_index(member).map(|(_, member)| member.declaration.clone())
     }
 }
 

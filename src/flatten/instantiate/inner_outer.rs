@@ -1,13 +1,20 @@
 //! `inner` and `outer` components (MLS §5.4): an outer component is another name of the inner one
 //! of that name in the nearest enclosing instance.
 
-use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind, Shape};
-use super::instantiation::Instantiation;
+use super::instance::Declaration;
+use super::instance::Member;
+use super::instance::MemberState;
+use super::instance::NodeKind;
+use super::instance::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::library::Habit;
+use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::modification::Modifier;
 use crate::name::Ident;
 use crate::source::Span;
@@ -23,20 +30,20 @@ impl Instantiation<'_> {
     ) -> Result<MemberState, Diagnostic> {
         if !declared.prefixes.inner
             && !declared.modifier.is_empty()
-            && let Some(text) = &self.scope(declared.scope).text
+            && let Some(text) = &self.classes.scope(declared.scope).text
         {
-            self.library.meet(&text.name, Habit::OuterValue, declared.span);
+            self.classes.library.meet(&text.name, Habit::OuterValue, declared.span);
         }
-        let mut holder = self.nodes[node.0].parent;
+        let mut holder = self.classes.tree.nodes[node.0].parent;
         while let Some(id) = holder {
-            if self.is_inner(id, declared.name) {
+            if self.classes.tree.is_inner(id, declared.name) {
                 let state = self.member(id, declared.name)?.map(MemberState::own);
                 if let Some(state) = &state {
                     self.check_same_type(state, declared)?;
                 }
                 return Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))));
             }
-            holder = self.nodes[id.0].parent;
+            holder = self.classes.tree.nodes[id.0].parent;
         }
         self.missing_inner(node, declared)
     }
@@ -49,12 +56,12 @@ impl Instantiation<'_> {
         outer: &Declaration,
     ) -> Result<(), Diagnostic> {
         let MemberState::Single(node) = inner else { return Ok(()) };
-        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return Ok(()) };
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else { return Ok(()) };
         let variable = leaf.variable;
-        let expanded = self.expand(outer)?;
+        let expanded = self.classes.expand(outer)?;
         let rank = outer.dims.len() + expanded.dims.len();
         let dims = self.dimensions(outer, &expanded).ok();
-        let variable = &self.variables[variable].0;
+        let variable = &self.classes.tree.variables[variable].0;
         let same_sizes = match dims {
             Some(dims) => dims == variable.dims,
             None => rank == variable.dims.len(),
@@ -75,30 +82,6 @@ impl Instantiation<'_> {
             .related(variable.span, "the inner one"))
     }
 
-    /// Of an outer component only what its own class declares can be named, whatever else the inner
-    /// one has.
-    pub fn check_outer_element(
-        &mut self,
-        node: NodeId,
-        outer: Ident,
-        element: Ident,
-        span: Span,
-    ) -> Result<(), Diagnostic> {
-        let Some(declared) = self.declaration_of(node, outer) else { return Ok(()) };
-        let Shape::Class(class) = self.expand(&declared)?.shape else { return Ok(()) };
-        if self.has_component(class, element)? {
-            return Ok(());
-        }
-        let class = &self.text(class).name;
-        Err(fault!(UNKNOWN_NAME, "`{class}`, the class of the outer `{outer}`, has no component `{element}`";
-            help: "declare the outer component with the class of the inner component")
-        .at(span))
-    }
-
-    fn is_inner(&self, node: NodeId, name: Ident) -> bool {
-        self.declaration_of(node, name).is_some_and(|declaration| declaration.prefixes.inner)
-    }
-
     /// Without an inner component the model itself gets one, with the defaults of its class; a
     /// variable becomes an input, as nothing here determines it.
     fn missing_inner(
@@ -107,8 +90,8 @@ impl Instantiation<'_> {
         declared: &Declaration,
     ) -> Result<MemberState, Diagnostic> {
         let name = declared.name;
-        let path = self.nodes[node.0].path.clone();
-        let expanded = self.expand(declared)?;
+        let path = self.classes.tree.nodes[node.0].path.clone();
+        let expanded = self.classes.expand(declared)?;
         let missing = || {
             let holder = match path.as_str() {
                 "" => "the model".to_owned(),
@@ -119,16 +102,17 @@ impl Instantiation<'_> {
                 help: "declare `inner {} {name};` in the model", declared.type_specifier.name)
             .at(declared.span)
         };
-        let root = self.root_node;
+        let root = self.classes.tree.root;
         let is_partial = match expanded.shape {
             Shape::Class(class) => self
+                .classes
                 .check_complete(class, declared.span)
                 .is_err_and(|error| error.code == PARTIAL_CLASS),
             _ => expanded.shape.base().is_none(),
         };
-        let of_root = self.declaration_of(root, name);
+        let of_root = self.classes.tree.declaration_of(root, name);
         let is_outer = of_root.as_ref().is_some_and(|one| one.prefixes.outer);
-        if is_partial || self.in_package(node) || (of_root.is_some() && !is_outer) {
+        if is_partial || self.classes.tree.in_package(node) || (of_root.is_some() && !is_outer) {
             return Err(missing());
         }
         if node != root && is_outer {
@@ -150,12 +134,40 @@ impl Instantiation<'_> {
             return Ok(MemberState::Both { inner: own.clone(), outer: own });
         }
         let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
-        if let NodeKind::Composite(composite) = &mut self.nodes[root.0].kind
+        if let NodeKind::Composite(composite) = &mut self.classes.tree.nodes[root.0].kind
             && let Some(members) = &mut composite.members
         {
             members.insert(name, member);
         }
         let state = self.member(root, name)?.map(MemberState::own);
         Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))))
+    }
+}
+
+impl Classes<'_> {
+    /// Of an outer component only what its own class declares can be named, whatever else the inner
+    /// one has.
+    pub fn check_outer_element(
+        &mut self,
+        node: NodeId,
+        outer: Ident,
+        element: Ident,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let Some(declared) = self.tree.declaration_of(node, outer) else { return Ok(()) };
+        let Shape::Class(class) = self.expand(&declared)?.shape else { return Ok(()) };
+        if self.has_component(class, element)? {
+            return Ok(());
+        }
+        let class = &self.text(class).name;
+        Err(fault!(UNKNOWN_NAME, "`{class}`, the class of the outer `{outer}`, has no component `{element}`";
+            help: "declare the outer component with the class of the inner component")
+        .at(span))
+    }
+}
+
+impl Tree {
+    fn is_inner(&self, node: NodeId, name: Ident) -> bool {
+        self.declaration_of(node, name).is_some_and(|declaration| declaration.prefixes.inner)
     }
 }

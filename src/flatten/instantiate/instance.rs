@@ -1,8 +1,9 @@
 //! The instance tree (MLS §5.6.1): components with their modifiers merged. Data only.
 
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::lookup::modification::Modifier;
-use crate::flatten::lookup::names::Predefined;
-use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::lookup::types::Predefined;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -13,10 +14,6 @@ use crate::syntax::ast::{
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
 use std::sync::Arc;
-
-/// A node of the tree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct NodeId(pub usize);
 
 /// An instance: of a class with components, or of a predefined type.
 #[derive(Debug, Clone)]
@@ -137,6 +134,18 @@ pub enum Shape {
     Function,
     /// An external object (MLS §12.9.7), of the class that extends `ExternalObject`.
     ExternalObject(Name),
+}
+
+/// What the type of a component is made of.
+pub struct Expanded {
+    pub shape: Shape,
+    pub dims: Vec<(Subscript, ScopeId)>,
+    pub modifier: Modifier,
+    pub causality: Option<CausalityPrefix>,
+    pub connection: Option<ConnectionPrefix>,
+    pub connector: bool,
+    /// The class that the type names, if it is not predefined.
+    pub class: Option<ScopeId>,
 }
 
 /// A variable of the tree.

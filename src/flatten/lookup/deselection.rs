@@ -1,13 +1,15 @@
 //! Selective model extension (MLS §7.4): components and connections that an extends clause leaves
 //! out of its base class, `extends B(break f, break connect(a, b))`.
 
-use super::names::{Predefined, Type};
-use super::scope::{ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{TYPE_MISMATCH, UNKNOWN_ELEMENT};
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::{Declaration, Shape};
-use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::scope::Text;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
 use crate::name::Ident;
 use crate::source::Spanned;
 use crate::syntax::ast::{
@@ -17,7 +19,7 @@ use crate::syntax::print;
 use crate::syntax::visit::{Visit, walk_equation};
 use std::sync::Arc;
 
-impl Instantiation<'_> {
+impl Classes<'_> {
     /// Whether a class that extends the one in which a connection is written leaves it out.
     pub fn is_deselected(
         &self,

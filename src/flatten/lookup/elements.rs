@@ -4,7 +4,7 @@
 //! A class shares what its first base class has: a chain of a thousand extends clauses is as long as
 //! what is written in it, and not the square of that.
 
-use super::scope::ScopeId;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::Declaration;
 use crate::name::Ident;
 use indexmap::IndexMap;
@@ -13,6 +13,9 @@ use std::sync::Arc;
 
 /// How many shared parts a name is searched in at most: more are copied into one.
 const MAX_PARTS: usize = 64;
+
+/// The most base classes that one class may have, those of its bases included.
+pub const MAX_BASES: usize = 10_000;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]

@@ -1,10 +1,10 @@
 //! Merging modifications (MLS §7.2) and redeclarations (MLS §7.3): outer modifiers override inner
 //! ones, element by element.
 
-use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
+use crate::flatten::ids::ScopeId;
 use crate::flatten::library::ClassId;
 use crate::name::Ident;
 use crate::source::Span;

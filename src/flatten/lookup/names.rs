@@ -2,65 +2,24 @@
 //! imported ones (§5.3.4, §13.2).
 
 use super::modification::{Modifier, Redeclaration, Replacement};
-use super::scope::{Nested, ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval;
 use crate::fault;
 use crate::flatten::errors::{FINAL_OVERRIDE, UNKNOWN_CLASS};
-use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::ids::ScopeId;
 use crate::flatten::library::ClassId;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::scope::Nested;
+use crate::flatten::lookup::scope::Text;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{ClassSpecifier, Constraint, ImportKind, TypeSpecifier};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// What the name of a type means.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Type {
-    /// A class in its surroundings.
-    Class(ScopeId),
-    /// A predefined type (MLS §4.9).
-    Predefined(Predefined),
-}
-
-/// The predefined types.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Predefined {
-    Real,
-    Integer,
-    Boolean,
-    String,
-    /// `StateSelect` (MLS §4.9.7.1).
-    StateSelect,
-    /// `AssertionLevel` (MLS §8.3.7).
-    AssertionLevel,
-    /// `ExternalObject` (MLS §12.9.7).
-    ExternalObject,
-}
-
-impl Predefined {
-    pub fn named(name: Ident) -> Option<Predefined> {
-        match name.as_str() {
-            "Real" => Some(Predefined::Real),
-            "Integer" => Some(Predefined::Integer),
-            "Boolean" => Some(Predefined::Boolean),
-            "String" => Some(Predefined::String),
-            "StateSelect" => Some(Predefined::StateSelect),
-            "AssertionLevel" => Some(Predefined::AssertionLevel),
-            "ExternalObject" => Some(Predefined::ExternalObject),
-            _ => None,
-        }
-    }
-
-    /// Whether no class can have its name (MLS §4.9).
-    pub fn is_reserved(self) -> bool {
-        use Predefined::{Boolean, Integer, Real, String};
-        matches!(self, Real | Integer | Boolean | String)
-    }
-}
-
-impl Instantiation<'_> {
+impl Classes<'_> {
     /// What a type specifier means in a scope; an error with suggestions if nothing.
     pub fn lookup_type(
         &mut self,
@@ -151,15 +110,15 @@ impl Instantiation<'_> {
         name: Ident,
         outer: &Rc<Nested>,
     ) -> Result<Type, Diagnostic> {
-        let mut node = self.nodes[self.node_of(scope).0].parent;
+        let mut node = self.tree.nodes[self.node_of(scope).0].parent;
         while let Some(id) = node {
-            if let Some(holder) = self.scope_of(id)
+            if let Some(holder) = self.tree.scope_of(id)
                 && let Some(nested) = self.find_class(holder, name)?
                 && nested.inner
             {
                 return self.instance(&nested);
             }
-            node = self.nodes[id.0].parent;
+            node = self.tree.nodes[id.0].parent;
         }
         self.instance(outer)
     }

@@ -7,10 +7,10 @@ mod expression;
 
 use super::balance::path;
 use super::errors::INCONSISTENT_UNITS;
-use super::instantiate::instantiation::Instantiation;
 use super::{FlatModel, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Ident;
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::{
@@ -46,7 +46,7 @@ fn check(model: &FlatModel) -> Vec<Diagnostic> {
     walk.found
 }
 
-impl Instantiation<'_> {
+impl Classes<'_> {
     /// What does not fit; of an old library, only the first finding.
     pub fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
         let found = check(model);
