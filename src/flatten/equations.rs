@@ -243,11 +243,11 @@ impl Instantiation<'_> {
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
-        let mut turns = Vec::new();
+        let mut iterations = Vec::new();
         let indices = self.loop_ranges(indices, body, context, local)?;
-        self.turns(&indices, context, local, &mut turns)?;
-        for turn in turns {
-            out.extend(self.equations(body, context, &turn)?);
+        self.iterations(&indices, context, local, &mut iterations)?;
+        for iteration in iterations {
+            out.extend(self.equations(body, context, &iteration)?);
             if out.len() > MAX_EQUATIONS {
                 return Err(fault!(super::errors::TOO_LARGE, "the loop has too many equations")
                     .at(indices[0].name.span));
@@ -268,8 +268,8 @@ impl Instantiation<'_> {
         self.with_ranges(indices, context, local, &visit)
     }
 
-    /// What the body of a loop knows in each of its turns.
-    pub fn turns(
+    /// What the body of a loop knows in each of its iterations.
+    pub fn iterations(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,
@@ -291,9 +291,9 @@ impl Instantiation<'_> {
             None => self.resolve(range, context, local)?,
         };
         for value in self.range_values(&resolved)? {
-            let mut turn = local.clone();
-            turn.names.push((index.name.node, Some(literal(&value, span))));
-            self.turns(inner, context, &turn, out)?;
+            let mut iteration = local.clone();
+            iteration.names.push((index.name.node, Some(literal(&value, span))));
+            self.iterations(inner, context, &iteration, out)?;
             if out.len() > MAX_EQUATIONS {
                 return Err(
                     fault!(super::errors::TOO_LARGE, "the loop has too many iterations").at(span)

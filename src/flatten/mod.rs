@@ -61,14 +61,14 @@ const STACK: usize = 256 << 20;
 pub struct Flattened {
     /// The model.
     pub model: FlatModel,
-    /// The unknowns and equations of the class by itself (MLS §4.8), where they can be told.
+    /// The unknowns and equations of the class by itself (MLS §4.8), where they are known.
     pub balance: Option<LocalBalance>,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
 /// Flattens a class under a modification, such as that of `M(p = 2)`. The errors are independent
-/// of each other as far as one can tell.
+/// of each other as far as possible.
 pub fn flatten(
     library: &Library,
     class: &Name,
@@ -80,8 +80,8 @@ pub fn flatten(
     }
 }
 
-/// The same, also of a model that is not balanced, with the error that says so: whoever sorts the
-/// equations can tell which of them are concerned.
+/// The same, also of a model that is not balanced, with the error that says so: the structural
+/// analysis names the equations concerned.
 pub fn flatten_unbalanced(
     library: &Library,
     class: &Name,
@@ -104,7 +104,7 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
 }
 
 /// What is wrong with a class by its text and the names in it, whatever is made of it: a package, a
-/// function or a model that nobody instantiates can be checked too. Nothing if no such class is
+/// function or a model that is never instantiated can be checked too. Nothing if no such class is
 /// loaded.
 pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
     library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))

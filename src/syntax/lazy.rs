@@ -1,4 +1,4 @@
-//! Lists that are read when somebody looks at them.
+//! Lists that are read at the first access.
 
 use crate::diag::Diagnostic;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Files whose classes are read when somebody looks at them.
+//! Files whose classes are read at the first access.
 //!
 //! The unit is a class: its text without the bodies of the long classes in it, which are cut out
 //! and stay unread in turn. Places in such an excerpt are translated back, so that a tree read

@@ -2,7 +2,7 @@
 //! those of its own connections and those that its connectors promise, against the unknowns that
 //! it declares itself, with the inputs and flows of its components' connectors.
 //!
-//! Counted over the instances of a model. A class whose counts cannot be told — with expandable or
+//! Counted over the instances of a model. A class whose counts do not follow from its text — with expandable or
 //! overdetermined connectors, connections through components or equations of unknown size — is
 //! left out.
 
@@ -16,7 +16,7 @@ use super::{plural, scalars_of, size, targets};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::connections::sets::Connections;
-use crate::flatten::connections::sets::Face;
+use crate::flatten::connections::sets::ConnectorSide;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
@@ -97,7 +97,7 @@ impl LocalBalance {
 }
 
 impl Instantiation<'_> {
-    /// The local balance of the model and of its components, as far as it can be told.
+    /// The local balance of the model and of its components, as far as they are known.
     pub fn local_balances(
         &mut self,
         connections: &Connections,
@@ -285,7 +285,7 @@ impl Classes<'_> {
                 owner == Some(context) || holder == Some(context)
             };
             let far: Vec<NodeId> =
-                edge.faces.iter().map(|face| face.leaf).filter(|leaf| !is_near(*leaf)).collect();
+                edge.sides.iter().map(|side| side.leaf).filter(|leaf| !is_near(*leaf)).collect();
             for leaf in &far {
                 if let Some(owner) = owners.get(leaf) {
                     self.mark_unclear(*owner, counts);
@@ -302,7 +302,7 @@ impl Classes<'_> {
             let Some(count) = counts.get_mut(&context) else { continue };
             for set in sets {
                 errors.extend(self.two_sources(&set, context, &edges, owners));
-                let outside = set.iter().filter(|face| face.outside).count();
+                let outside = set.iter().filter(|side| side.outside).count();
                 match self.tree.connection_of(set[0].leaf) {
                     None => count.equations += self.tree.potential_equations(&set),
                     Some(ConnectionPrefix::Flow) => {
@@ -321,14 +321,14 @@ impl Classes<'_> {
     /// direction (MLS §9.1.3).
     fn two_sources(
         &self,
-        set: &[Face],
+        set: &[ConnectorSide],
         context: NodeId,
         edges: &[ScalarPair],
         owners: &FxHashMap<NodeId, NodeId>,
     ) -> Option<Diagnostic> {
-        let is_source = |face: &&Face| {
-            let NodeKind::Variable(leaf) = &self.tree.nodes[face.leaf.0].kind else { return false };
-            let is_own = owners.get(&face.leaf) == Some(&context);
+        let is_source = |side: &&ConnectorSide| {
+            let NodeKind::Variable(leaf) = &self.tree.nodes[side.leaf.0].kind else { return false };
+            let is_own = owners.get(&side.leaf) == Some(&context);
             match leaf.causality {
                 Some(CausalityPrefix::Input) => {
                     is_own && !self.tree.variables[leaf.variable].0.protected
@@ -338,10 +338,10 @@ impl Classes<'_> {
             }
         };
         let mut sources =
-            set.iter().filter(|face| is_source(face) && !self.is_inside_expandable(face.leaf));
+            set.iter().filter(|side| is_source(side) && !self.is_inside_expandable(side.leaf));
         let (one, other) = (sources.next()?, sources.next()?);
-        let edge = edges.iter().find(|edge| edge.faces.contains(other))?;
-        let [one, other] = [one, other].map(|face| &self.tree.nodes[face.leaf.0].path);
+        let edge = edges.iter().find(|edge| edge.sides.contains(other))?;
+        let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
         Some(
             fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
                 help: "connect an output of a component, or an input of the class, to inputs")
@@ -351,8 +351,8 @@ impl Classes<'_> {
 }
 
 impl Tree {
-    fn potential_equations(&self, set: &[Face]) -> usize {
-        let varies = |face: &&Face| match &self.nodes[face.leaf.0].kind {
+    fn potential_equations(&self, set: &[ConnectorSide]) -> usize {
+        let varies = |side: &&ConnectorSide| match &self.nodes[side.leaf.0].kind {
             NodeKind::Variable(leaf) => {
                 self.variables[leaf.variable].0.variability >= Variability::Discrete
             }

@@ -76,7 +76,7 @@ impl Instantiation<'_> {
             return Ok(None);
         }
         let holder = ComponentReference { parts: before.to_vec(), ..reference.clone() };
-        // Any error is told when the connection itself is made.
+        // Any error is reported when the connection itself is made.
         let Ok(Some(Ends { ends, .. })) = self.ends(&holder, connect.context, &connect.local)
         else {
             return Ok(None);
@@ -290,7 +290,7 @@ impl Classes<'_> {
             return bound
                 || (0..count).any(|element| {
                     let set = connections.around(node, element);
-                    set.iter().any(|face| !self.is_inside_expandable(face.leaf))
+                    set.iter().any(|side| !self.is_inside_expandable(side.leaf))
                 });
         }
         let Ok(members) = self.members(node) else { return false };

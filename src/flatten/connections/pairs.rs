@@ -9,7 +9,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::connections::end::End;
 use crate::flatten::connections::sets::Connections;
-use crate::flatten::connections::sets::Face;
+use crate::flatten::connections::sets::ConnectorSide;
 use crate::flatten::flat_expression::indices_of;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::tree::Tree;
@@ -151,17 +151,17 @@ impl Tree {
             let (a, b) = (End::Scalar(one.0, one.1), End::Scalar(other.0, other.1));
             return Err(self.unlike(a, b, span));
         }
-        // Both faces of a potential are the same value.
-        let two_faced = a.is_some();
-        let face = |(leaf, element, outside): (NodeId, usize, bool)| Face {
+        // Both sides of a potential are the same value.
+        let has_two_sides = a.is_some();
+        let side = |(leaf, element, outside): (NodeId, usize, bool)| ConnectorSide {
             leaf,
             element,
-            outside: outside && two_faced,
+            outside: outside && has_two_sides,
         };
-        let faces = [face(one), face(other)];
+        let sides = [side(one), side(other)];
         let context = connections.context;
-        connections.pairs.extend(context.map(|context| ScalarPair { context, faces, span }));
-        connections.join(faces[0], faces[1], span);
+        connections.pairs.extend(context.map(|context| ScalarPair { context, sides, span }));
+        connections.join(sides[0], sides[1], span);
         Ok(())
     }
 

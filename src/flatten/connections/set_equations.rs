@@ -6,7 +6,7 @@ use super::super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
 use crate::flatten::connections::end::End;
 use crate::flatten::connections::sets::Connections;
-use crate::flatten::connections::sets::Face;
+use crate::flatten::connections::sets::ConnectorSide;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
@@ -25,23 +25,23 @@ impl Instantiation<'_> {
         connections: &Connections,
         model: &mut FlatModel,
     ) -> Result<(), Diagnostic> {
-        for (faces, span) in connections.sets() {
-            match self.classes.tree.connection_of(faces[0].leaf) {
-                None => self.classes.tree.add_potential_equations(&faces, span, model),
+        for (sides, span) in connections.sets() {
+            match self.classes.tree.connection_of(sides[0].leaf) {
+                None => self.classes.tree.add_potential_equations(&sides, span, model),
                 Some(ConnectionPrefix::Flow) => {
-                    model.equations.push(self.classes.tree.flow_equation(&faces, span));
+                    model.equations.push(self.classes.tree.flow_equation(&sides, span));
                 }
                 Some(ConnectionPrefix::Stream) => {
-                    self.add_stream_equations(&faces, connections, span, model)?;
+                    self.add_stream_equations(&sides, connections, span, model)?;
                 }
             }
         }
         self.add_constraint_equations(connections, model)?;
         let mut unconnected = Vec::new();
         self.classes.unconnected_flows(self.classes.tree.root, connections, &mut unconnected);
-        for face in unconnected {
-            let span = self.classes.tree.end_span(End::Scalar(face.leaf, face.element));
-            model.equations.push(self.classes.tree.flow_equation(&[face], span));
+        for side in unconnected {
+            let span = self.classes.tree.end_span(End::Scalar(side.leaf, side.element));
+            model.equations.push(self.classes.tree.flow_equation(&[side], span));
         }
         Ok(())
     }
@@ -67,11 +67,13 @@ fn equal_parameters(left: Expression, right: Expression, span: Span) -> Expressi
 }
 
 impl Tree {
-    fn add_potential_equations(&self, faces: &[Face], span: Span, model: &mut FlatModel) {
-        for pair in faces.windows(2) {
+    fn add_potential_equations(&self, sides: &[ConnectorSide], span: Span, model: &mut FlatModel) {
+        for pair in sides.windows(2) {
             let left = self.scalar(pair[0].leaf, pair[0].element, span);
             let right = self.scalar(pair[1].leaf, pair[1].element, span);
-            let fixed = |face: &Face| self.variability_of_leaf(face.leaf) <= Variability::Parameter;
+            let fixed = |side: &ConnectorSide| {
+                self.variability_of_leaf(side.leaf) <= Variability::Parameter
+            };
             let kind = if pair.iter().all(fixed) {
                 EquationKind::Call(equal_parameters(left, right, span))
             } else {
@@ -82,11 +84,11 @@ impl Tree {
     }
 
     /// Σ of the flows into the components = Σ of those through the connectors of the instance.
-    fn flow_equation(&self, faces: &[Face], span: Span) -> Equation {
+    fn flow_equation(&self, sides: &[ConnectorSide], span: Span) -> Equation {
         let mut sum: Option<Expression> = None;
-        for face in faces {
-            let term = self.scalar(face.leaf, face.element, span);
-            let kind = match (sum.take(), face.outside) {
+        for side in sides {
+            let term = self.scalar(side.leaf, side.element, span);
+            let kind = match (sum.take(), side.outside) {
                 (None, false) => term.kind,
                 (None, true) => ExpressionKind::Unary {
                     operator: UnaryOperator::Minus,
@@ -120,13 +122,14 @@ impl Classes<'_> {
         &mut self,
         node: NodeId,
         connections: &Connections,
-        found: &mut Vec<Face>,
+        found: &mut Vec<ConnectorSide>,
     ) {
         if let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind {
             if leaf.connection == Some(ConnectionPrefix::Flow) {
                 let count = self.tree.variables[leaf.variable].0.len();
-                let faces = (0..count).map(|element| Face { leaf: node, element, outside: false });
-                found.extend(faces.filter(|face| !connections.contains(face)));
+                let sides =
+                    (0..count).map(|element| ConnectorSide { leaf: node, element, outside: false });
+                found.extend(sides.filter(|side| !connections.contains(side)));
             }
             return;
         }

@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Face {
+pub struct ConnectorSide {
     /// The node of the variable.
     pub leaf: NodeId,
     /// The element of the variable, from 0.
@@ -21,18 +21,18 @@ pub struct Face {
 pub struct ScalarPair {
     /// The instance whose class writes the connection.
     pub context: NodeId,
-    pub faces: [Face; 2],
+    pub sides: [ConnectorSide; 2],
     pub span: Span,
 }
 
 /// All connection sets of a model.
 #[derive(Debug, Default)]
 pub struct Connections {
-    faces: Vec<Face>,
-    number: FxHashMap<Face, usize>,
-    /// The set of each face, as a union-find forest.
+    sides: Vec<ConnectorSide>,
+    number: FxHashMap<ConnectorSide, usize>,
+    /// The set of each side, as a union-find forest.
     parent: Vec<usize>,
-    /// A connection of each face, for messages.
+    /// A connection of each side, for messages.
     spans: Vec<Span>,
     /// How often each connector stands in a connection.
     counts: FxHashMap<End, i64>,
@@ -48,15 +48,15 @@ pub struct Connections {
 }
 
 impl Connections {
-    fn face(&mut self, face: Face, span: Span) -> usize {
-        if let Some(known) = self.number.get(&face) {
+    fn side(&mut self, side: ConnectorSide, span: Span) -> usize {
+        if let Some(known) = self.number.get(&side) {
             return *known;
         }
-        let number = self.faces.len();
-        self.faces.push(face);
+        let number = self.sides.len();
+        self.sides.push(side);
         self.parent.push(number);
         self.spans.push(span);
-        self.number.insert(face, number);
+        self.number.insert(side, number);
         number
     }
 
@@ -67,10 +67,10 @@ impl Connections {
         at
     }
 
-    pub fn join(&mut self, one: Face, other: Face, span: Span) {
-        let (one, other) = (self.face(one, span), self.face(other, span));
+    pub fn join(&mut self, one: ConnectorSide, other: ConnectorSide, span: Span) {
+        let (one, other) = (self.side(one, span), self.side(other, span));
         let (one, other) = (self.shorten(one), self.shorten(other));
-        // The earlier face represents the set.
+        // The earlier side represents the set.
         let (root, child) = (one.min(other), one.max(other));
         self.parent[child] = root;
     }
@@ -93,11 +93,11 @@ impl Connections {
         self.counts.get(&end).copied().unwrap_or(0)
     }
 
-    /// All faces that are connected with a scalar, on either side.
-    pub fn around(&self, leaf: NodeId, element: usize) -> Vec<Face> {
+    /// All sides that are connected with a scalar, on either side.
+    pub fn around(&self, leaf: NodeId, element: usize) -> Vec<ConnectorSide> {
         [false, true]
             .into_iter()
-            .flat_map(|outside| self.set_of(Face { leaf, element, outside }))
+            .flat_map(|outside| self.set_of(ConnectorSide { leaf, element, outside }))
             .collect()
     }
 
@@ -106,34 +106,34 @@ impl Connections {
         for at in 0..self.parent.len() {
             self.parent[at] = self.find(at);
         }
-        self.members = vec![Vec::new(); self.faces.len()];
-        for at in 0..self.faces.len() {
+        self.members = vec![Vec::new(); self.sides.len()];
+        for at in 0..self.sides.len() {
             self.members[self.parent[at]].push(at);
         }
     }
 
     /// The sets of two or more with a connection of each, without the variables of expandable
     /// connectors that are left out.
-    pub fn sets(&self) -> impl Iterator<Item = (Vec<Face>, Span)> {
+    pub fn sets(&self) -> impl Iterator<Item = (Vec<ConnectorSide>, Span)> {
         let joined = self.members.iter().zip(&self.spans).filter(|(members, _)| members.len() > 1);
         joined.filter_map(|(members, span)| {
-            let faces = members.iter().map(|at| self.faces[*at]);
-            let faces: Vec<Face> =
-                faces.filter(|face| !self.dropped.contains(&face.leaf)).collect();
-            (!faces.is_empty()).then_some((faces, *span))
+            let sides = members.iter().map(|at| self.sides[*at]);
+            let sides: Vec<ConnectorSide> =
+                sides.filter(|side| !self.dropped.contains(&side.leaf)).collect();
+            (!sides.is_empty()).then_some((sides, *span))
         })
     }
 
-    /// Whether a face is connected.
-    pub fn contains(&self, face: &Face) -> bool {
-        self.number.contains_key(face)
+    /// Whether a side is connected.
+    pub fn contains(&self, side: &ConnectorSide) -> bool {
+        self.number.contains_key(side)
     }
 
-    /// The set of a face; the face alone if it is not connected.
-    pub fn set_of(&self, face: Face) -> Vec<Face> {
-        match self.number.get(&face) {
-            Some(at) => self.members[self.parent[*at]].iter().map(|at| self.faces[*at]).collect(),
-            None => vec![face],
+    /// The set of a side; the side alone if it is not connected.
+    pub fn set_of(&self, side: ConnectorSide) -> Vec<ConnectorSide> {
+        match self.number.get(&side) {
+            Some(at) => self.members[self.parent[*at]].iter().map(|at| self.sides[*at]).collect(),
+            None => vec![side],
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::fault;
 use crate::flatten::connections::end::End;
 use crate::flatten::connections::end::Ends;
 use crate::flatten::connections::sets::Connections;
-use crate::flatten::connections::sets::Face;
+use crate::flatten::connections::sets::ConnectorSide;
 use crate::flatten::flat_expression::call;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -67,9 +67,9 @@ impl Instantiation<'_> {
         span: Span,
         level: usize,
     ) -> Result<Expression, Diagnostic> {
-        let own = Face { leaf, element, outside: false };
-        let others: Vec<Face> =
-            connections.set_of(own).into_iter().filter(|face| *face != own).collect();
+        let own = ConnectorSide { leaf, element, outside: false };
+        let others: Vec<ConnectorSide> =
+            connections.set_of(own).into_iter().filter(|side| *side != own).collect();
         if others.is_empty() {
             return Ok(self.classes.tree.scalar(leaf, element, span));
         }
@@ -79,7 +79,7 @@ impl Instantiation<'_> {
     /// The mixture of what flows out of connectors into their connection set.
     fn mixture(
         &mut self,
-        faces: &[Face],
+        sides: &[ConnectorSide],
         connections: &Connections,
         span: Span,
         level: usize,
@@ -87,18 +87,18 @@ impl Instantiation<'_> {
         if level > MAX_LEVELS {
             return Err(fault!(INVALID_CONNECTION, "the stream connections form a cycle").at(span));
         }
-        if let [face] = faces {
-            return self.outflow(*face, connections, span, level);
+        if let [side] = sides {
+            return self.outflow(*side, connections, span, level);
         }
         let (mut numerator, mut denominator): (Option<Expression>, Option<Expression>) =
             (None, None);
-        for face in faces {
-            let flow = self.classes.flow_beside(face.leaf, span)?;
-            if self.never_flows_out(flow, face.outside) {
+        for side in sides {
+            let flow = self.classes.flow_beside(side.leaf, span)?;
+            if self.never_flows_out(flow, side.outside) {
                 continue;
             }
-            let weight = self.classes.tree.weight(flow, face.outside, span);
-            let value = self.outflow(*face, connections, span, level)?;
+            let weight = self.classes.tree.weight(flow, side.outside, span);
+            let value = self.outflow(*side, connections, span, level)?;
             let product = binary(BinaryOperator::Multiply, weight.clone(), value);
             numerator = Some(sum(numerator, product));
             denominator = Some(sum(denominator, weight));
@@ -108,23 +108,23 @@ impl Instantiation<'_> {
                 Ok(binary(BinaryOperator::Divide, numerator, denominator))
             }
             // Nothing ever flows out: any of them is as good (MLS §15.2).
-            _ => self.outflow(faces[0], connections, span, level),
+            _ => self.outflow(sides[0], connections, span, level),
         }
     }
 
-    /// What flows from a face into its set: the component's own value, or, through a connector of
+    /// What flows from a side into its set: the component's own value, or, through a connector of
     /// the instance, what comes in from outside.
     fn outflow(
         &mut self,
-        face: Face,
+        side: ConnectorSide,
         connections: &Connections,
         span: Span,
         level: usize,
     ) -> Result<Expression, Diagnostic> {
-        if face.outside {
-            self.in_stream(face.leaf, face.element, connections, span, level + 1)
+        if side.outside {
+            self.in_stream(side.leaf, side.element, connections, span, level + 1)
         } else {
-            Ok(self.classes.tree.scalar(face.leaf, face.element, span))
+            Ok(self.classes.tree.scalar(side.leaf, side.element, span))
         }
     }
 
@@ -150,14 +150,15 @@ impl Instantiation<'_> {
     /// all others (MLS §15.2).
     pub fn add_stream_equations(
         &mut self,
-        faces: &[Face],
+        sides: &[ConnectorSide],
         connections: &Connections,
         span: Span,
         model: &mut FlatModel,
     ) -> Result<(), Diagnostic> {
-        for face in faces.iter().filter(|face| face.outside) {
-            let others: Vec<Face> = faces.iter().copied().filter(|other| other != face).collect();
-            let left = self.classes.tree.scalar(face.leaf, face.element, span);
+        for side in sides.iter().filter(|side| side.outside) {
+            let others: Vec<ConnectorSide> =
+                sides.iter().copied().filter(|other| other != side).collect();
+            let left = self.classes.tree.scalar(side.leaf, side.element, span);
             let right = self.mixture(&others, connections, span, 0)?;
             let kind = EquationKind::Equal { left, right };
             model.equations.push(Equation { kind, comment: Default::default(), span });

@@ -34,16 +34,16 @@ impl Instantiation<'_> {
         let indices = self.with_ranges(indices, context, local, &visit)?;
         match self.iterated(element, &indices, context, local) {
             Ok((resolved, iterators)) => {
-                // Records are told apart element by element.
+                // Records are distinguished element by element.
                 if self.types().record_of(&resolved, local).is_some()
-                    && let Some(written) = self.written_out(element, &indices, context, local)
+                    && let Some(written) = self.unrolled(element, &indices, context, local)
                 {
                     return written;
                 }
                 let (element, indices) = (Box::new(resolved), iterators);
                 Ok(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
             }
-            Err(error) => self.written_out(element, &indices, context, local).unwrap_or(Err(error)),
+            Err(error) => self.unrolled(element, &indices, context, local).unwrap_or(Err(error)),
         }
     }
 
@@ -66,13 +66,13 @@ impl Instantiation<'_> {
         let indices = self.with_ranges(&arguments.iterators, context, local, &visit)?;
         let (element, iterators) = match self.iterated(element, &indices, context, local) {
             Ok((resolved, iterators)) => match self.types().record_of(&resolved, local) {
-                Some(_) => match self.written_out(element, &indices, context, local) {
+                Some(_) => match self.unrolled(element, &indices, context, local) {
                     Some(elements) => (elements?, Vec::new()),
                     None => (resolved, iterators),
                 },
                 None => (resolved, iterators),
             },
-            Err(error) => match self.written_out(element, &indices, context, local) {
+            Err(error) => match self.unrolled(element, &indices, context, local) {
                 Some(elements) => (elements?, Vec::new()),
                 None => return Err(error),
             },
@@ -120,7 +120,7 @@ impl Instantiation<'_> {
     }
 
     /// All elements, the last iterator outermost; `None` where a range is not known at translation.
-    fn written_out(
+    fn unrolled(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -130,15 +130,15 @@ impl Instantiation<'_> {
         let Some((last, before)) = indices.split_last() else {
             return Some(self.resolve(element, context, local));
         };
-        let mut turns = Vec::new();
-        self.turns(std::slice::from_ref(last), context, local, &mut turns).ok()?;
-        if turns.len() > MAX_ELEMENTS {
+        let mut iterations = Vec::new();
+        self.iterations(std::slice::from_ref(last), context, local, &mut iterations).ok()?;
+        if iterations.len() > MAX_ELEMENTS {
             let error = fault!(TOO_LARGE, "the array has more than {MAX_ELEMENTS} elements");
             return Some(Err(error.at(last.name.span)));
         }
-        let mut elements = Vec::with_capacity(turns.len());
-        for turn in &turns {
-            match self.written_out(element, before, context, turn)? {
+        let mut elements = Vec::with_capacity(iterations.len());
+        for iteration in &iterations {
+            match self.unrolled(element, before, context, iteration)? {
                 Ok(one) => elements.push(one),
                 error => return Some(error),
             }

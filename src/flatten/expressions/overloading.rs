@@ -240,7 +240,7 @@ impl Types<'_> {
         }
     }
 
-    /// The type of a resolved expression, records included; `None` where its text does not tell.
+    /// The type of a resolved expression, records included; `None` where it does not follow from its text.
     pub fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
         match &e.kind {
             ExpressionKind::Call { function, .. } => {

@@ -42,74 +42,83 @@ impl Instantiation<'_> {
         if let (MemberState::Outer(_), Some(next)) = (&state, rest.first()) {
             self.classes.check_outer_element(node, part.name, next.name, whole.span)?;
         }
-        let state = state.seen();
-        if !local.flat
-            && parts.len() < whole.parts.len()
-            && self.classes.tree.is_protected(node, part.name)
-        {
-            let path = &self.classes.tree.nodes[node.0].path;
-            return Err(fault!(
-                PROTECTED_ACCESS,
-                "`{}` is protected in `{}`",
-                part.name,
-                path.trim_start_matches('.')
-            )
-            .at(whole.span));
+        if !local.flat {
+            self.classes.check_access(node, parts, whole)?;
         }
-        if !local.flat && !part.subscripts.is_empty() {
-            self.classes.check_subscript_types(node, part)?;
-        }
-        match state {
-            MemberState::Single(id) => {
-                if let NodeKind::Variable(_) = self.classes.tree.nodes[id.0].kind {
-                    if let Some(next) = rest.first() {
-                        let path = &self.classes.tree.nodes[id.0].path;
-                        return Err(fault!(
-                            UNKNOWN_NAME,
-                            "`{path}` is a variable and has no component `{}`",
-                            next.name
-                        )
-                        .at(whole.span));
-                    }
-                    let subscripts = self.subscripts(&part.subscripts, context, local)?;
-                    return self.variable_reference(id, subscripts, whole.span, local);
-                }
-                if !part.subscripts.is_empty() {
-                    return Err(
-                        fault!(SIZE_MISMATCH, "`{}` is not an array", part.name).at(whole.span)
-                    );
-                }
-                self.walk(id, rest, whole, context, local)
-            }
+        let name = part.name;
+        match state.seen() {
+            MemberState::Single(id) => self.walk_single(id, parts, whole, context, local),
             MemberState::Array(dims, nodes) => {
-                let subscripts = self.subscripts(&part.subscripts, context, local)?;
-                let is_constant =
-                    nodes.first().is_some_and(|node| self.classes.tree.in_package(*node));
-                if is_constant && subscripts.iter().any(|s| local.is_open(s)) {
-                    // The index is known where the function is carried out: it chooses among all.
-                    let all = self.choose(&dims, &[], part.name, whole.span)?;
-                    let all = self.walk_array(&all, &dims, &nodes, rest, whole, context, local)?;
-                    return Ok(subscripted(all, subscripts, whole.span));
-                }
-                let chosen = self.choose(&dims, &subscripts, part.name, whole.span)?;
-                self.walk_array(&chosen, &dims, &nodes, rest, whole, context, local)
+                self.walk_elements(&dims, &nodes, parts, whole, context, local)
             }
             MemberState::Absent => Err(fault!(
                 UNKNOWN_NAME,
                 "`{}` does not exist: its condition is false or its declaration has an error",
-                part.name
+                name
             )
             .at(whole.span)),
             MemberState::Pending | MemberState::Busy => {
-                Err(fault!(NOT_CONSTANT, "`{}` depends on itself", part.name).at(whole.span))
+                Err(fault!(NOT_CONSTANT, "`{}` depends on itself", name).at(whole.span))
             }
             MemberState::Outer(_) | MemberState::Both { .. } => Err(fault!(
                 NOT_CONSTANT,
                 "`{}` is an outer component inside another outer component",
-                part.name
+                name
             )
             .at(whole.span)),
         }
+    }
+
+    /// Follows a reference through a component that is not an array of components.
+    fn walk_single(
+        &mut self,
+        id: NodeId,
+        parts: &[ReferencePart],
+        whole: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let (part, rest) = (&parts[0], &parts[1..]);
+        if let NodeKind::Variable(_) = self.classes.tree.nodes[id.0].kind {
+            if let Some(next) = rest.first() {
+                let path = &self.classes.tree.nodes[id.0].path;
+                return Err(fault!(
+                    UNKNOWN_NAME,
+                    "`{path}` is a variable and has no component `{}`",
+                    next.name
+                )
+                .at(whole.span));
+            }
+            let subscripts = self.subscripts(&part.subscripts, context, local)?;
+            return self.variable_reference(id, subscripts, whole.span, local);
+        }
+        if !part.subscripts.is_empty() {
+            return Err(fault!(SIZE_MISMATCH, "`{}` is not an array", part.name).at(whole.span));
+        }
+        self.walk(id, rest, whole, context, local)
+    }
+
+    /// Follows a reference through the elements of an array of components that it chooses.
+    fn walk_elements(
+        &mut self,
+        dims: &[usize],
+        nodes: &[NodeId],
+        parts: &[ReferencePart],
+        whole: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let (part, rest) = (&parts[0], &parts[1..]);
+        let subscripts = self.subscripts(&part.subscripts, context, local)?;
+        let is_constant = nodes.first().is_some_and(|node| self.classes.tree.in_package(*node));
+        if is_constant && subscripts.iter().any(|s| local.is_open(s)) {
+            // The index is known where the function is evaluated: it chooses among all.
+            let all = self.choose(dims, &[], part.name, whole.span)?;
+            let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
+            return Ok(subscripted(all, subscripts, whole.span));
+        }
+        let chosen = self.choose(dims, &subscripts, part.name, whole.span)?;
+        self.walk_array(&chosen, dims, nodes, rest, whole, context, local)
     }
 
     /// The elements of an array of components that subscripts choose: for every dimension the
@@ -367,6 +376,31 @@ impl Tree {
 }
 
 impl Classes<'_> {
+    /// Refuses a protected component behind a dot, and subscripts of other types than those of the
+    /// dimensions.
+    fn check_access(
+        &mut self,
+        node: NodeId,
+        parts: &[ReferencePart],
+        whole: &ComponentReference,
+    ) -> Result<(), Diagnostic> {
+        let part = &parts[0];
+        if parts.len() < whole.parts.len() && self.tree.is_protected(node, part.name) {
+            let path = &self.tree.nodes[node.0].path;
+            return Err(fault!(
+                PROTECTED_ACCESS,
+                "`{}` is protected in `{}`",
+                part.name,
+                path.trim_start_matches('.')
+            )
+            .at(whole.span));
+        }
+        if !part.subscripts.is_empty() {
+            self.check_subscript_types(node, part)?;
+        }
+        Ok(())
+    }
+
     pub fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
         let text = self.tree.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
         let Some(text) = text else {

@@ -2,19 +2,17 @@
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
 use crate::diag::{Diagnostic, suggest};
-use crate::eval::{self};
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, NOT_SUPPORTED, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, UNKNOWN_NAME};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
-use crate::flatten::lookup::types::Type;
-use crate::name::{Ident, Name};
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
+    BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
     Subscript, UnaryOperator,
 };
 use crate::value::Value;
@@ -67,27 +65,11 @@ impl Instantiation<'_> {
             }
             ExpressionKind::Unary { operator, operand } => {
                 let operand = sub(self, operand)?;
-                let sign = match operator {
-                    UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
-                    UnaryOperator::Not => "'not'",
-                    UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
-                };
-                if let Some(call) = self.overloaded_unary(sign, &operand, local, e.span)? {
-                    return Ok(call);
-                }
-                ExpressionKind::Unary { operator: *operator, operand: Box::new(operand) }
+                return self.unary(*operator, operand, local, e.span);
             }
             ExpressionKind::Binary { operator, left, right } => {
-                let (left, right) = (sub(self, left)?, sub(self, right)?);
-                let call = self.overloaded_binary(*operator, &left, &right, local, e.span)?;
-                if let Some(call) = call {
-                    return Ok(call);
-                }
-                ExpressionKind::Binary {
-                    operator: *operator,
-                    left: Box::new(left),
-                    right: Box::new(right),
-                }
+                let sides = (sub(self, left)?, sub(self, right)?);
+                return self.binary(*operator, sides, local, e.span);
             }
             ExpressionKind::If { branches, otherwise } => {
                 return self.if_expression(e.span, branches, otherwise, context, local);
@@ -129,6 +111,42 @@ impl Instantiation<'_> {
             }
         };
         Ok(Expression::new(kind, e.span))
+    }
+
+    /// The operation, or the call of the function that a record overloads the operator with.
+    fn unary(
+        &mut self,
+        operator: UnaryOperator,
+        operand: Expression,
+        local: &Local,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let sign = match operator {
+            UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
+            UnaryOperator::Not => "'not'",
+            UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
+        };
+        if let Some(call) = self.overloaded_unary(sign, &operand, local, span)? {
+            return Ok(call);
+        }
+        let kind = ExpressionKind::Unary { operator, operand: Box::new(operand) };
+        Ok(Expression::new(kind, span))
+    }
+
+    fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        (left, right): (Expression, Expression),
+        local: &Local,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let call = self.overloaded_binary(operator, &left, &right, local, span)?;
+        if let Some(call) = call {
+            return Ok(call);
+        }
+        let kind =
+            ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
+        Ok(Expression::new(kind, span))
     }
 
     /// Branches whose conditions hold no variables are chosen at once: the others may name what
@@ -217,87 +235,6 @@ impl Instantiation<'_> {
             .collect()
     }
 
-    fn call(
-        &mut self,
-        span: Span,
-        function: &ComponentReference,
-        arguments: &Arguments,
-        context: ScopeId,
-        local: &Local,
-    ) -> Result<Expression, Diagnostic> {
-        if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
-            return Ok(value);
-        }
-        if let Some(value) = self.conversion(span, function, arguments, context, local)? {
-            return Ok(value);
-        }
-        if let Some(name) = function.as_ident()
-            && let Some(size) = self.size_call(name.as_str(), arguments, context, local, span)?
-        {
-            return Ok(size);
-        }
-        if function.as_ident().is_some_and(|name| name == "getInstanceName")
-            && context != ScopeId::TOP
-            && !self.classes.tree.in_package(self.classes.node_of(context))
-        {
-            let name = self.classes.instance_name(context);
-            return Ok(Expression::new(ExpressionKind::String(name.into()), span));
-        }
-        if self.classes.is_array_constructor(function, arguments, context)? {
-            if let ([element], false) =
-                (arguments.positional.as_slice(), arguments.iterators.is_empty())
-            {
-                return self.comprehension(element, &arguments.iterators, span, context, local);
-            }
-            let elements = self.all(&arguments.positional, context, local)?;
-            return Ok(Expression::new(ExpressionKind::Array(elements), span));
-        }
-        let arguments = self.arguments(arguments, context, local)?;
-        if function.as_ident().is_some_and(|name| name == "sum")
-            && let ([argument], true) = (&arguments.positional[..], arguments.iterators.is_empty())
-            && let Some(sum) = self.overloaded_sum(argument, local, span)?
-        {
-            return Ok(sum);
-        }
-        let name = if function.as_ident().is_some_and(|name| local.get(name).is_some()) {
-            function.name()
-        } else {
-            self.function_name(&function.name(), context, function.span)?
-        };
-        let in_model =
-            context != ScopeId::TOP && !self.classes.tree.in_package(self.classes.node_of(context));
-        let name = match self.classes.lookup(context, &function.name())? {
-            Some(Type::Class(class)) => {
-                self.overloaded_constructor(class, &arguments, local)?.unwrap_or(name)
-            }
-            _ if in_model
-                && !self.functions.table.contains_key(&name)
-                && !is_builtin(&name, local) =>
-            {
-                return Err(self.classes.unknown_function(context, &name, function.span));
-            }
-            _ => name,
-        };
-        let impure =
-            self.functions.table.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && !local.impure && in_model {
-            return Err(
-                fault!(NOT_SUPPORTED, "`{name}` is impure; calls of impure functions in models \
-                                       are not supported yet";
-                help: "declare it `pure` if it always returns equal values for equal arguments")
-                .at(span),
-            );
-        }
-        let arguments = self.functions.with_defaults(&name, arguments, span);
-        let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
-        if let Some(calls) = self.vectorized(&name, &arguments, span)? {
-            return Ok(calls);
-        }
-        let function = ComponentReference::from_name(&name, function.span);
-        let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
-        Ok(Expression::new(kind, span))
-    }
-
     /// A reference as an expression: `time`, a loop variable, a component or a constant.
     pub fn reference(
         &mut self,
@@ -348,26 +285,6 @@ impl Instantiation<'_> {
 }
 
 impl Classes<'_> {
-    /// Whether a call is `array(a, b)`, another form of `{a, b}` (MLS §10.4).
-    fn is_array_constructor(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &Arguments,
-        context: ScopeId,
-    ) -> Result<bool, Diagnostic> {
-        let is_named = function.as_ident().is_some_and(|name| name == "array");
-        let lists = arguments.named.is_empty() && !arguments.positional.is_empty();
-        Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
-    }
-
-    /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
-    fn instance_name(&self, context: ScopeId) -> String {
-        match self.tree.nodes[self.node_of(context).0].path.as_str() {
-            "" => self.tree.model_name.to_string(),
-            path => format!("{}.{path}", self.tree.model_name),
-        }
-    }
-
     /// The diagnostic for a name that is neither a component nor a constant.
     pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
         let name = reference.name();
@@ -392,11 +309,4 @@ fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
     };
     let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
     [false, true].into_iter().filter(is_in).map(literal).collect()
-}
-
-/// Whether a call means a function that stands in no class: of the language, or one that is passed
-/// to the function in progress.
-fn is_builtin(name: &Name, local: &Local) -> bool {
-    let ident = name.first().filter(|_| name.is_simple());
-    ident.is_some_and(|ident| eval::is_builtin(ident.as_str()) || local.get(ident).is_some())
 }

@@ -67,7 +67,7 @@ impl Library {
 
 impl Instantiation<'_> {
     /// The full name of a called function, which is made ready; a name that no class declares is
-    /// left for whoever evaluates (operators and intrinsics).
+    /// left for evaluation (operators and intrinsics).
     pub fn function_name(
         &mut self,
         name: &Name,
@@ -499,8 +499,8 @@ impl Instantiation<'_> {
         for statement in statements {
             match self.statement(statement, context, local) {
                 Ok(one) => resolved.push(one),
-                Err(error) => match self.turns_of_statement(statement, context, local) {
-                    Some(turns) => resolved.extend(turns?),
+                Err(error) => match self.iterations_of_statement(statement, context, local) {
+                    Some(iterations) => resolved.extend(iterations?),
                     None => return Err(error),
                 },
             }
@@ -508,10 +508,10 @@ impl Instantiation<'_> {
         Ok(resolved)
     }
 
-    /// The turns of a loop in an algorithm of a model one after another: its variable may choose
-    /// among components, which only a number can. `None` where turns are not known, or one may be
+    /// The iterations of a loop in an algorithm of a model one after another: its variable may choose
+    /// among components, which only a number can. `None` where iterations are not known, or one may be
     /// the last.
-    fn turns_of_statement(
+    fn iterations_of_statement(
         &mut self,
         statement: &Statement,
         context: ScopeId,
@@ -523,11 +523,11 @@ impl Instantiation<'_> {
         }
         let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
         let indices = self.with_ranges(indices, context, local, &visit).ok()?;
-        let mut turns = Vec::new();
-        self.turns(&indices, context, local, &mut turns).ok()?;
+        let mut iterations = Vec::new();
+        self.iterations(&indices, context, local, &mut iterations).ok()?;
         let mut all = Vec::new();
-        for turn in turns {
-            match self.statements(body, context, &turn) {
+        for iteration in iterations {
+            match self.statements(body, context, &iteration) {
                 Ok(statements) => all.extend(statements),
                 Err(error) => return Some(Err(error)),
             }
@@ -564,7 +564,7 @@ impl Instantiation<'_> {
                 let indices = self.with_ranges(indices, context, local, &visit)?;
                 let (mut indices, inner) = self.iterators(&indices, context, local)?;
                 if self.classes.is_in_model(context) {
-                    indices.iter_mut().for_each(|index| self.settle_range(index));
+                    indices.iter_mut().for_each(|index| self.evaluate_range(index));
                 }
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
             }
@@ -584,9 +584,9 @@ impl Instantiation<'_> {
         Ok(Statement { kind, comment: statement.comment.clone(), span: statement.span })
     }
 
-    /// Writes the values of a loop variable out where parameters tell them: an algorithm of a model
+    /// Writes the values of a loop variable out where parameters give them: an algorithm of a model
     /// is unrolled, as loops of equations are.
-    fn settle_range(&mut self, index: &mut ForIndex) {
+    fn evaluate_range(&mut self, index: &mut ForIndex) {
         let Some(range) = &mut index.range else { return };
         if let Ok(values) = self.range_values(range) {
             let span = range.span;
@@ -672,7 +672,7 @@ impl Classes<'_> {
 }
 
 impl FunctionTable {
-    /// The name with a number. Functions of one instantiation alone are told apart by it; those
+    /// The name with a number. Functions of one instantiation alone differ by it; those
     /// asked for one by one meet, so that their names say for which one they were made.
     fn numbered(&self, name: &Name, number: usize) -> Name {
         let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();

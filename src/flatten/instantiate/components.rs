@@ -231,8 +231,8 @@ impl Classes<'_> {
         let mut nodes = Vec::with_capacity(count);
         for at in 0..count {
             let indices = indices_of(at, &dims);
-            let texts: Vec<String> = indices.iter().map(usize::to_string).collect();
-            let element = format!("{path}[{}]", texts.join(","));
+            let numbers: Vec<String> = indices.iter().map(usize::to_string).collect();
+            let element = format!("{path}[{}]", numbers.join(","));
             let modifier = expanded.modifier.at_element(&indices);
             let built = self.composite(class, element, Some(node), modifier, inherited)?;
             self.tree.mark_connector(built, expanded.connector);

@@ -13,7 +13,7 @@ use crate::flatten::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
-use crate::flatten::library::Habit;
+use crate::flatten::library::LegacyConstruct;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::modification::Modifier;
 use crate::name::Ident;
@@ -32,7 +32,7 @@ impl Instantiation<'_> {
             && !declared.modifier.is_empty()
             && let Some(text) = &self.classes.scope(declared.scope).text
         {
-            self.classes.library.meet(&text.name, Habit::OuterValue, declared.span);
+            self.classes.library.meet(&text.name, LegacyConstruct::OuterValue, declared.span);
         }
         let mut holder = self.classes.tree.nodes[node.0].parent;
         while let Some(id) = holder {

@@ -39,7 +39,7 @@ pub struct Composite {
     pub scope: ScopeId,
     /// The class that was asked for, without the modifiers of this instance.
     pub class: ScopeId,
-    /// Its components; `None` as long as nobody asked for one.
+    /// Its components; `None` as long as none is needed.
     pub members: Option<IndexMap<Ident, Member>>,
     pub inherited: Inherited,
     /// Whether its class is a connector, which may be known from a short class only.

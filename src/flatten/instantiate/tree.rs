@@ -7,6 +7,7 @@ use crate::flatten::errors::{TOO_LARGE, UNKNOWN_ELEMENT};
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::Expanded;
+use crate::flatten::lookup::modification::Modifier;
 use crate::flatten::{BaseType, Variability, Variable};
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -165,6 +166,7 @@ impl Tree {
         }
     }
 
+    /// Adds a variable below a node.
     pub fn variable(
         &mut self,
         node: NodeId,
@@ -173,17 +175,7 @@ impl Tree {
         base: BaseType,
         dims: Vec<usize>,
     ) -> Result<NodeId, Diagnostic> {
-        for (name, modifier) in &expanded.modifier.elements {
-            if !ATTRIBUTES.contains(&name.as_str()) {
-                return Err(fault!(
-                    UNKNOWN_ELEMENT,
-                    "`{}` has no attribute `{name}` to modify",
-                    declared.name
-                )
-                .help_if(suggest::did_you_mean(name.as_str(), ATTRIBUTES))
-                .at(modifier.span.unwrap_or(declared.span)));
-            }
-        }
+        check_attributes(declared, &expanded.modifier)?;
         let scalars = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
@@ -252,4 +244,20 @@ fn stricter(outer: Option<Variability>, own: Option<Variability>) -> Option<Vari
         (Some(outer), Some(own)) => Some(outer.min(own)),
         (outer, own) => outer.or(own),
     }
+}
+
+/// Modifiers of a variable are those of its attributes (MLS §4.9).
+fn check_attributes(declared: &Declaration, modifier: &Modifier) -> Result<(), Diagnostic> {
+    for (name, modifier) in &modifier.elements {
+        if !ATTRIBUTES.contains(&name.as_str()) {
+            return Err(fault!(
+                UNKNOWN_ELEMENT,
+                "`{}` has no attribute `{name}` to modify",
+                declared.name
+            )
+            .help_if(suggest::did_you_mean(name.as_str(), ATTRIBUTES))
+            .at(modifier.span.unwrap_or(declared.span)));
+        }
+    }
+    Ok(())
 }

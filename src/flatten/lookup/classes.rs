@@ -107,7 +107,7 @@ impl Classes<'_> {
     }
 
     /// The top scope, without a class.
-    pub fn top_scope() -> Scope {
+    fn top_scope() -> Scope {
         Scope {
             text: None,
             parent: None,

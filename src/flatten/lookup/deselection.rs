@@ -165,8 +165,8 @@ fn matches(
             is_part(left) || is_part(right)
         }
         Deselection::Connection(a, b) => {
-            let texts = [a, b, left, right].map(print::reference);
-            let [a, b, left, right] = &texts;
+            let printed = [a, b, left, right].map(print::reference);
+            let [a, b, left, right] = &printed;
             (a, b) == (left, right) || (a, b) == (right, left)
         }
     }

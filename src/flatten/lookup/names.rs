@@ -314,7 +314,7 @@ impl Classes<'_> {
     }
 
     /// The diagnostic for a class that is not there.
-    pub fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
+    fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
         let suggestion = self.suggestion(scope, name);
         fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
     }

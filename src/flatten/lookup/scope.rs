@@ -1,6 +1,6 @@
-//! Classes in their surroundings (MLS §5.6.1): the text of a class with the modifiers and
+//! Classes in their enclosing scopes (MLS §5.6.1): the text of a class with the modifiers and
 //! redeclarations that reach it and the scope in which it stands. The same text in two
-//! surroundings, such as `Medium` in two tanks, is two scopes.
+//! scopes, such as `Medium` in two tanks, is two scopes.
 
 use super::elements::Elements;
 use super::modification::Modifier;
@@ -75,7 +75,7 @@ pub struct Nested {
     pub instance: std::cell::Cell<Option<Type>>,
 }
 
-/// A class in its surroundings.
+/// A class in its enclosing scope.
 #[derive(Debug)]
 pub struct Scope {
     pub text: Option<Text>,

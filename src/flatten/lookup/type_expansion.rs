@@ -13,11 +13,18 @@ use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::Span;
+use crate::syntax::ast::ShortClass;
 use crate::syntax::ast::{
     ClassSpecifier, Element, EnumerationClass, Extends, Restriction, TypeSpecifier,
 };
 use crate::value::EnumerationDefinition;
 use std::sync::Arc;
+
+/// What a type is made of.
+enum Step {
+    Shape(Shape),
+    Type(Type),
+}
 
 impl Classes<'_> {
     /// Follows the short classes of a component's type down to what it is made of, collecting
@@ -27,8 +34,8 @@ impl Classes<'_> {
         self.expand_type(found, &declared.type_specifier, declared.modifier.clone())
     }
 
-    /// As [`Instantiation::expand`], from what a type specifier means.
-    pub fn expand_type(
+    /// As [`Classes::expand`], from what a type specifier means.
+    fn expand_type(
         &mut self,
         mut found: Type,
         specifier: &TypeSpecifier,
@@ -44,76 +51,113 @@ impl Classes<'_> {
             class: None,
         };
         for _ in 0..MAX_DEPTH {
-            let id = match found {
+            let step = match found {
                 Type::Predefined(predefined) => {
-                    expanded.shape = predefined_shape(predefined, specifier)?;
-                    return Ok(expanded);
+                    Step::Shape(predefined_shape(predefined, specifier)?)
                 }
-                Type::Class(id) => id,
+                Type::Class(id) => self.expand_class(id, specifier, &mut expanded)?,
             };
-            expanded.class.get_or_insert(id);
-            let text = self.text(id).clone();
-            let name = text.definition.name.node;
-            let scope = self.scope(id);
-            let parent = scope.parent.unwrap_or(ScopeId::TOP);
-            let (around, defaults) = (scope.modifier.clone(), scope.defaults.clone());
-            expanded.connector |= matches!(
-                text.restriction(),
-                Restriction::Connector | Restriction::ExpandableConnector
-            );
-            let outer = std::mem::take(&mut expanded.modifier);
-            match &text.definition.specifier {
-                ClassSpecifier::Enumeration(enumeration) => {
-                    expanded.modifier = around.overridden_by(outer, name)?;
-                    let definition = enumeration_of(&text.name, enumeration, specifier.span)?;
-                    expanded.shape = Shape::Enumeration(definition);
-                    return Ok(expanded);
-                }
-                ClassSpecifier::Short(short) => {
-                    let own = Modifier::of_arguments(&short.modification, parent)?;
-                    let own = defaults.overridden_by(own, name)?.overridden_by(around, name)?;
-                    expanded.modifier = own.overridden_by(outer, name)?;
-                    expanded.dims.extend(short.subscripts.iter().map(|s| (s.clone(), parent)));
-                    expanded.causality = expanded.causality.or(short.prefixes.causality);
-                    expanded.connection = expanded.connection.or(short.prefixes.connection);
-                    found = self.lookup_type(parent, &short.target)?;
-                }
-                ClassSpecifier::Long(_) => match self.predefined_base(id, &text)? {
-                    Some((Type::Predefined(Predefined::ExternalObject), _)) => {
-                        expanded.modifier = around.overridden_by(outer, name)?;
-                        expanded.shape = Shape::ExternalObject(text.name.clone());
-                        return Ok(expanded);
-                    }
-                    Some((base, extends)) => {
-                        let own = Modifier::of_arguments(&extends.modification, id)?;
-                        let own = own.overridden_by(around, name)?;
-                        expanded.modifier = own.overridden_by(outer, name)?;
-                        found = base;
-                    }
-                    None if matches!(text.restriction(), Restriction::Function { .. }) => {
-                        expanded.shape = Shape::Function;
-                        return Ok(expanded);
-                    }
-                    None => {
-                        check_component_class(&text, specifier)?;
-                        let own = defaults.overridden_by(around, name)?;
-                        expanded.modifier = own.overridden_by(outer, name)?;
-                        expanded.shape = Shape::Class(id);
-                        return Ok(expanded);
-                    }
-                },
-                ClassSpecifier::Derivative(_) => {
-                    return Err(fault!(
-                        TYPE_MISMATCH,
-                        "`{}` is a function, not the type of a component",
-                        text.name
-                    )
-                    .at(specifier.span));
-                }
+            match step {
+                Step::Shape(shape) => return Ok(Expanded { shape, ..expanded }),
+                Step::Type(next) => found = next,
             }
         }
         Err(fault!(CYCLIC_CLASS, "type `{}` is defined in terms of itself", specifier.name)
             .at(specifier.span))
+    }
+
+    /// What a class is made of: its shape, or the type that it is made of in turn.
+    fn expand_class(
+        &mut self,
+        id: ScopeId,
+        specifier: &TypeSpecifier,
+        expanded: &mut Expanded,
+    ) -> Result<Step, Diagnostic> {
+        expanded.class.get_or_insert(id);
+        let text = self.text(id).clone();
+        expanded.connector |=
+            matches!(text.restriction(), Restriction::Connector | Restriction::ExpandableConnector);
+        match &text.definition.specifier {
+            ClassSpecifier::Enumeration(enumeration) => {
+                self.modify(id, Modifier::default(), expanded)?;
+                enumeration_of(&text.name, enumeration, specifier.span)
+                    .map(|definition| Step::Shape(Shape::Enumeration(definition)))
+            }
+            ClassSpecifier::Short(short) => self.expand_short(id, short, expanded),
+            ClassSpecifier::Long(_) => self.expand_long(id, &text, specifier, expanded),
+            ClassSpecifier::Derivative(_) => Err(fault!(
+                TYPE_MISMATCH,
+                "`{}` is a function, not the type of a component",
+                text.name
+            )
+            .at(specifier.span)),
+        }
+    }
+
+    fn expand_short(
+        &mut self,
+        id: ScopeId,
+        short: &ShortClass,
+        expanded: &mut Expanded,
+    ) -> Result<Step, Diagnostic> {
+        let scope = self.scope(id);
+        let parent = scope.parent.unwrap_or(ScopeId::TOP);
+        let own = Modifier::of_arguments(&short.modification, parent)?;
+        let own = scope.defaults.clone().overridden_by(own, self.simple_name(id))?;
+        self.modify(id, own, expanded)?;
+        expanded.dims.extend(short.subscripts.iter().map(|s| (s.clone(), parent)));
+        expanded.causality = expanded.causality.or(short.prefixes.causality);
+        expanded.connection = expanded.connection.or(short.prefixes.connection);
+        self.lookup_type(parent, &short.target).map(Step::Type)
+    }
+
+    fn expand_long(
+        &mut self,
+        id: ScopeId,
+        text: &Text,
+        specifier: &TypeSpecifier,
+        expanded: &mut Expanded,
+    ) -> Result<Step, Diagnostic> {
+        match self.predefined_base(id, text)? {
+            Some((Type::Predefined(Predefined::ExternalObject), _)) => {
+                self.modify(id, Modifier::default(), expanded)?;
+                Ok(Step::Shape(Shape::ExternalObject(text.name.clone())))
+            }
+            Some((base, extends)) => {
+                let own = Modifier::of_arguments(&extends.modification, id)?;
+                self.modify(id, own, expanded)?;
+                Ok(Step::Type(base))
+            }
+            None if matches!(text.restriction(), Restriction::Function { .. }) => {
+                expanded.modifier = Modifier::default();
+                Ok(Step::Shape(Shape::Function))
+            }
+            None => {
+                check_component_class(text, specifier)?;
+                let own = self.scope(id).defaults.clone();
+                self.modify(id, own, expanded)?;
+                Ok(Step::Shape(Shape::Class(id)))
+            }
+        }
+    }
+
+    /// Puts the modifier of what a type is made of, and what modifies its class where it stands,
+    /// under those of the component.
+    fn modify(
+        &self,
+        id: ScopeId,
+        own: Modifier,
+        expanded: &mut Expanded,
+    ) -> Result<(), Diagnostic> {
+        let name = self.simple_name(id);
+        let outer = std::mem::take(&mut expanded.modifier);
+        let own = own.overridden_by(self.scope(id).modifier.clone(), name)?;
+        expanded.modifier = own.overridden_by(outer, name)?;
+        Ok(())
+    }
+
+    fn simple_name(&self, id: ScopeId) -> Ident {
+        self.text(id).definition.name.node
     }
 
     /// The predefined type that a long class extends, directly or through others, if it does:

@@ -6,7 +6,7 @@ use crate::name::Ident;
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Type {
-    /// A class in its surroundings.
+    /// A class in its enclosing scope.
     Class(ScopeId),
     /// A predefined type (MLS §4.9).
     Predefined(Predefined),

@@ -1,4 +1,4 @@
-//! What old libraries do otherwise, told once for each library.
+//! What old libraries do otherwise, reported once for each library.
 
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::errors::OLD_LIBRARY;
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// A way of writing that today's Modelica does not have and that changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::flatten) enum Habit {
+pub(in crate::flatten) enum LegacyConstruct {
     /// A file in a package's folder says nothing about where it belongs.
     NoWithin,
     /// It names another package than that of its folder.
@@ -27,41 +27,43 @@ pub(in crate::flatten) enum Habit {
     OuterValue,
 }
 
-/// The habits met in each library.
+/// The legacy constructs found in each library.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Habits {
+pub(super) struct LegacyConstructs {
     met: Arc<Mutex<Met>>,
 }
 
 #[derive(Debug, Default)]
 struct Met {
-    known: BTreeSet<(Ident, Habit)>,
-    untold: Vec<Diagnostic>,
+    known: BTreeSet<(Ident, LegacyConstruct)>,
+    unreported: Vec<Diagnostic>,
 }
 
-impl Habit {
+impl LegacyConstruct {
     fn fault(self, library: Ident) -> Fault {
         let (what, remedy) = match self {
-            Habit::NoWithin => {
+            LegacyConstruct::NoWithin => {
                 ("files without a `within` clause", "write `within` and the package's full name")
             }
-            Habit::OtherWithin => (
+            LegacyConstruct::OtherWithin => (
                 "files whose `within` clause does not match their folder",
                 "move the file, or write the name of the package of its folder",
             ),
-            Habit::FolderName => {
+            LegacyConstruct::FolderName => {
                 ("folders whose names differ from their packages", "rename the folder")
             }
-            Habit::FileName => ("files whose names differ from their classes", "rename the file"),
-            Habit::AnnotationPlace => (
+            LegacyConstruct::FileName => {
+                ("files whose names differ from their classes", "rename the file")
+            }
+            LegacyConstruct::AnnotationPlace => (
                 "annotations before other elements, or several annotations in one class",
                 "write one annotation at the end of the class",
             ),
-            Habit::OldGraphics => (
+            LegacyConstruct::OldGraphics => (
                 "graphical annotations of Modelica 1 or 2, which are ignored",
                 "to display diagrams, convert the library to Modelica 3",
             ),
-            Habit::OuterValue => (
+            LegacyConstruct::OuterValue => (
                 "`outer` components with modifiers, which are ignored",
                 "set the values in the inner components",
             ),
@@ -70,20 +72,20 @@ impl Habit {
     }
 }
 
-impl Habits {
-    /// Notes that a library has a habit, at the first place met.
-    pub(super) fn meet(&self, library: Option<Ident>, habit: Habit, span: Span) {
+impl LegacyConstructs {
+    /// Notes that a library has a construct, at the first place met.
+    pub(super) fn meet(&self, library: Option<Ident>, construct: LegacyConstruct, span: Span) {
         let Some(library) = library else { return };
         let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
-        if met.known.insert((library, habit)) {
-            met.untold.push(habit.fault(library).at(span).warning());
+        if met.known.insert((library, construct)) {
+            met.unreported.push(construct.fault(library).at(span).warning());
         }
     }
 
     /// The warnings since the last call.
     pub(super) fn take(&self) -> Vec<Diagnostic> {
         let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
-        std::mem::take(&mut met.untold)
+        std::mem::take(&mut met.unreported)
     }
 
     /// Whether a library was written for an old Modelica.
@@ -93,8 +95,8 @@ impl Habits {
     }
 }
 
-/// The habits that the sections of a class show.
-pub(super) fn of_sections(sections: &[Section]) -> Vec<(Habit, Span)> {
+/// The legacy constructs that the sections of a class show.
+pub(super) fn of_sections(sections: &[Section]) -> Vec<(LegacyConstruct, Span)> {
     let annotation = |section: &Section| match section {
         Section::Annotation(annotation) => Some(annotation.span),
         _ => None,
@@ -102,13 +104,13 @@ pub(super) fn of_sections(sections: &[Section]) -> Vec<(Habit, Span)> {
     let mut found = Vec::new();
     let before_last = sections.split_last().map_or(&[][..], |(_, before)| before);
     if let Some(span) = before_last.iter().find_map(annotation) {
-        found.push((Habit::AnnotationPlace, span));
+        found.push((LegacyConstruct::AnnotationPlace, span));
     }
     let old = sections.iter().find_map(|section| match section {
         Section::Annotation(annotation) => old_graphics(annotation),
         _ => None,
     });
-    found.extend(old.map(|span| (Habit::OldGraphics, span)));
+    found.extend(old.map(|span| (LegacyConstruct::OldGraphics, span)));
     found
 }
 
