@@ -1,17 +1,19 @@
 //! Equations of the instances: names resolved, loops unrolled, branches on parameters chosen
 //! where they must be (MLS §8.3, §8.6).
 
-use super::balance::Written;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
 use super::flat_expression::literal;
-use super::instance::{MemberState, NodeId};
-use super::instantiation::Instantiation;
-use super::resolve::Local;
-use super::scope::ScopeId;
+use super::instantiate::instance::MemberState;
 use super::{FlatModel, Part};
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::types::Types;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -25,49 +27,50 @@ const MAX_EQUATIONS: usize = 500_000;
 
 impl Instantiation<'_> {
     /// Adds the equations and algorithms of a node and of all below it.
-    pub(super) fn add_equations(
+    pub fn add_equations(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) {
-        let Some(scope) = self.scope_of(node) else { return };
-        let parts = self.elements(scope).and_then(|elements| Ok((elements, self.members(node)?)));
-        let (elements, members) = match parts {
-            Ok(parts) => parts,
-            Err(error) => return errors.push(error),
-        };
-        for (_, state) in members {
-            match state {
-                MemberState::Single(one) => self.add_equations(one, model, errors),
-                MemberState::Array(_, nodes) => {
-                    for one in nodes {
-                        self.add_equations(one, model, errors);
+        match self.classes.instances(node) {
+            Ok(instances) => {
+                for node in instances {
+                    if let Err(error) = self.add_part(node, model, errors) {
+                        errors.push(error);
                     }
                 }
-                _ => {}
             }
+            Err(error) => errors.push(error),
         }
+    }
+
+    /// Adds the equations and algorithms that the class of an instance and its bases write.
+    fn add_part(
+        &mut self,
+        node: NodeId,
+        model: &mut FlatModel,
+        errors: &mut Vec<Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let Some(scope) = self.classes.tree.scope_of(node) else { return Ok(()) };
+        let elements = self.classes.elements(scope)?;
         let (equations, algorithms) = (model.equations.len(), model.algorithms.len());
         let initial_equations = model.initial_equations.len();
         for context in elements.lineage() {
-            let text = self.text(context).clone();
+            let text = self.classes.text(context).clone();
             for section in text.sections() {
                 if let Err(error) = self.add_section(section, context, model, errors) {
                     errors.push(error);
                 }
             }
         }
-        let equations = equations..model.equations.len();
-        let initial_equations = initial_equations..model.initial_equations.len();
-        let algorithms = algorithms..model.algorithms.len();
         model.parts.push(Part {
-            instance: self.nodes[node.0].path.as_str().into(),
-            equations: equations.clone(),
-            initial_equations,
-            algorithms: algorithms.clone(),
+            instance: self.classes.tree.nodes[node.0].path.as_str().into(),
+            equations: equations..model.equations.len(),
+            initial_equations: initial_equations..model.initial_equations.len(),
+            algorithms: algorithms..model.algorithms.len(),
         });
-        self.written.push(Written { node, equations, algorithms });
+        Ok(())
     }
 
     fn add_section(
@@ -131,10 +134,10 @@ impl Instantiation<'_> {
                 }
                 let left = self.resolve(left, context, local)?;
                 let right = self.resolve(right, context, local)?;
-                if self.equal_fields(&left, &right, equation.span, local, out) {
+                if self.types().equal_fields(&left, &right, equation.span, local, out) {
                     return Ok(());
                 }
-                self.check_sides(&left, &right, equation.span)?;
+                self.types().check_sides(&left, &right, equation.span)?;
                 EquationKind::Equal { left, right }
             }
             EquationKind::For { indices, body } => {
@@ -204,48 +207,6 @@ impl Instantiation<'_> {
         Ok(true)
     }
 
-    /// An equation between resolved records, such as results of functions, field by field; `false`
-    /// if the sides are no records.
-    fn equal_fields(
-        &self,
-        left: &Expression,
-        right: &Expression,
-        span: Span,
-        local: &Local,
-        out: &mut Vec<Equation>,
-    ) -> bool {
-        if matches!(left.kind, ExpressionKind::Tuple(_)) {
-            return false;
-        }
-        let of_left = self.value_type_of(left, local);
-        let found = match of_left {
-            Some(ValueType::Record(..)) => of_left,
-            _ => self.value_type_of(right, local),
-        };
-        let Some(ValueType::Record(_, fields)) = found else { return false };
-        for name in fields.keys() {
-            let kind = EquationKind::Equal {
-                left: self.field(left, *name),
-                right: self.field(right, *name),
-            };
-            out.push(Equation { kind, comment: Default::default(), span });
-        }
-        true
-    }
-
-    /// A component of a resolved record.
-    fn field(&self, record: &Expression, name: Ident) -> Expression {
-        if let ExpressionKind::Call { function, arguments } = &record.kind
-            && let Some(Some(constructor)) = self.functions.get(&function.name())
-            && constructor.body == FunctionBody::RecordConstructor
-            && let Some(given) = arguments.named.iter().find(|given| given.name.node == name)
-        {
-            return given.value.clone();
-        }
-        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
-        Expression::new(kind, record.span)
-    }
-
     /// The components of the record that a reference names; `None` if it names anything else.
     fn record_fields(
         &mut self,
@@ -253,7 +214,7 @@ impl Instantiation<'_> {
         context: ScopeId,
     ) -> Result<Option<Vec<Ident>>, Diagnostic> {
         let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
-        let mut node = self.node_of(context);
+        let mut node = self.classes.node_of(context);
         for ReferencePart { name, subscripts } in &reference.parts {
             let next = match self.member(node, *name)?.map(MemberState::seen) {
                 Some(MemberState::Single(one)) => one,
@@ -266,9 +227,9 @@ impl Instantiation<'_> {
             };
             node = next;
         }
-        match self.scope_of(node) {
-            Some(scope) if self.is_record(scope) => {
-                Ok(Some(self.members(node)?.into_iter().map(|(name, _)| name).collect()))
+        match self.classes.tree.scope_of(node) {
+            Some(scope) if self.classes.is_record(scope) => {
+                Ok(Some(self.classes.members(node)?.into_iter().map(|(name, _)| name).collect()))
             }
             _ => Ok(None),
         }
@@ -282,11 +243,11 @@ impl Instantiation<'_> {
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
-        let mut turns = Vec::new();
+        let mut iterations = Vec::new();
         let indices = self.loop_ranges(indices, body, context, local)?;
-        self.turns(&indices, context, local, &mut turns)?;
-        for turn in turns {
-            out.extend(self.equations(body, context, &turn)?);
+        self.iterations(&indices, context, local, &mut iterations)?;
+        for iteration in iterations {
+            out.extend(self.equations(body, context, &iteration)?);
             if out.len() > MAX_EQUATIONS {
                 return Err(fault!(super::errors::TOO_LARGE, "the loop has too many equations")
                     .at(indices[0].name.span));
@@ -296,7 +257,7 @@ impl Instantiation<'_> {
     }
 
     /// The loop variables of a loop of equations with their ranges.
-    pub(super) fn loop_ranges(
+    pub fn loop_ranges(
         &mut self,
         indices: &[ForIndex],
         body: &[Equation],
@@ -307,8 +268,8 @@ impl Instantiation<'_> {
         self.with_ranges(indices, context, local, &visit)
     }
 
-    /// What the body of a loop knows in each of its turns.
-    pub(super) fn turns(
+    /// What the body of a loop knows in each of its iterations.
+    pub fn iterations(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,
@@ -325,14 +286,14 @@ impl Instantiation<'_> {
                 help: "write the range of the loop, such as `1:n`")
             .at(span)
         })?;
-        let resolved = match self.type_range(range, context, local)? {
+        let resolved = match self.classes.type_range(range, context, local)? {
             Some(values) => values,
             None => self.resolve(range, context, local)?,
         };
         for value in self.range_values(&resolved)? {
-            let mut turn = local.clone();
-            turn.names.push((index.name.node, Some(literal(&value, span))));
-            self.turns(inner, context, &turn, out)?;
+            let mut iteration = local.clone();
+            iteration.names.push((index.name.node, Some(literal(&value, span))));
+            self.iterations(inner, context, &iteration, out)?;
             if out.len() > MAX_EQUATIONS {
                 return Err(
                     fault!(super::errors::TOO_LARGE, "the loop has too many iterations").at(span)
@@ -342,7 +303,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(super) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+    pub fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
         match self.flat_value(range)? {
             Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
                 Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
@@ -388,7 +349,7 @@ impl Instantiation<'_> {
 
     /// Which branch the conditions choose, if all of them up to that one are constants or
     /// parameters with values: `Some(None)` means `else`.
-    pub(super) fn chosen_branch(
+    pub fn chosen_branch(
         &mut self,
         branches: &[(Expression, Vec<Equation>)],
         context: ScopeId,
@@ -417,16 +378,62 @@ impl Instantiation<'_> {
 
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
-    pub(super) fn is_fixed(&mut self, resolved: &Expression) -> bool {
-        let read = std::mem::take(&mut self.read);
+    pub fn is_fixed(&mut self, resolved: &Expression) -> bool {
+        let read = std::mem::take(&mut self.values.read);
         let fixed = self.known_flat_value(resolved).is_ok();
-        self.read = read;
+        self.values.read = read;
         fixed
     }
 }
 
+impl Types<'_> {
+    /// An equation between resolved records, such as results of functions, field by field; `false`
+    /// if the sides are no records.
+    fn equal_fields(
+        &self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> bool {
+        if matches!(left.kind, ExpressionKind::Tuple(_)) {
+            return false;
+        }
+        let of_left = self.value_type_of(left, local);
+        let found = match of_left {
+            Some(ValueType::Record(..)) => of_left,
+            _ => self.value_type_of(right, local),
+        };
+        let Some(ValueType::Record(_, fields)) = found else { return false };
+        for name in fields.keys() {
+            let kind = EquationKind::Equal {
+                left: self.functions.field(left, *name),
+                right: self.functions.field(right, *name),
+            };
+            out.push(Equation { kind, comment: Default::default(), span });
+        }
+        true
+    }
+}
+
+impl FunctionTable {
+    /// A component of a resolved record.
+    fn field(&self, record: &Expression, name: Ident) -> Expression {
+        if let ExpressionKind::Call { function, arguments } = &record.kind
+            && let Some(Some(constructor)) = self.table.get(&function.name())
+            && constructor.body == FunctionBody::RecordConstructor
+            && let Some(given) = arguments.named.iter().find(|given| given.name.node == name)
+        {
+            return given.value.clone();
+        }
+        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
+        Expression::new(kind, record.span)
+    }
+}
+
 /// `Connections.branch(…)` and the like, which are no equations.
-pub(super) fn is_graph_statement(call: &Expression) -> bool {
+pub fn is_graph_statement(call: &Expression) -> bool {
     match &call.kind {
         ExpressionKind::Call { function, .. } => {
             function.parts.len() == 2 && function.parts[0].name == "Connections"

@@ -9,7 +9,7 @@ use crate::syntax::ast::{
 use crate::value::{ArrayValue, Value};
 
 /// A flat path as a reference.
-pub(super) fn flat_reference(path: &str, span: Span) -> ComponentReference {
+pub fn flat_reference(path: &str, span: Span) -> ComponentReference {
     let mut parts = Vec::new();
     let mut rest = path;
     while !rest.is_empty() {
@@ -43,7 +43,7 @@ fn next_part(path: &str) -> (&str, &str) {
 }
 
 /// A value written as an expression.
-pub(super) fn literal(value: &Value, span: Span) -> Expression {
+pub fn literal(value: &Value, span: Span) -> Expression {
     let kind = match value {
         Value::Real(number) => ExpressionKind::Real(*number),
         Value::Integer(number) => ExpressionKind::Integer(*number),
@@ -100,7 +100,7 @@ fn array_literal(dims: &[usize], offset: usize, array: &ArrayValue, span: Span) 
 }
 
 /// `base[subscripts]`, written shortly where the base allows it.
-pub(super) fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
+pub fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
     if subscripts.is_empty() {
         return base;
     }
@@ -139,7 +139,7 @@ fn element_at<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Express
 }
 
 /// The expression with `end` replaced by a size, where it is the whole of it.
-pub(super) fn at_end(e: &Expression, size: usize) -> Expression {
+pub fn at_end(e: &Expression, size: usize) -> Expression {
     let mut e = e.clone();
     replace_end(&mut e, size);
     e
@@ -165,4 +165,33 @@ fn replace_end(e: &mut Expression, size: usize) {
         }
         _ => {}
     }
+}
+
+/// The indices, from 1, of an element in an array, the last dimension fastest.
+pub fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
+    let mut indices = vec![0; dims.len()];
+    for (index, size) in indices.iter_mut().zip(dims).rev() {
+        *index = at % size + 1;
+        at /= size;
+    }
+    indices
+}
+
+/// The element of a value that belongs to one element of an array of components.
+pub fn picked(value: Expression, indices: &[usize]) -> Expression {
+    if indices.is_empty() {
+        return value;
+    }
+    let span = value.span;
+    let subscript =
+        |at: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span));
+    let subscripts = indices.iter().map(subscript).collect();
+    Expression::new(ExpressionKind::Subscripted { base: Box::new(value), subscripts }, span)
+}
+
+/// A call with positional arguments.
+pub fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
+    let function = ComponentReference::from_name(name, span);
+    let arguments = Box::new(Arguments { positional, ..Arguments::default() });
+    Expression::new(ExpressionKind::Call { function, arguments }, span)
 }

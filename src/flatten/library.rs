@@ -4,7 +4,7 @@ mod bases;
 mod chains;
 mod element_index;
 mod files;
-mod habits;
+mod legacy;
 mod reading;
 
 pub(super) use bases::Question;
@@ -23,9 +23,9 @@ use crate::syntax::ast::{
 use bases::BaseCache;
 use element_index::ElementIndex;
 use files::{Entry, Folder};
-pub(super) use habits::Habit;
-use habits::Habits;
 use indexmap::{IndexMap, IndexSet};
+pub(super) use legacy::LegacyConstruct;
+use legacy::LegacyConstructs;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -50,7 +50,7 @@ pub struct Library {
     bases: Arc<Mutex<BaseCache>>,
     /// The classes that were asked for and could not be read.
     broken: Mutex<IndexSet<ClassId>>,
-    habits: Habits,
+    legacy: LegacyConstructs,
     resources: Resources,
 }
 
@@ -64,7 +64,7 @@ impl Clone for Library {
             missing: Mutex::default(),
             bases: self.bases.clone(),
             broken: Mutex::default(),
-            habits: self.habits.clone(),
+            legacy: self.legacy.clone(),
             resources: self.resources.clone(),
         }
     }
@@ -363,7 +363,7 @@ impl Library {
 
     /// Warnings about the libraries read since the last call, each kind once for a library.
     pub fn take_warnings(&self) -> Vec<Diagnostic> {
-        self.habits.take()
+        self.legacy.take()
     }
 
     /// The top-level names that were looked for in vain since the last call, sorted: who has the
@@ -372,14 +372,14 @@ impl Library {
         std::mem::take(&mut *locked(&self.missing))
     }
 
-    /// Notes that the library of a class has a habit, at a place.
-    pub(super) fn meet(&self, class: &Name, habit: Habit, span: Span) {
-        self.habits.meet(class.first(), habit, span);
+    /// Notes that the library of a class has a construct, at a place.
+    pub(super) fn meet(&self, class: &Name, construct: LegacyConstruct, span: Span) {
+        self.legacy.meet(class.first(), construct, span);
     }
 
-    /// Whether a library was written for an old Modelica, as far as its habits show.
+    /// Whether a library was written for an old Modelica, as far as its legacy constructs show.
     pub(super) fn is_old(&self, library: Ident) -> bool {
-        self.habits.is_old(library)
+        self.legacy.is_old(library)
     }
 
     pub(super) fn root(&self, name: Ident) -> Option<ClassId> {

@@ -12,43 +12,28 @@
 //! Not translated, each refused with `unsupported-language` at its place: impure functions
 //! outside parameters, initial sections and when-clauses (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
 //! function that is itself an input (§12.4.2) end as names that nothing declares.
+//!
+//! The modules are private: what they declare `pub` is seen in this folder alone.
+#![allow(unreachable_pub, reason = "privacy by module")]
 
 mod balance;
 mod checks;
-mod comprehensions;
 mod connections;
-mod constants;
-mod declarations;
-mod defaults;
-mod deselection;
-mod elements;
-mod enumerations;
 mod equations;
 pub mod errors;
+mod expressions;
 mod flat_expression;
 mod flat_model;
 mod functions;
-mod growth;
-mod implicit_ranges;
-mod inner_outer;
-mod instance;
-mod instantiation;
+mod ids;
+mod instantiate;
 mod library;
 mod lookup;
-mod modification;
-mod overloaded_arrays;
-mod overloading;
-mod own_sizes;
-mod paths;
 mod print;
-mod resolve;
-mod scope;
 mod shapes;
-mod specialization;
 mod types;
 mod units;
 mod variables;
-mod vectorization;
 
 pub use balance::LocalBalance;
 pub use flat_model::*;
@@ -56,6 +41,8 @@ pub use library::{ClassId, Library, LibraryFiles};
 
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -63,9 +50,7 @@ use crate::syntax::ast::{
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
 use errors::{NOT_A_MODEL, TOO_LARGE};
-use instantiation::Instantiation;
-use modification::Modifier;
-use scope::ScopeId;
+use lookup::modification::Modifier;
 use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
@@ -76,14 +61,14 @@ const STACK: usize = 256 << 20;
 pub struct Flattened {
     /// The model.
     pub model: FlatModel,
-    /// The unknowns and equations of the class by itself (MLS §4.8), where they can be told.
+    /// The unknowns and equations of the class by itself (MLS §4.8), where they are known.
     pub balance: Option<LocalBalance>,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
 /// Flattens a class under a modification, such as that of `M(p = 2)`. The errors are independent
-/// of each other as far as one can tell.
+/// of each other as far as possible.
 pub fn flatten(
     library: &Library,
     class: &Name,
@@ -95,8 +80,8 @@ pub fn flatten(
     }
 }
 
-/// The same, also of a model that is not balanced, with the error that says so: whoever sorts the
-/// equations can tell which of them are concerned.
+/// The same, also of a model that is not balanced, with the error that says so: the structural
+/// analysis names the equations concerned.
 pub fn flatten_unbalanced(
     library: &Library,
     class: &Name,
@@ -119,7 +104,7 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
 }
 
 /// What is wrong with a class by its text and the names in it, whatever is made of it: a package, a
-/// function or a model that nobody instantiates can be checked too. Nothing if no such class is
+/// function or a model that is never instantiated can be checked too. Nothing if no such class is
 /// loaded.
 pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
     library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
@@ -131,23 +116,24 @@ fn flattened(
     modification: &[Argument],
 ) -> Result<(Flattened, Option<Diagnostic>), Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
-    let mut tree = Instantiation::new(library);
+    let mut instantiation = Instantiation::new(library);
     let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
-    let found = tree.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
-    let lookup::Type::Class(id) = found else {
+    let found = instantiation.classes.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
+    let lookup::types::Type::Class(id) = found else {
         return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
     };
-    let text = tree.text(id).clone();
+    let text = instantiation.classes.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
     let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
     if !wrong.is_empty() {
         return Err(distinct(wrong));
     }
-    tree.check_complete(id, text.span()).map_err(one)?;
+    instantiation.classes.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
-    tree.model_name = text.name.last().unwrap_or(tree.model_name);
-    let root = tree.model(id, modifier).map_err(one)?;
-    tree.complete(root).map_err(distinct)?;
+    instantiation.classes.tree.model_name =
+        text.name.last().unwrap_or(instantiation.classes.tree.model_name);
+    let root = instantiation.classes.model(id, modifier).map_err(one)?;
+    instantiation.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
         name: text.name.to_string(),
         description: described(&text.definition),
@@ -157,20 +143,20 @@ fn flattened(
         ..FlatModel::default()
     };
     let mut errors = Vec::new();
-    let connections = std::rc::Rc::new(tree.connections(root, &mut errors));
-    tree.connections = Some(connections.clone());
-    tree.add_equations(root, &mut model, &mut errors);
+    let connections = std::rc::Rc::new(instantiation.connections(root, &mut errors));
+    instantiation.connections = Some(connections.clone());
+    instantiation.add_equations(root, &mut model, &mut errors);
     if errors.is_empty() {
-        tree.add_connection_equations(&connections, &mut model).map_err(one)?;
+        instantiation.add_connection_equations(&connections, &mut model).map_err(one)?;
     }
-    tree.add_variables(root, &mut model, &mut errors);
+    instantiation.add_variables(root, &mut model, &mut errors);
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
-    let classes = tree.local_balances(&connections, &model).map_err(distinct)?;
-    let unit_warnings = tree.unit_warnings(&model);
-    let mut warnings = tree.warnings;
-    for (name, function) in tree.functions {
+    let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
+    let unit_warnings = instantiation.classes.unit_warnings(&model);
+    let mut warnings = instantiation.warnings;
+    for (name, function) in instantiation.functions.table {
         model.functions.extend(function.map(|function| (name, function)));
     }
     let imbalance = balance::check(&model, &classes).err();

@@ -2,11 +2,12 @@
 //! variables whose values are not known at translation.
 
 use super::balance::path;
-use super::instantiation::{Instantiation, picked};
-use super::modification::Bound;
-use super::resolve::Local;
-use super::scope::ScopeId;
+use super::lookup::modification::Bound;
 use crate::diag::Diagnostic;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::functions::{self, ArgumentShapes};
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -35,7 +36,7 @@ impl Rewrite for Iterators<'_> {
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
-    pub(super) fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
+    pub fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         let value = picked(value.clone(), &bound.indices);
         let resolved = self.resolve(&value, bound.context, &Local::default())?;
@@ -43,7 +44,7 @@ impl Instantiation<'_> {
     }
 
     /// `size(x, i)` and `size(x)` where only the sizes of `x` are known; `None` for other calls.
-    pub(super) fn size_call(
+    pub fn size_call(
         &mut self,
         name: &str,
         arguments: &Arguments,
@@ -82,7 +83,7 @@ impl Instantiation<'_> {
     }
 
     /// The sizes of a resolved expression; `None` where its text does not tell them.
-    pub(super) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
+    pub fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -131,8 +132,8 @@ impl Instantiation<'_> {
         if reference.as_ident().is_some_and(|name| name == "time") {
             return Some(Vec::new());
         }
-        let at = *self.variable_of.get(path(reference).as_str())?;
-        let dims = self.variables[at].0.dims.clone();
+        let at = *self.classes.tree.variable_of.get(path(reference).as_str())?;
+        let dims = self.classes.tree.variables[at].0.dims.clone();
         let subscripts = reference.parts.last()?.subscripts.clone();
         self.subscripted_shape(dims, &subscripts)
     }
@@ -223,7 +224,7 @@ impl Instantiation<'_> {
         if !arguments.iterators.is_empty() {
             return Some(Vec::new());
         }
-        if let Some(Some(function)) = self.functions.get(name).cloned() {
+        if let Some(Some(function)) = self.functions.table.get(name).cloned() {
             return self.function_shape(&function, arguments);
         }
         let word = name.last().filter(|_| name.is_simple())?;

@@ -3,11 +3,12 @@
 
 use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::instantiation::Instantiation;
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::instantiate::tree::Tree;
 use crate::functions::{self, ArgumentShapes, ShapeRule, TypeRule, VariabilityRule};
 use crate::name::Ident;
 use crate::source::Span;
@@ -17,9 +18,16 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_reference};
 
-impl Instantiation<'_> {
+/// What the types of resolved expressions follow from: the variables and the functions that they
+/// name.
+pub struct Types<'t> {
+    pub tree: &'t Tree,
+    pub functions: &'t FunctionTable,
+}
+
+impl Types<'_> {
     /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
-    pub(super) fn check_value(
+    pub fn check_value(
         &self,
         e: &Expression,
         variable: &Variable,
@@ -53,7 +61,7 @@ impl Instantiation<'_> {
     }
 
     /// Refuses an equation between values of different types (MLS §8.3.1).
-    pub(super) fn check_sides(
+    pub fn check_sides(
         &self,
         left: &Expression,
         right: &Expression,
@@ -92,7 +100,7 @@ impl Instantiation<'_> {
 
     /// The variable in an expression that changes most often, with its variability.
     fn most_variable(&self, e: &Expression) -> Option<(String, Variability)> {
-        let mut search = MostVariable { instantiation: self, most: None };
+        let mut search = MostVariable { types: self, most: None };
         search.expression(e);
         search.most
     }
@@ -105,12 +113,12 @@ impl Instantiation<'_> {
     }
 
     fn named(&self, reference: &ComponentReference) -> Option<&Variable> {
-        let at = self.variable_of.get(path(reference).as_str())?;
-        Some(&self.variables[*at].0)
+        let at = self.tree.variable_of.get(path(reference).as_str())?;
+        Some(&self.tree.variables[*at].0)
     }
 
     /// The element type of an expression; `None` where its text does not show it.
-    pub(super) fn type_of(&self, e: &Expression) -> Option<BaseType> {
+    pub fn type_of(&self, e: &Expression) -> Option<BaseType> {
         match &e.kind {
             ExpressionKind::Real(_) => Some(BaseType::Real),
             ExpressionKind::Integer(_) => Some(BaseType::Integer),
@@ -164,7 +172,7 @@ impl Instantiation<'_> {
     }
 
     fn call_type(&self, function: &ComponentReference, arguments: &Arguments) -> Option<BaseType> {
-        if let Some(Some(user)) = self.functions.get(&function.name()) {
+        if let Some(Some(user)) = self.functions.table.get(&function.name()) {
             return match user.outputs.first()?.value_type {
                 ValueType::Real => Some(BaseType::Real),
                 ValueType::Integer => Some(BaseType::Integer),
@@ -189,7 +197,7 @@ impl Instantiation<'_> {
     }
 
     /// The number of dimensions of an expression; `None` where its text does not show it.
-    pub(super) fn rank_of(&self, e: &Expression) -> Option<usize> {
+    pub fn rank_of(&self, e: &Expression) -> Option<usize> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -209,7 +217,7 @@ impl Instantiation<'_> {
                 if entry.shape != ShapeRule::Planned || !arguments.iterators.is_empty() {
                     return None;
                 }
-                entry.shape_of(&mut Ranks { instantiation: self, arguments }).map(|dims| dims.len())
+                entry.shape_of(&mut Ranks { types: self, arguments }).map(|dims| dims.len())
             }
             _ => None,
         }
@@ -235,7 +243,7 @@ impl Instantiation<'_> {
 
 /// The numbers of dimensions of arguments, as sizes of one each.
 struct Ranks<'i, 'a> {
-    instantiation: &'i Instantiation<'a>,
+    types: &'i Types<'a>,
     arguments: &'i Arguments,
 }
 
@@ -245,7 +253,7 @@ impl ArgumentShapes for Ranks<'_, '_> {
     }
 
     fn dims(&mut self, at: usize) -> Option<Vec<usize>> {
-        Some(vec![1; self.instantiation.rank_of(self.arguments.positional.get(at)?)?])
+        Some(vec![1; self.types.rank_of(self.arguments.positional.get(at)?)?])
     }
 
     fn number(&mut self, at: usize) -> Option<i64> {
@@ -262,7 +270,7 @@ impl ArgumentShapes for Ranks<'_, '_> {
 
 /// Searches the variable that changes most often.
 struct MostVariable<'i, 'a> {
-    instantiation: &'i Instantiation<'a>,
+    types: &'i Types<'a>,
     most: Option<(String, Variability)>,
 }
 
@@ -276,7 +284,7 @@ impl Visit for MostVariable<'_, '_> {
     }
 
     fn reference(&mut self, reference: &ComponentReference) {
-        if let Some(found) = self.instantiation.variability_of(reference)
+        if let Some(found) = self.types.variability_of(reference)
             && self.most.as_ref().is_none_or(|(_, known)| found > *known)
         {
             self.most = Some((path(reference), found));
@@ -327,7 +335,7 @@ fn may_be_literal(e: &Expression) -> bool {
 }
 
 /// Whether an expression holds no references and calls no functions of a library.
-pub(super) fn has_only_literals(e: &Expression) -> bool {
+pub fn has_only_literals(e: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn reference(&mut self, _: &ComponentReference) {
@@ -344,7 +352,7 @@ pub(super) fn has_only_literals(e: &Expression) -> bool {
 }
 
 /// The name of a type, for messages.
-pub(super) fn type_name(base: &BaseType) -> String {
+pub fn type_name(base: &BaseType) -> String {
     match base {
         BaseType::Real => "Real".into(),
         BaseType::Integer => "Integer".into(),

@@ -4,14 +4,19 @@
 use super::FlatModel;
 use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
 use super::flat_expression::literal;
-use super::instance::{Leaf, MemberState, NodeId, NodeKind};
-use super::instantiation::{ATTRIBUTES, Instantiation, picked};
-use super::modification::Bound;
-use super::resolve::Local;
+use super::instantiate::instance::Leaf;
+use super::instantiate::instance::MemberState;
+use super::instantiate::instance::NodeKind;
+use super::lookup::modification::Bound;
 use super::types::type_name;
 use super::{Attribute, BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::ATTRIBUTES;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 
 /// Attributes that must be known when the equations are sorted.
@@ -19,7 +24,7 @@ const DECIDED: [&str; 2] = ["fixed", "stateSelect"];
 
 impl Instantiation<'_> {
     /// Adds the variables of a node and of all below it, in order of declaration.
-    pub(super) fn add_variables(
+    pub fn add_variables(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,
@@ -28,8 +33,8 @@ impl Instantiation<'_> {
         let mut found = Vec::new();
         self.collect_variables(node, &mut found, errors);
         for at in found {
-            let mut variable = self.variables[at].0.clone();
-            variable.structural = self.structural.contains(&at);
+            let mut variable = self.classes.tree.variables[at].0.clone();
+            variable.structural = self.values.structural.contains(&at);
             model.variables.insert(variable.name.clone(), variable);
         }
     }
@@ -40,19 +45,19 @@ impl Instantiation<'_> {
         found: &mut Vec<usize>,
         errors: &mut Vec<Diagnostic>,
     ) {
-        match &self.nodes[node.0].kind {
+        match &self.classes.tree.nodes[node.0].kind {
             NodeKind::Variable(leaf) => {
                 let leaf = leaf.clone();
                 match self.finished(&leaf) {
                     Ok(variable) => {
-                        self.variables[leaf.variable].0 = variable;
+                        self.classes.tree.variables[leaf.variable].0 = variable;
                         found.push(leaf.variable);
                     }
                     Err(error) => errors.push(error),
                 }
             }
             NodeKind::Composite(_) => {
-                let members = match self.members(node) {
+                let members = match self.classes.members(node) {
                     Ok(members) => members,
                     Err(error) => return errors.push(error),
                 };
@@ -72,7 +77,7 @@ impl Instantiation<'_> {
 
     /// The variable with its binding and attributes.
     fn finished(&mut self, leaf: &Leaf) -> Result<Variable, Diagnostic> {
-        let mut variable = self.variables[leaf.variable].0.clone();
+        let mut variable = self.classes.tree.variables[leaf.variable].0.clone();
         if let Some(bound) = &leaf.modifier.binding {
             let impure = variable.variability <= Variability::Parameter;
             variable.binding = self.bound(bound, impure)?;
@@ -81,8 +86,8 @@ impl Instantiation<'_> {
             check_literal(&binding, &variable.base, &variable)?;
             let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
             // `each` is about the array that holds the component, whose own value may be an array.
-            let each = each && self.rank_of(&binding) != Some(variable.dims.len());
-            self.check_value(&binding, &variable, each)?;
+            let each = each && self.types().rank_of(&binding) != Some(variable.dims.len());
+            self.types().check_value(&binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }
         for name in ATTRIBUTES {
@@ -123,7 +128,7 @@ impl Instantiation<'_> {
         let whole =
             self.resolve(value, bound.context, &Local { impure: true, ..Local::default() })?;
         let wanted = bound.indices.len();
-        match self.rank_of(&whole) {
+        match self.types().rank_of(&whole) {
             Some(found) if found < wanted => Err(fault!(
                 SIZE_MISMATCH,
                 "a modifier of an array of components needs a value with at least {wanted} \

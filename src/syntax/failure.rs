@@ -5,7 +5,7 @@
 //! names what was found and what may stand there.
 
 use super::errors::{MISSING_SEMICOLON, NESTING_TOO_DEEP, SYNTAX_ERROR};
-use super::parser::{self, Rule};
+use super::grammar::{self, Rule};
 use super::scan::Scanned;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
@@ -138,7 +138,7 @@ impl<'t> Stop<'t> {
         let text = format!("{head}{}{gap}{rest}", repair.write);
         let grown = repair.write.len() - repair.found.len().min(repair.write.len());
         let shrunk = repair.found.len().saturating_sub(repair.write.len());
-        match parser::read(rule, &text) {
+        match grammar::read(rule, &text) {
             Ok(_) => Some(usize::MAX),
             Err(error) => {
                 let reached = (position(&error) + shrunk).saturating_sub(grown);

@@ -12,18 +12,20 @@ pub mod ast;
 mod decode;
 pub mod errors;
 mod failure;
+mod grammar;
 mod lazy;
 mod lower;
 mod outline;
 mod parser;
 mod place;
 pub mod print;
+mod reading;
 mod scan;
 mod script_parts;
 pub mod visit;
 
+pub use ast::Sections;
 pub use decode::decode;
-pub use lazy::Sections;
 pub use outline::{Outline, OutlinedClass};
 pub use script_parts::ScriptParts;
 
@@ -63,7 +65,7 @@ pub fn parse_stored_definition(
 }
 
 /// Reads a `.mo` file lazily: the heads of its classes now, the sections of each when somebody looks
-/// at them. What cannot be read then is told by [`Sections::error`].
+/// at them. What cannot be read then is reported by [`Sections::error`].
 ///
 /// ```
 /// use gapilib::syntax::ast::ClassSpecifier;
@@ -84,7 +86,7 @@ pub fn parse_stored_definition_lazily(
     source: SourceId,
     text: &Arc<str>,
 ) -> Result<StoredDefinition, Diagnostic> {
-    lazy::stored_definition(source, text)
+    reading::stored_definition(source, text)
 }
 
 /// Reads a `.mo` file and tells all that is wrong with it, as far as its classes can be told apart:
@@ -97,9 +99,9 @@ pub fn parse_all_of_stored_definition(
     text: &str,
 ) -> Result<StoredDefinition, Vec<Diagnostic>> {
     parse_stored_definition(source, text).map_err(|first| {
-        let lazy = lazy::stored_definition(source, &text.into());
+        let lazy = reading::stored_definition(source, &text.into());
         let mut errors: Vec<Diagnostic> = lazy.map_or(Vec::new(), |file| {
-            file.classes.iter().flat_map(|class| lazy::errors(class)).collect()
+            file.classes.iter().flat_map(|class| reading::errors(class)).collect()
         });
         errors.sort_by_key(|error| error.span().start);
         if errors.is_empty() { vec![first] } else { errors }

@@ -1,23 +1,15 @@
-//! The grammar, and the cursor over what it found.
+//! The cursor over what the grammar found.
 
 use super::failure;
+use super::grammar::read;
+pub(super) use super::grammar::{Node, Rule};
 use super::place::Place;
 use super::scan::{self, Dialect, Scanned};
 use crate::diag::Diagnostic;
 use crate::source::{SourceId, Span};
-use pest::Parser as _;
-use pest::iterators::{Pair, Pairs};
+use pest::iterators::Pairs;
 use rayon::prelude::*;
 use std::ops::Range;
-
-#[derive(pest_derive::Parser)]
-#[grammar = "grammar/lexical.pest"]
-#[grammar = "grammar/modelica.pest"]
-#[grammar = "grammar/script.pest"]
-struct Grammar;
-
-/// A node of the grammar's answer.
-pub(super) type Node<'i> = Pair<'i, Rule>;
 
 /// Scans a text, reads it by `rule`, and gives the nodes inside to `lower`.
 pub(super) fn parse<T>(
@@ -126,15 +118,6 @@ impl Pieces {
         let pairs = read(self.rule, part).ok()?;
         Some(lower(at, Nodes { place: &place, pairs, whole: place.span(0, part.len()) }))
     }
-}
-
-/// Reads a scanned text; the nodes are those inside `rule`.
-pub(super) fn read(
-    rule: Rule,
-    text: &str,
-) -> Result<Pairs<'_, Rule>, Box<pest::error::Error<Rule>>> {
-    let mut pairs = Grammar::parse(rule, text).map_err(Box::new)?;
-    Ok(pairs.next().map_or(pairs, Pair::into_inner))
 }
 
 /// The nodes inside a node, one after another. Keywords that carry no information beyond the

@@ -2,33 +2,31 @@
 //! those of its own connections and those that its connectors promise, against the unknowns that
 //! it declares itself, with the inputs and flows of its components' connectors.
 //!
-//! Counted over the instances of a model. A class whose counts cannot be told — with expandable or
+//! Counted over the instances of a model. A class whose counts do not follow from its text — with expandable or
 //! overdetermined connectors, connections through components or equations of unknown size — is
 //! left out.
 
-use super::super::connections::{Connections, Edge, Face};
+use super::super::connections::ScalarPair;
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{Leaf, MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::{BaseType, FlatModel, Variability};
+use super::super::instantiate::instance::Leaf;
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
+use super::super::{BaseType, FlatModel, Part, Variability};
 use super::{plural, scalars_of, size, targets};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::connections::sets::ConnectorSide;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{CausalityPrefix, ConnectionPrefix, Restriction};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
-use std::ops::Range;
-
-/// Which equations and algorithms of the flat model an instance writes itself.
-#[derive(Debug, Clone)]
-pub(in super::super) struct Written {
-    pub(in super::super) node: NodeId,
-    pub(in super::super) equations: Range<usize>,
-    pub(in super::super) algorithms: Range<usize>,
-}
 
 /// Local unknowns and equations of one instance of a class.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,51 +90,75 @@ impl LocalBalance {
     }
 
     /// What is wrong with the class.
-    pub(super) fn finding(&self) -> String {
+    pub fn finding(&self) -> String {
         let (few, many) = (plural(self.unknowns, "unknown"), plural(self.equations, "equation"));
         format!("`{}` is not locally balanced: it has {few} but {many}", self.class)
     }
 }
 
 impl Instantiation<'_> {
-    /// The local balance of the model and of its components, as far as it can be told.
-    pub(in super::super) fn local_balances(
+    /// The local balance of the model and of its components, as far as they are known.
+    pub fn local_balances(
         &mut self,
         connections: &Connections,
         model: &FlatModel,
     ) -> Result<Vec<LocalBalance>, Vec<Diagnostic>> {
         let mut counts = IndexMap::new();
         let mut owners = FxHashMap::default();
-        counts.insert(self.root_node, Counts::default());
-        let place = Place { owner: self.root_node, public: true, in_connector: false };
-        self.count_variables(self.root_node, place, model, &mut counts, &mut owners);
-        for written in std::mem::take(&mut self.written) {
-            let owner = owners.get(&written.node).copied().unwrap_or(self.root_node);
-            let added = self.written_equations(&written, model);
+        counts.insert(self.classes.tree.root, Counts::default());
+        let place = Place { owner: self.classes.tree.root, public: true, in_connector: false };
+        self.classes.count_variables(
+            self.classes.tree.root,
+            place,
+            model,
+            &mut counts,
+            &mut owners,
+        );
+        let root = self.classes.tree.root;
+        let instances = self.classes.instances(root).map_err(|error| vec![error])?;
+        for (node, part) in instances.into_iter().zip(&model.parts) {
+            let owner = owners.get(&node).copied().unwrap_or(root);
+            let added = self.local_equations(part, model);
             let Some(count) = counts.get_mut(&owner) else { continue };
             match added {
                 Some(added) => count.equations += added,
                 None => count.unclear = true,
             }
         }
-        let errors = self.count_connections(connections, &mut counts, &owners);
+        let errors = self.classes.count_connections(connections, &mut counts, &owners);
         if !errors.is_empty() {
             return Err(errors);
         }
         for redundant in connections.graph.nodes() {
             if let Some(owner) = owners.get(&redundant) {
-                self.mark_unclear(*owner, &mut counts);
+                self.classes.mark_unclear(*owner, &mut counts);
             }
         }
         let clear = counts.into_iter().filter(|(_, count)| !count.unclear);
-        Ok(clear.filter_map(|(node, count)| self.local_balance(node, &count)).collect())
+        Ok(clear.filter_map(|(node, count)| self.classes.local_balance(node, &count)).collect())
     }
 
+    /// Number of scalar equations, those of algorithms included; `None` if it is not known.
+    fn local_equations(&mut self, part: &Part, model: &FlatModel) -> Option<usize> {
+        let mut count = 0;
+        for equation in &model.equations[part.equations.clone()] {
+            count += size(equation, &mut |e| self.shape_of(e))?;
+        }
+        for statements in &model.algorithms[part.algorithms.clone()] {
+            let mut assigned = BTreeSet::new();
+            targets(statements, &mut assigned);
+            count += scalars_of(&assigned, model);
+        }
+        Some(count)
+    }
+}
+
+impl Classes<'_> {
     fn local_balance(&self, node: NodeId, count: &Counts) -> Option<LocalBalance> {
-        let text = self.text(self.scope_of(node)?);
+        let text = self.text(self.tree.scope_of(node)?);
         Some(LocalBalance {
             class: text.name.clone(),
-            path: self.nodes[node.0].path.clone(),
+            path: self.tree.nodes[node.0].path.clone(),
             unknowns: count.unknowns,
             equations: count.equations.saturating_sub(count.merged),
             flows: count.flows,
@@ -156,7 +178,7 @@ impl Instantiation<'_> {
         owners.insert(node, place.owner);
         let Ok(members) = self.members(node) else { return };
         for (name, state) in members {
-            let hidden = self.declaration_of(node, name).is_some_and(|one| one.protected);
+            let hidden = self.tree.declaration_of(node, name).is_some_and(|one| one.protected);
             let nodes = match state {
                 MemberState::Single(one) => vec![one],
                 MemberState::Array(_, nodes) => nodes,
@@ -164,7 +186,7 @@ impl Instantiation<'_> {
             };
             for one in nodes {
                 let mut inner = Place { public: place.public && !hidden, ..place };
-                let NodeKind::Composite(composite) = &self.nodes[one.0].kind else {
+                let NodeKind::Composite(composite) = &self.tree.nodes[one.0].kind else {
                     owners.insert(one, place.owner);
                     self.count_variable(one, inner, model, counts);
                     continue;
@@ -203,8 +225,10 @@ impl Instantiation<'_> {
         model: &FlatModel,
         counts: &mut IndexMap<NodeId, Counts>,
     ) {
-        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return };
-        let Some(variable) = model.variables.get(self.nodes[node.0].path.as_str()) else { return };
+        let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind else { return };
+        let Some(variable) = model.variables.get(self.tree.nodes[node.0].path.as_str()) else {
+            return;
+        };
         if variable.variability < Variability::Discrete
             || matches!(variable.base, BaseType::ExternalObject(_))
         {
@@ -245,20 +269,6 @@ impl Instantiation<'_> {
         Some(self.node_of(bound.context))
     }
 
-    /// Number of scalar equations, those of algorithms included; `None` if it is not known.
-    fn written_equations(&mut self, written: &Written, model: &FlatModel) -> Option<usize> {
-        let mut count = 0;
-        for equation in &model.equations[written.equations.clone()] {
-            count += size(equation, &mut |e| self.shape_of(e))?;
-        }
-        for statements in &model.algorithms[written.algorithms.clone()] {
-            let mut assigned = BTreeSet::new();
-            targets(statements, &mut assigned);
-            count += scalars_of(&assigned, model);
-        }
-        Some(count)
-    }
-
     /// Adds the equations of the sets that the connections of each class make by themselves.
     fn count_connections(
         &self,
@@ -266,8 +276,8 @@ impl Instantiation<'_> {
         counts: &mut IndexMap<NodeId, Counts>,
         owners: &FxHashMap<NodeId, NodeId>,
     ) -> Vec<Diagnostic> {
-        let mut of_class: IndexMap<NodeId, Vec<Edge>> = IndexMap::new();
-        for edge in &connections.edges {
+        let mut of_class: IndexMap<NodeId, Vec<ScalarPair>> = IndexMap::new();
+        for edge in &connections.pairs {
             let Some(context) = owners.get(&edge.context).copied() else { continue };
             let is_near = |leaf: NodeId| {
                 let owner = owners.get(&leaf).copied();
@@ -275,7 +285,7 @@ impl Instantiation<'_> {
                 owner == Some(context) || holder == Some(context)
             };
             let far: Vec<NodeId> =
-                edge.faces.iter().map(|face| face.leaf).filter(|leaf| !is_near(*leaf)).collect();
+                edge.sides.iter().map(|side| side.leaf).filter(|leaf| !is_near(*leaf)).collect();
             for leaf in &far {
                 if let Some(owner) = owners.get(leaf) {
                     self.mark_unclear(*owner, counts);
@@ -292,9 +302,9 @@ impl Instantiation<'_> {
             let Some(count) = counts.get_mut(&context) else { continue };
             for set in sets {
                 errors.extend(self.two_sources(&set, context, &edges, owners));
-                let outside = set.iter().filter(|face| face.outside).count();
-                match self.connection_of(set[0].leaf) {
-                    None => count.equations += self.potential_equations(&set),
+                let outside = set.iter().filter(|side| side.outside).count();
+                match self.tree.connection_of(set[0].leaf) {
+                    None => count.equations += self.tree.potential_equations(&set),
                     Some(ConnectionPrefix::Flow) => {
                         count.equations += 1;
                         count.merged += set.len() - outside;
@@ -311,36 +321,38 @@ impl Instantiation<'_> {
     /// direction (MLS §9.1.3).
     fn two_sources(
         &self,
-        set: &[Face],
+        set: &[ConnectorSide],
         context: NodeId,
-        edges: &[Edge],
+        edges: &[ScalarPair],
         owners: &FxHashMap<NodeId, NodeId>,
     ) -> Option<Diagnostic> {
-        let is_source = |face: &&Face| {
-            let NodeKind::Variable(leaf) = &self.nodes[face.leaf.0].kind else { return false };
-            let is_own = owners.get(&face.leaf) == Some(&context);
+        let is_source = |side: &&ConnectorSide| {
+            let NodeKind::Variable(leaf) = &self.tree.nodes[side.leaf.0].kind else { return false };
+            let is_own = owners.get(&side.leaf) == Some(&context);
             match leaf.causality {
                 Some(CausalityPrefix::Input) => {
-                    is_own && !self.variables[leaf.variable].0.protected
+                    is_own && !self.tree.variables[leaf.variable].0.protected
                 }
                 Some(CausalityPrefix::Output) => !is_own,
                 None => false,
             }
         };
         let mut sources =
-            set.iter().filter(|face| is_source(face) && !self.is_inside_expandable(face.leaf));
+            set.iter().filter(|side| is_source(side) && !self.is_inside_expandable(side.leaf));
         let (one, other) = (sources.next()?, sources.next()?);
-        let edge = edges.iter().find(|edge| edge.faces.contains(other))?;
-        let [one, other] = [one, other].map(|face| &self.nodes[face.leaf.0].path);
+        let edge = edges.iter().find(|edge| edge.sides.contains(other))?;
+        let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
         Some(
             fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
                 help: "connect an output of a component, or an input of the class, to inputs")
             .at(edge.span),
         )
     }
+}
 
-    fn potential_equations(&self, set: &[Face]) -> usize {
-        let varies = |face: &&Face| match &self.nodes[face.leaf.0].kind {
+impl Tree {
+    fn potential_equations(&self, set: &[ConnectorSide]) -> usize {
+        let varies = |side: &&ConnectorSide| match &self.nodes[side.leaf.0].kind {
             NodeKind::Variable(leaf) => {
                 self.variables[leaf.variable].0.variability >= Variability::Discrete
             }

@@ -5,7 +5,6 @@ mod local;
 mod sets;
 
 pub use local::LocalBalance;
-pub(super) use local::Written;
 
 use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};
@@ -21,9 +20,9 @@ use std::collections::BTreeSet;
 /// The most classes that one message names.
 const MAX_CLASSES: usize = 3;
 
-/// An error if the numbers differ. Where the size of an equation cannot be told from its text, the
+/// An error if the numbers differ. Where the size of an equation does not follow from its text, the
 /// model is left to the matching of equations and unknowns.
-pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
+pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
     let unknowns: usize = model
         .variables
         .values()
@@ -72,13 +71,13 @@ pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), D
 /// Warnings about classes that are not balanced by themselves though the model is: their parts
 /// make up for each other. One for each library, as older ones do not know the rule, and about a
 /// part rather than about what holds it.
-pub(super) fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
-    let mut told = BTreeSet::new();
+pub fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
+    let mut named = BTreeSet::new();
     let mut found: Vec<&LocalBalance> = unbalanced(classes).collect();
     found.reverse();
     found
         .into_iter()
-        .filter(|class| told.insert(class.class.first().map(|name| name.to_string())))
+        .filter(|class| named.insert(class.class.first().map(|name| name.to_string())))
         .map(|class| {
             let finding = class.finding();
             fault!(UNBALANCED_CLASS, "{finding}").at(class.span).warning()
@@ -97,7 +96,7 @@ fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Number of scalar equations; `None` if it cannot be told from the text.
+/// Number of scalar equations; `None` if it does not follow from its text.
 fn size(
     equation: &Equation,
     dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
@@ -175,7 +174,7 @@ fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<V
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.
-pub(super) fn path(reference: &ComponentReference) -> String {
+pub fn path(reference: &ComponentReference) -> String {
     let mut path = String::new();
     for (at, part) in reference.parts.iter().enumerate() {
         if at > 0 {
@@ -183,7 +182,7 @@ pub(super) fn path(reference: &ComponentReference) -> String {
         }
         path.push_str(part.name.as_str());
         if at + 1 < reference.parts.len() && !part.subscripts.is_empty() {
-            let texts: Vec<String> = part
+            let numbers: Vec<String> = part
                 .subscripts
                 .iter()
                 .map(|subscript| match subscript {
@@ -194,7 +193,7 @@ pub(super) fn path(reference: &ComponentReference) -> String {
                     _ => ":".to_owned(),
                 })
                 .collect();
-            path.push_str(&format!("[{}]", texts.join(",")));
+            path.push_str(&format!("[{}]", numbers.join(",")));
         }
     }
     path

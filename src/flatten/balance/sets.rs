@@ -1,18 +1,19 @@
 //! The sets that some connections make by themselves.
 
-use super::super::connections::{Edge, Face};
+use super::super::connections::ScalarPair;
+use crate::flatten::connections::sets::ConnectorSide;
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 
-/// The connected faces, in sets of two or more.
-pub(super) fn of_edges(edges: &[Edge]) -> Vec<Vec<Face>> {
-    let mut number: FxHashMap<Face, usize> = FxHashMap::default();
-    let mut faces = Vec::new();
+/// The connected sides, in sets of two or more.
+pub fn of_edges(edges: &[ScalarPair]) -> Vec<Vec<ConnectorSide>> {
+    let mut number: FxHashMap<ConnectorSide, usize> = FxHashMap::default();
+    let mut sides = Vec::new();
     let mut parent: Vec<usize> = Vec::new();
     for edge in edges {
-        let ends = edge.faces.map(|face| {
-            *number.entry(face).or_insert_with(|| {
-                faces.push(face);
+        let ends = edge.sides.map(|side| {
+            *number.entry(side).or_insert_with(|| {
+                sides.push(side);
                 parent.push(parent.len());
                 parent.len() - 1
             })
@@ -20,9 +21,9 @@ pub(super) fn of_edges(edges: &[Edge]) -> Vec<Vec<Face>> {
         let [one, other] = ends.map(|at| find(&mut parent, at));
         parent[one.max(other)] = one.min(other);
     }
-    let mut sets: IndexMap<usize, Vec<Face>> = IndexMap::new();
-    for (at, face) in faces.into_iter().enumerate() {
-        sets.entry(find(&mut parent, at)).or_default().push(face);
+    let mut sets: IndexMap<usize, Vec<ConnectorSide>> = IndexMap::new();
+    for (at, side) in sides.into_iter().enumerate() {
+        sets.entry(find(&mut parent, at)).or_default().push(side);
     }
     sets.into_values().filter(|set| set.len() > 1).collect()
 }

@@ -1,17 +1,18 @@
 //! What names with dots may lead through (MLS §4.1, §5.3.2, §5.3.3).
 
 use super::scope::Scope;
+use super::visible_elements::{Found, element, protected};
 use super::{imports, names};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{ILLEGAL_ACCESS, ILLEGAL_IMPORT, PROTECTED_ACCESS};
+use crate::flatten::errors::{ILLEGAL_ACCESS, ILLEGAL_IMPORT};
 use crate::flatten::library::Question;
-use crate::name::{Ident, Name};
+use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
 
 /// Checks every name with dots that a class writes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for written in names::of(class) {
         let unclear = unqualified(class, &written.name, written.span);
         errors.extend(unclear.or_else(|| path(class, &written)));
@@ -55,13 +56,6 @@ fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> 
     None
 }
 
-/// The diagnostic for a protected element of a class.
-pub(super) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
-    fault!(PROTECTED_ACCESS, "`{name}` is protected in `{}`", class.name();
-        help: "move the declaration before `protected`")
-    .at(span)
-}
-
 /// What is wrong with a name whose first part means a class.
 fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
     let names::Written { name, span, .. } = written;
@@ -102,33 +96,6 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
         inside = next?;
     }
     None
-}
-
-/// An element of a class, as names with dots see it.
-pub(super) struct Found {
-    pub(super) visibility: Visibility,
-    encapsulated: bool,
-}
-
-impl Found {
-    /// A class whose file is another one than that of its package.
-    fn in_own_file(class: Scope<'_>) -> Found {
-        Found { visibility: Visibility::Public, encapsulated: class.definition().encapsulated }
-    }
-}
-
-/// The element of a class, its own or inherited, among those written in its file.
-pub(super) fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
-    let declaring = class.library.declaring(class.class, name, true)?;
-    own_element(class.of(declaring), name)
-}
-
-fn own_element(class: Scope<'_>, name: Ident) -> Option<Found> {
-    if let Some((visibility, nested)) = class.class_element(name) {
-        return Some(Found { visibility, encapsulated: nested.class.encapsulated });
-    }
-    let component = class.own_component(name)?;
-    Some(Found { visibility: component.visibility, encapsulated: false })
 }
 
 /// Whether a class contains only what a package may contain.

@@ -6,7 +6,7 @@ use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::MISPLACED;
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -32,7 +32,7 @@ struct Around {
 }
 
 /// Checks the own sections of a class.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
     let mut walk = Walk { class, loops: Vec::new(), errors };
     if !is_function {

@@ -9,10 +9,10 @@ use crate::syntax::ast::{ClassSpecifier, Restriction, Visibility};
 use rustc_hash::FxHashSet;
 
 /// What a class lacks to be compatible with another.
-pub(super) struct Lack(pub(super) String);
+pub struct Lack(pub String);
 
 /// What a class lacks to stand where `expected` is expected.
-pub(super) fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
+pub fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
     lack_within(candidate, expected, &mut Compared::default())
 }
 
@@ -89,7 +89,7 @@ fn is_known(class: Scope<'_>) -> bool {
 }
 
 /// The number of dimensions that a type itself has, through short classes.
-pub(super) fn dimensions(class: Scope<'_>) -> usize {
+pub fn dimensions(class: Scope<'_>) -> usize {
     let short = class.lineage().filter_map(|class| match &class.definition().specifier {
         ClassSpecifier::Short(short) => Some(short.subscripts.len()),
         _ => None,

@@ -13,7 +13,7 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{Visit, walk_equation};
 
 /// Checks the `connect` equations that a class itself writes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut walk = Walk { class, errors };
     for section in class.sections() {
         if let Section::Equations { equations, .. } = section {

@@ -1,7 +1,7 @@
 //! Import clauses (MLS §13.2).
 
-use super::access::{self, element};
 use super::scope::Scope;
+use super::visible_elements::{self, element};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_IMPORT;
@@ -11,7 +11,7 @@ use crate::syntax::ast::{Element, Import, ImportKind, Restriction, Visibility};
 use rustc_hash::FxHashMap;
 
 /// Checks the import clauses of a class.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut named: FxHashMap<Ident, (Name, Span)> = FxHashMap::default();
     for (_, element) in class.elements() {
         let Element::Import(import) = element else { continue };
@@ -49,13 +49,13 @@ fn named_by(kind: &ImportKind) -> Vec<(Ident, Name)> {
 }
 
 /// Whether an import of a class declares a name.
-pub(super) fn names(class: Scope<'_>, name: Ident) -> bool {
+pub fn names(class: Scope<'_>, name: Ident) -> bool {
     let imports = class.library.class(class.class).imports();
     imports.iter().flat_map(named_by).any(|(own, _)| own == name)
 }
 
 /// The packages from which a class imports everything.
-pub(super) fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
+pub fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
     let imports = class.library.class(class.class).imports();
     let packages = imports.iter().filter_map(|import| match import {
         ImportKind::Unqualified(package) => Some(global(package)),
@@ -73,7 +73,8 @@ fn protected(class: Scope<'_>, target: &Name, span: Span) -> Option<Diagnostic> 
     let package = class.class_named(&global(&target.parent()))?;
     let name = target.last()?;
     let found = element(package, name)?;
-    (found.visibility == Visibility::Protected).then(|| access::protected(name, package, span))
+    (found.visibility == Visibility::Protected)
+        .then(|| visible_elements::protected(name, package, span))
 }
 
 /// What is imported by its name is a package or an element of one, or a class at the top level;

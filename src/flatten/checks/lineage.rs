@@ -8,7 +8,7 @@ use std::sync::Arc;
 const MAX_BASES: usize = 10_000;
 
 /// Goes through a class and its bases, each once.
-pub(super) struct Lineage<'a> {
+pub struct Lineage<'a> {
     library: &'a Library,
     seen: FxHashSet<ClassId>,
     pending: Vec<ClassId>,
@@ -21,7 +21,7 @@ pub(super) struct Lineage<'a> {
 
 impl<'a> Lineage<'a> {
     /// The lineage of a class, itself first.
-    pub(super) fn of(library: &'a Library, class: ClassId) -> Lineage<'a> {
+    pub fn of(library: &'a Library, class: ClassId) -> Lineage<'a> {
         let seen = FxHashSet::default();
         Lineage { library, seen, pending: vec![class], bases: None, is_alone: true }
     }

@@ -3,7 +3,7 @@
 //! ones (§5.3.4, §13.2).
 
 use crate::flatten::library::{ClassId, Library};
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{ClassSpecifier, ImportKind};
 use rustc_hash::FxHashSet;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Type {
+pub enum Type {
     /// A class of the library.
     Class(ClassId),
     /// A predefined type (MLS §4.9).
@@ -26,7 +26,7 @@ const MAX_BASES: usize = 10_000;
 
 impl Library {
     /// What a name means in the text of a class.
-    pub(super) fn meaning(&self, scope: Option<ClassId>, name: &Name) -> Option<Type> {
+    pub fn meaning(&self, scope: Option<ClassId>, name: &Name) -> Option<Type> {
         self.meaning_with(scope, name, &mut Visited::default())
     }
 
@@ -82,7 +82,7 @@ impl Library {
     }
 
     /// The classes that a class extends, or that it is short for; unknown ones left out.
-    pub(in crate::flatten) fn declared_bases(&self, class: ClassId) -> Arc<[ClassId]> {
+    pub fn declared_bases(&self, class: ClassId) -> Arc<[ClassId]> {
         self.bases_once(class, || self.find_bases(class))
     }
 

@@ -23,6 +23,7 @@ mod scope;
 mod types;
 mod usage;
 mod variability;
+mod visible_elements;
 
 use super::library::{ClassId, Library};
 use crate::diag::Diagnostic;
@@ -31,7 +32,7 @@ use scope::Scope;
 
 /// What is wrong with a class and with those that take part in it; the errors of one class
 /// follow each other.
-pub(super) fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+pub fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     for class in participants::of(Scope { library, class }) {
         check_one(class, &mut errors);
@@ -40,7 +41,7 @@ pub(super) fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
 }
 
 /// What is wrong with one class, whatever takes part in it.
-pub(super) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+pub fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     check_one(Scope { library, class }, &mut errors);
     errors

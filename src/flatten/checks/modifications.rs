@@ -1,9 +1,9 @@
 //! What modifications may reach, and which classes may be replaced (MLS §4.1, §7.3.1).
 
-use super::access::{self, element};
 use super::compatibility::{Lack, dimensions, lack};
 use super::lookup::Type;
 use super::scope::Scope;
+use super::visible_elements::{element, protected};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_REDECLARATION;
@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 100;
 
 /// Checks the modifications of the own components and base classes of a class, the elements that
 /// it redeclares, and its `extends M(…)` classes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     if let ClassSpecifier::Short(short) = &class.definition().specifier
         && let Some(base) = class.parent().and_then(|p| p.class_named(&short.target.name))
     {
@@ -313,7 +313,7 @@ fn arguments(modified: Scope<'_>, arguments: &[Argument], errors: &mut Vec<Diagn
             },
         };
         if element(modified, name).is_some_and(|one| one.visibility == Visibility::Protected) {
-            errors.push(access::protected(name, modified, span));
+            errors.push(protected(name, modified, span));
         }
     }
 }

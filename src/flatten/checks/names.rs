@@ -13,16 +13,16 @@ use crate::syntax::visit::{
 };
 
 /// A name and where it is written.
-pub(super) struct Written {
-    pub(super) name: Name,
-    pub(super) span: Span,
+pub struct Written {
+    pub name: Name,
+    pub span: Span,
     /// It is the base of an extends clause.
-    pub(super) is_base: bool,
+    pub is_base: bool,
 }
 
 /// All names that a class itself writes, those of loop variables left out. What short classes
 /// write is looked up in the class around them and not listed.
-pub(super) fn of(class: Scope<'_>) -> Vec<Written> {
+pub fn of(class: Scope<'_>) -> Vec<Written> {
     let mut walk = Walk::default();
     if !matches!(class.definition().specifier, ClassSpecifier::Long(_)) {
         return Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn of(class: Scope<'_>) -> Vec<Written> {
 }
 
 /// Whether a name means a component of a class or of one around it.
-pub(super) fn is_component(class: Scope<'_>, name: Ident) -> bool {
+pub fn is_component(class: Scope<'_>, name: Ident) -> bool {
     let around = std::iter::successors(Some(class), |scope| {
         if scope.definition().encapsulated { None } else { scope.parent() }
     });

@@ -5,7 +5,7 @@ use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_OPERATOR;
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;
 use crate::syntax::ast::{CausalityPrefix, Restriction};
 
@@ -14,7 +14,7 @@ const BINARY: &[&str] =
     &["'+'", "'*'", "'/'", "'^'", "'=='", "'<>'", "'>'", "'<'", "'>='", "'<='", "'and'", "'or'"];
 
 /// Checks the operators of an operator record.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     if class.restriction() != Restriction::OperatorRecord {
         return;
     }

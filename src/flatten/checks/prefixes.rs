@@ -6,7 +6,7 @@ use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_PREFIX;
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ClassSpecifier, ConnectionPrefix, Restriction, TypePrefixes, VariabilityPrefix,
@@ -16,7 +16,7 @@ use crate::syntax::ast::{
 const MAX_CLASSES: usize = 200;
 
 /// Checks the prefixes of the own components of a class, and those of a short class.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for component in class.components() {
         let found = wrong_use(class, &component)
             .or_else(|| wrong_kind(&component))
@@ -214,7 +214,7 @@ fn fixed_word(variability: Option<VariabilityPrefix>) -> Option<&'static str> {
     }
 }
 
-pub(super) fn connection_word(prefix: ConnectionPrefix) -> &'static str {
+pub fn connection_word(prefix: ConnectionPrefix) -> &'static str {
     match prefix {
         ConnectionPrefix::Flow => "flow",
         ConnectionPrefix::Stream => "stream",

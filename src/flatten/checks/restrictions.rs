@@ -10,7 +10,7 @@ use crate::syntax::ast::{
 };
 
 /// Checks the own contents of a class against its keyword.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     match class.restriction() {
         Restriction::Record | Restriction::OperatorRecord => record(class, errors),
         Restriction::Connector | Restriction::ExpandableConnector => connector(class, errors),
@@ -192,7 +192,7 @@ fn no_behaviour(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {
 }
 
 /// Whether a section holds equations or an algorithm.
-pub(super) fn is_behaviour(section: &Section) -> bool {
+pub fn is_behaviour(section: &Section) -> bool {
     matches!(section, Section::Equations { .. } | Section::Algorithm { .. })
 }
 
@@ -249,7 +249,7 @@ fn prefixed(class: Scope<'_>, component: &Component<'_>, prefix: &str) -> Diagno
 }
 
 /// Where an element is written.
-pub(super) fn place(element: &Element) -> Span {
+pub fn place(element: &Element) -> Span {
     match element {
         Element::Import(import) => import.span,
         Element::Extends(extends) => extends.span,

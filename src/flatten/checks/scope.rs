@@ -3,7 +3,7 @@
 use super::lineage::Lineage;
 use super::lookup::Type;
 use crate::flatten::library::{ClassId, Library, Question};
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,
@@ -15,58 +15,58 @@ const MAX_CHAIN: usize = 100;
 
 /// A class of a library, as the checks see it.
 #[derive(Clone, Copy)]
-pub(super) struct Scope<'a> {
-    pub(super) library: &'a Library,
-    pub(super) class: ClassId,
+pub struct Scope<'a> {
+    pub library: &'a Library,
+    pub class: ClassId,
 }
 
 /// A component with the clause and the class that declare it.
 #[derive(Clone, Copy)]
-pub(super) struct Component<'a> {
-    pub(super) owner: Scope<'a>,
-    pub(super) visibility: Visibility,
-    pub(super) clause: &'a ComponentClause,
-    pub(super) declaration: &'a ComponentDeclaration,
+pub struct Component<'a> {
+    pub owner: Scope<'a>,
+    pub visibility: Visibility,
+    pub clause: &'a ComponentClause,
+    pub declaration: &'a ComponentDeclaration,
 }
 
 impl<'a> Scope<'a> {
     /// Another class of the same library.
-    pub(super) fn of(self, class: ClassId) -> Scope<'a> {
+    pub fn of(self, class: ClassId) -> Scope<'a> {
         Scope { class, ..self }
     }
 
     /// Its definition.
-    pub(super) fn definition(self) -> &'a ClassDefinition {
+    pub fn definition(self) -> &'a ClassDefinition {
         &self.library.class(self.class).definition
     }
 
     /// Its keyword.
-    pub(super) fn restriction(self) -> Restriction {
+    pub fn restriction(self) -> Restriction {
         self.definition().restriction
     }
 
     /// Its full name.
-    pub(super) fn name(self) -> &'a Name {
+    pub fn name(self) -> &'a Name {
         &self.library.class(self.class).name
     }
 
     /// The class that it is written in.
-    pub(super) fn parent(self) -> Option<Scope<'a>> {
+    pub fn parent(self) -> Option<Scope<'a>> {
         self.library.class(self.class).parent.map(|parent| self.of(parent))
     }
 
     /// Its sections; none for a short class.
-    pub(super) fn sections(self) -> &'a [Section] {
+    pub fn sections(self) -> &'a [Section] {
         self.library.class(self.class).sections()
     }
 
     /// Its own elements with their visibility.
-    pub(super) fn elements(self) -> impl Iterator<Item = (Visibility, &'a Element)> {
+    pub fn elements(self) -> impl Iterator<Item = (Visibility, &'a Element)> {
         self.library.class(self.class).elements()
     }
 
     /// Its own components.
-    pub(super) fn components(self) -> impl Iterator<Item = Component<'a>> {
+    pub fn components(self) -> impl Iterator<Item = Component<'a>> {
         self.elements().flat_map(move |element| self.components_of(element))
     }
 
@@ -89,7 +89,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The classes that it declares itself, with their visibility.
-    pub(super) fn class_elements(self) -> impl Iterator<Item = (Visibility, &'a ClassElement)> {
+    pub fn class_elements(self) -> impl Iterator<Item = (Visibility, &'a ClassElement)> {
         self.elements().filter_map(|(visibility, element)| match element {
             Element::Class(nested) => Some((visibility, nested)),
             _ => None,
@@ -97,17 +97,17 @@ impl<'a> Scope<'a> {
     }
 
     /// The class of a name that it declares itself.
-    pub(super) fn own_class(self, name: Ident) -> Option<Scope<'a>> {
+    pub fn own_class(self, name: Ident) -> Option<Scope<'a>> {
         self.library.class(self.class).child(name).map(|class| self.of(class))
     }
 
     /// Itself and all classes that it extends or is short for.
-    pub(super) fn lineage(self) -> impl Iterator<Item = Scope<'a>> {
+    pub fn lineage(self) -> impl Iterator<Item = Scope<'a>> {
         Lineage::of(self.library, self.class).map(move |(class, _)| self.of(class))
     }
 
     /// The first of its lineage that answers a question; each is asked once.
-    pub(super) fn first(
+    pub fn first(
         self,
         question: Question,
         answers: impl Fn(Scope<'a>) -> bool,
@@ -118,26 +118,26 @@ impl<'a> Scope<'a> {
     }
 
     /// Its component of a name, its own or inherited.
-    pub(super) fn component(self, name: Ident) -> Option<Component<'a>> {
+    pub fn component(self, name: Ident) -> Option<Component<'a>> {
         let declaring = self.library.declaring(self.class, name, false)?;
         self.of(declaring).own_component(name)
     }
 
     /// The component of a name that it declares itself.
-    pub(super) fn own_component(self, name: Ident) -> Option<Component<'a>> {
+    pub fn own_component(self, name: Ident) -> Option<Component<'a>> {
         let (visibility, clause, declaration) =
             self.library.class(self.class).component_element(name)?;
         Some(Component { owner: self, visibility, clause, declaration })
     }
 
     /// The class of a name that it declares itself, in its file, with its visibility.
-    pub(super) fn class_element(self, name: Ident) -> Option<(Visibility, &'a ClassElement)> {
+    pub fn class_element(self, name: Ident) -> Option<(Visibility, &'a ClassElement)> {
         self.library.class(self.class).class_element(name)
     }
 
     /// The components that the parts of a reference name, followed through their classes as they
     /// are declared; `None` where a redeclaration could change them.
-    pub(super) fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
+    pub fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
         if reference.global {
             return None;
         }
@@ -154,17 +154,17 @@ impl<'a> Scope<'a> {
     }
 
     /// The component that a reference names, as [`Scope::path`] finds it.
-    pub(super) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
+    pub fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
         self.path(reference)?.pop()
     }
 
     /// What a name of a type or class means in it.
-    pub(super) fn meaning(self, name: &Name) -> Option<Type> {
+    pub fn meaning(self, name: &Name) -> Option<Type> {
         self.library.meaning(Some(self.class), name)
     }
 
     /// The class that a name means in it.
-    pub(super) fn class_named(self, name: &Name) -> Option<Scope<'a>> {
+    pub fn class_named(self, name: &Name) -> Option<Scope<'a>> {
         match self.meaning(name)? {
             Type::Class(class) => Some(self.of(class)),
             Type::Predefined(_) => None,
@@ -172,7 +172,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The class behind a row of short classes, and the prefixes that they add.
-    pub(super) fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
+    pub fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
         let mut class = self;
         let mut prefixes = Vec::new();
         for _ in 0..MAX_CHAIN {
@@ -194,7 +194,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The predefined type that it is made of, through short classes and extends clauses.
-    pub(super) fn predefined(self) -> Option<Predefined> {
+    pub fn predefined(self) -> Option<Predefined> {
         let is_one = |class: Scope<'a>| class.own_predefined().is_some();
         self.first(Question::Predefined, is_one)?.own_predefined()
     }
@@ -214,19 +214,19 @@ impl<'a> Scope<'a> {
     }
 
     /// The enumeration that it is, by itself or through others.
-    pub(super) fn enumeration(self) -> Option<Scope<'a>> {
+    pub fn enumeration(self) -> Option<Scope<'a>> {
         self.first(Question::Enumeration, |class| {
             matches!(class.definition().specifier, ClassSpecifier::Enumeration(_))
         })
     }
 
     /// Whether it is an enumeration, by itself or through others.
-    pub(super) fn is_enumeration(self) -> bool {
+    pub fn is_enumeration(self) -> bool {
         self.enumeration().is_some()
     }
 
     /// Whether it, or a class around it, is declared replaceable.
-    pub(super) fn is_replaceable(self) -> bool {
+    pub fn is_replaceable(self) -> bool {
         std::iter::successors(Some(self), |class| class.parent())
             .any(|class| self.library.class(class.class).prefixes().replaceable)
     }
@@ -234,17 +234,17 @@ impl<'a> Scope<'a> {
 
 impl<'a> Component<'a> {
     /// What its type means.
-    pub(super) fn meaning(&self) -> Option<Type> {
+    pub fn meaning(&self) -> Option<Type> {
         self.owner.meaning(&self.clause.type_specifier.name)
     }
 
     /// The class of its type.
-    pub(super) fn class(&self) -> Option<Scope<'a>> {
+    pub fn class(&self) -> Option<Scope<'a>> {
         self.owner.class_named(&self.clause.type_specifier.name)
     }
 
     /// Whether it, or its type, is declared constant or parameter.
-    pub(super) fn is_fixed(&self) -> bool {
+    pub fn is_fixed(&self) -> bool {
         let fixed = |prefixes: &TypePrefixes| {
             let variability = prefixes.variability;
             matches!(variability, Some(VariabilityPrefix::Constant | VariabilityPrefix::Parameter))
@@ -254,14 +254,14 @@ impl<'a> Component<'a> {
     }
 
     /// Whether it, or its type, is declared input or output.
-    pub(super) fn has_direction(&self) -> bool {
+    pub fn has_direction(&self) -> bool {
         let directed = |prefixes: &TypePrefixes| prefixes.causality.is_some();
         let of_type = || self.class().is_some_and(|class| class.unaliased().1.iter().any(directed));
         directed(&self.clause.type_prefixes) || of_type()
     }
 
     /// Its name.
-    pub(super) fn name(&self) -> Ident {
+    pub fn name(&self) -> Ident {
         self.declaration.name.node
     }
 }

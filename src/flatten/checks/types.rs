@@ -8,7 +8,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::functions::{self, Builtin, TypeRule};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
@@ -30,7 +30,7 @@ enum Kind {
 }
 
 /// Checks the conditions and relations that a class itself writes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut walk = Walk { class, loops: Vec::new(), errors };
     for component in class.components() {
         walk.binding(&component);

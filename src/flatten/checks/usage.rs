@@ -7,7 +7,7 @@ use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{CONDITIONAL_COMPONENT, ILLEGAL_ACCESS, ILLEGAL_ARGUMENT, MISPLACED};
-use crate::flatten::lookup::Predefined;
+use crate::flatten::lookup::types::Predefined;
 use crate::functions::{self, Builtin};
 use crate::name::Name;
 use crate::source::Span;
@@ -20,7 +20,7 @@ use crate::syntax::visit::{
 };
 
 /// Checks the expressions that a class itself writes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
     let mut walk = Walk { class, is_function, conditional: false, errors };
     for component in class.components() {

@@ -9,7 +9,7 @@ use crate::syntax::visit::{Visit, walk_expression};
 
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
-pub(super) fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
+pub fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
     let mut walk = Walk { class, loops, varies: false };
     walk.expression(expression);
     !walk.varies

@@ -3,14 +3,15 @@
 
 use super::super::equations::is_graph_statement;
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH};
-use super::super::instance::{MemberState, NodeId};
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
-use super::ends::{End, Ends};
-use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -19,222 +20,40 @@ use crate::syntax::ast::{
 use crate::value::Value;
 
 /// A `connect` equation in one instance.
-pub(super) struct Connect {
-    pub(super) left: ComponentReference,
-    pub(super) right: ComponentReference,
-    pub(super) context: ScopeId,
+pub struct Connect {
+    pub left: ComponentReference,
+    pub right: ComponentReference,
+    pub context: ScopeId,
     /// Values of loop variables.
-    pub(super) local: Local,
-    pub(super) span: Span,
+    pub local: Local,
+    pub span: Span,
 }
 
 impl Instantiation<'_> {
     /// All connections below an instance, as sets; errors are added to the list.
-    pub(in super::super) fn connections(
-        &mut self,
-        root: NodeId,
-        errors: &mut Vec<Diagnostic>,
-    ) -> Connections {
-        let mut connections = Connections::default();
-        let mut connects = Vec::new();
-        self.collect_connections(root, &mut connections, &mut connects, errors);
-        if let Err(error) = self.expand_connectors(&connects) {
+    pub fn connections(&mut self, root: NodeId, errors: &mut Vec<Diagnostic>) -> Connections {
+        let connections = Connections::default();
+        let mut collector = Collector { instantiation: self, connections, connects: Vec::new() };
+        collector.collect(root, errors);
+        if let Err(error) = collector.instantiation.expand_connectors(&collector.connects) {
             errors.push(error);
         }
-        for connect in &connects {
-            if let Err(error) = self.connect(connect, &mut connections) {
+        for connect in std::mem::take(&mut collector.connects) {
+            if let Err(error) = collector.connect(&connect) {
                 errors.push(error);
             }
         }
+        let mut connections = collector.connections;
         connections.context = None;
-        if let Err(error) = self.build_graph(&mut connections) {
+        if let Err(error) = self.classes.build_graph(&mut connections) {
             errors.push(error);
         }
-        self.drop_unconnected(root, &mut connections);
+        self.classes.drop_unconnected(root, &mut connections);
         connections
     }
 
-    fn collect_connections(
-        &mut self,
-        node: NodeId,
-        connections: &mut Connections,
-        connects: &mut Vec<Connect>,
-        errors: &mut Vec<Diagnostic>,
-    ) {
-        let Some(scope) = self.scope_of(node) else { return };
-        let parts = self.elements(scope).and_then(|elements| Ok((elements, self.members(node)?)));
-        let Ok((elements, members)) = parts else { return };
-        for (_, state) in members {
-            let nodes = match state {
-                MemberState::Single(one) => vec![one],
-                MemberState::Array(_, nodes) => nodes,
-                _ => Vec::new(),
-            };
-            for one in nodes {
-                self.collect_connections(one, connections, connects, errors);
-            }
-        }
-        for context in elements.lineage() {
-            let text = self.text(context).clone();
-            for section in text.sections() {
-                let Section::Equations { initial: false, equations, .. } = section else {
-                    continue;
-                };
-                for equation in equations {
-                    let local = Local::default();
-                    if let Err(error) =
-                        self.collect_equation(equation, context, &local, connections, connects)
-                    {
-                        errors.push(error);
-                    }
-                }
-            }
-        }
-    }
-
-    fn collect_equation(
-        &mut self,
-        equation: &Equation,
-        context: ScopeId,
-        local: &Local,
-        connections: &mut Connections,
-        connects: &mut Vec<Connect>,
-    ) -> Result<(), Diagnostic> {
-        if !is_about_connections(equation) {
-            return Ok(());
-        }
-        match &equation.kind {
-            EquationKind::Connect { left, right } if self.is_deselected(context, left, right) => {
-                Ok(())
-            }
-            EquationKind::Connect { left, right } => {
-                connects.push(Connect {
-                    left: left.clone(),
-                    right: right.clone(),
-                    context,
-                    local: local.clone(),
-                    span: equation.span,
-                });
-                Ok(())
-            }
-            EquationKind::Call(call) => self.graph_statement(call, context, local, connections),
-            EquationKind::For { indices, body } => {
-                let mut turns = Vec::new();
-                let indices = self.loop_ranges(indices, body, context, local)?;
-                self.turns(&indices, context, local, &mut turns)?;
-                for turn in turns {
-                    for inner in body {
-                        self.collect_equation(inner, context, &turn, connections, connects)?;
-                    }
-                }
-                Ok(())
-            }
-            EquationKind::If { branches, otherwise } => {
-                let chosen = match self.chosen_branch(branches, context, local)? {
-                    Some(Some(at)) => &branches[at].1,
-                    Some(None) => otherwise,
-                    None => {
-                        return Err(fault!(
-                            INVALID_CONNECTION,
-                            "a connection in an if-equation needs a condition that is known at \
-                             translation"
-                        )
-                        .at(equation.span));
-                    }
-                };
-                for inner in chosen {
-                    self.collect_equation(inner, context, local, connections, connects)?;
-                }
-                Ok(())
-            }
-            EquationKind::When { .. } => {
-                Err(fault!(INVALID_CONNECTION, "connections are not allowed in a when-equation")
-                    .at(equation.span))
-            }
-            EquationKind::Equal { .. } => Ok(()),
-        }
-    }
-
-    fn connect(
-        &mut self,
-        connect: &Connect,
-        connections: &mut Connections,
-    ) -> Result<(), Diagnostic> {
-        let Connect { left, right, context, local, span } = connect;
-        let span = *span;
-        let left_ends = self.ends(left, *context, local)?;
-        let right_ends = self.ends(right, *context, local)?;
-        // Connections with a component whose condition is false are removed (MLS §4.4.5).
-        let (Some(left_ends), Some(right_ends)) = (left_ends, right_ends) else { return Ok(()) };
-        if left_ends.dims != right_ends.dims {
-            return Err(fault!(
-                SIZE_MISMATCH,
-                "`{}` has the sizes {:?}, `{}` has {:?}",
-                left.name(),
-                left_ends.dims,
-                right.name(),
-                right_ends.dims
-            )
-            .at(span));
-        }
-        let sides = (left_ends.outside, right_ends.outside);
-        connections.context = Some(self.node_of(*context));
-        for (one, other) in left_ends.ends.iter().zip(&right_ends.ends) {
-            connections.count(*one);
-            connections.count(*other);
-            self.pair(*one, *other, sides, span, connections)?;
-        }
-        Ok(())
-    }
-
-    /// `Connections.branch(a, b)`, `root(a)`, `potentialRoot(a, priority)` (MLS §9.4.1).
-    fn graph_statement(
-        &mut self,
-        call: &Expression,
-        context: ScopeId,
-        local: &Local,
-        connections: &mut Connections,
-    ) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        let name = Name::new(function.name().parts).to_string();
-        let Some(first) = self.overdetermined_argument(arguments, 0, context, local)? else {
-            return Ok(());
-        };
-        match name.as_str() {
-            "Connections.branch" => {
-                if let Some(second) = self.overdetermined_argument(arguments, 1, context, local)? {
-                    connections.graph.branch(first, second);
-                }
-            }
-            "Connections.root" => connections.graph.root(first),
-            "Connections.potentialRoot" => {
-                let named = || {
-                    let named = arguments.named.iter();
-                    named.filter(|n| n.name.node == "priority").map(|n| &n.value).next()
-                };
-                let priority = match arguments.positional.get(1).or_else(named) {
-                    Some(priority) => match self.structural_value(priority, context)? {
-                        Value::Integer(priority) => priority,
-                        other => {
-                            return Err(fault!(
-                                INVALID_CONNECTION,
-                                "a priority is Integer, not {}",
-                                other.type_name()
-                            )
-                            .at(priority.span));
-                        }
-                    },
-                    None => 0,
-                };
-                connections.graph.potential_root(first, priority);
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
     /// The record that an argument of such a statement names; `None` if it does not exist.
-    pub(super) fn overdetermined_argument(
+    pub fn overdetermined_argument(
         &mut self,
         arguments: &Arguments,
         at: usize,
@@ -255,6 +74,185 @@ impl Instantiation<'_> {
             None => Ok(None),
         }
     }
+}
+
+/// Collects the connections that the instances of a model write.
+struct Collector<'c, 'a> {
+    instantiation: &'c mut Instantiation<'a>,
+    connections: Connections,
+    connects: Vec<Connect>,
+}
+
+impl Collector<'_, '_> {
+    fn collect(&mut self, root: NodeId, errors: &mut Vec<Diagnostic>) {
+        let classes = &mut self.instantiation.classes;
+        for node in classes.instances(root).unwrap_or_default() {
+            let classes = &mut self.instantiation.classes;
+            let Some(scope) = classes.tree.scope_of(node) else { continue };
+            let Ok(elements) = classes.elements(scope) else { continue };
+            for context in elements.lineage() {
+                self.collect_class(context, errors);
+            }
+        }
+    }
+
+    fn collect_class(&mut self, context: ScopeId, errors: &mut Vec<Diagnostic>) {
+        let text = self.instantiation.classes.text(context).clone();
+        for section in text.sections() {
+            let Section::Equations { initial: false, equations, .. } = section else { continue };
+            for equation in equations {
+                errors.extend(self.collect_equation(equation, context, &Local::default()).err());
+            }
+        }
+    }
+
+    fn collect_equations(
+        &mut self,
+        equations: &[Equation],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(), Diagnostic> {
+        equations.iter().try_for_each(|one| self.collect_equation(one, context, local))
+    }
+
+    fn collect_equation(
+        &mut self,
+        equation: &Equation,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(), Diagnostic> {
+        if !is_about_connections(equation) {
+            return Ok(());
+        }
+        match &equation.kind {
+            EquationKind::Connect { left, right }
+                if self.instantiation.classes.is_deselected(context, left, right) =>
+            {
+                Ok(())
+            }
+            EquationKind::Connect { left, right } => {
+                self.connects.push(Connect {
+                    left: left.clone(),
+                    right: right.clone(),
+                    context,
+                    local: local.clone(),
+                    span: equation.span,
+                });
+                Ok(())
+            }
+            EquationKind::Call(call) => self.graph_statement(call, context, local),
+            EquationKind::For { indices, body } => {
+                let mut iterations = Vec::new();
+                let indices = self.instantiation.loop_ranges(indices, body, context, local)?;
+                self.instantiation.iterations(&indices, context, local, &mut iterations)?;
+                for iteration in iterations {
+                    self.collect_equations(body, context, &iteration)?;
+                }
+                Ok(())
+            }
+            EquationKind::If { branches, otherwise } => {
+                let chosen = match self.instantiation.chosen_branch(branches, context, local)? {
+                    Some(Some(at)) => &branches[at].1,
+                    Some(None) => otherwise,
+                    None => return Err(unknown_condition(equation.span)),
+                };
+                self.collect_equations(chosen, context, local)
+            }
+            EquationKind::When { .. } => {
+                Err(fault!(INVALID_CONNECTION, "connections are not allowed in a when-equation")
+                    .at(equation.span))
+            }
+            EquationKind::Equal { .. } => Ok(()),
+        }
+    }
+
+    fn connect(&mut self, connect: &Connect) -> Result<(), Diagnostic> {
+        let Connect { left, right, context, local, span } = connect;
+        let span = *span;
+        let left_ends = self.instantiation.ends(left, *context, local)?;
+        let right_ends = self.instantiation.ends(right, *context, local)?;
+        // Connections with a component whose condition is false are removed (MLS §4.4.5).
+        let (Some(left_ends), Some(right_ends)) = (left_ends, right_ends) else { return Ok(()) };
+        if left_ends.dims != right_ends.dims {
+            return Err(fault!(
+                SIZE_MISMATCH,
+                "`{}` has the sizes {:?}, `{}` has {:?}",
+                left.name(),
+                left_ends.dims,
+                right.name(),
+                right_ends.dims
+            )
+            .at(span));
+        }
+        let sides = (left_ends.outside, right_ends.outside);
+        self.connections.context = Some(self.instantiation.classes.node_of(*context));
+        for (one, other) in left_ends.ends.iter().zip(&right_ends.ends) {
+            self.connections.count(*one);
+            self.connections.count(*other);
+            self.instantiation.classes.pair(*one, *other, sides, span, &mut self.connections)?;
+        }
+        Ok(())
+    }
+
+    /// `Connections.branch(a, b)`, `root(a)`, `potentialRoot(a, priority)` (MLS §9.4.1).
+    fn graph_statement(
+        &mut self,
+        call: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
+        let name = Name::new(function.name().parts).to_string();
+        let Some(first) =
+            self.instantiation.overdetermined_argument(arguments, 0, context, local)?
+        else {
+            return Ok(());
+        };
+        match name.as_str() {
+            "Connections.branch" => {
+                if let Some(second) =
+                    self.instantiation.overdetermined_argument(arguments, 1, context, local)?
+                {
+                    self.connections.graph.branch(first, second);
+                }
+            }
+            "Connections.root" => self.connections.graph.root(first),
+            "Connections.potentialRoot" => {
+                let priority = self.priority(arguments, context)?;
+                self.connections.graph.potential_root(first, priority);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The priority of a potential root, 0 if none is given.
+    fn priority(&mut self, arguments: &Arguments, context: ScopeId) -> Result<i64, Diagnostic> {
+        let named = || {
+            let named = arguments.named.iter();
+            named.filter(|n| n.name.node == "priority").map(|n| &n.value).next()
+        };
+        match arguments.positional.get(1).or_else(named) {
+            Some(priority) => match self.instantiation.structural_value(priority, context)? {
+                Value::Integer(priority) => Ok(priority),
+                other => Err(fault!(
+                    INVALID_CONNECTION,
+                    "a priority is Integer, not {}",
+                    other.type_name()
+                )
+                .at(priority.span)),
+            },
+            None => Ok(0),
+        }
+    }
+}
+
+fn unknown_condition(span: Span) -> Diagnostic {
+    fault!(
+        INVALID_CONNECTION,
+        "a connection in an if-equation needs a condition that is known at translation"
+    )
+    .at(span)
 }
 
 /// Whether an equation holds a connection or a statement about the connection graph.

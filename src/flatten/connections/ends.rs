@@ -1,47 +1,32 @@
 //! What a reference in a connection names: connectors, or scalars of connectors.
 
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH, UNKNOWN_NAME};
-use super::super::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, ReferencePart, Subscript};
 
-/// One connector, or one scalar of a connector that is a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum End {
-    /// A connector with components.
-    Composite(NodeId),
-    /// A scalar: the variable's node and the place of the element in it, from 0.
-    Scalar(NodeId, usize),
-}
-
-/// The connectors that a reference names.
-#[derive(Debug, Clone)]
-pub(super) struct Ends {
-    /// Sizes of the dimensions that subscripts leave.
-    pub(super) dims: Vec<usize>,
-    /// One connector for each, the last index fastest.
-    pub(super) ends: Vec<End>,
-    /// Whether they are seen from the outside: connectors of the instance itself.
-    pub(super) outside: bool,
-}
-
 impl Instantiation<'_> {
     /// The connectors that a reference names; `None` if one of its components does not exist.
-    pub(super) fn ends(
+    pub fn ends(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,
         local: &Local,
     ) -> Result<Option<Ends>, Diagnostic> {
-        let node = self.node_of(context);
+        let node = self.classes.node_of(context);
         let first = &reference.parts[0];
-        if !self.has_component(context, first.name)? {
-            return Err(self.unknown_name(reference, context));
+        if !self.classes.has_component(context, first.name)? {
+            return Err(self.classes.unknown_name(reference, context));
         }
         let Some((dims, ends)) =
             self.walk_ends(node, &reference.parts, reference, context, local)?
@@ -63,7 +48,7 @@ impl Instantiation<'_> {
             Some(MemberState::Array(_, nodes)) => nodes.first().copied(),
             _ => None,
         };
-        Ok(one.is_some_and(|one| match &self.nodes[one.0].kind {
+        Ok(one.is_some_and(|one| match &self.classes.tree.nodes[one.0].kind {
             NodeKind::Composite(composite) => composite.connector,
             NodeKind::Variable(leaf) => leaf.connector,
         }))
@@ -91,13 +76,13 @@ impl Instantiation<'_> {
             return Ok(Some((Vec::new(), vec![End::Composite(node)])));
         };
         let Some(state) = self.component_state(node, part)? else {
-            return Err(self.unknown_component(node, part.name, whole.span));
+            return Err(self.classes.unknown_component(node, part.name, whole.span));
         };
         let subscripts = self.subscripts(&part.subscripts, context, local)?;
         match state {
-            MemberState::Single(one) => match &self.nodes[one.0].kind {
+            MemberState::Single(one) => match &self.classes.tree.nodes[one.0].kind {
                 NodeKind::Variable(leaf) => {
-                    let dims = self.variables[leaf.variable].0.dims.clone();
+                    let dims = self.classes.tree.variables[leaf.variable].0.dims.clone();
                     self.scalars(one, dims, &subscripts, rest, whole).map(Some)
                 }
                 NodeKind::Composite(_) if subscripts.is_empty() => {
@@ -142,7 +127,7 @@ impl Instantiation<'_> {
         whole: &ComponentReference,
     ) -> Result<(Vec<usize>, Vec<End>), Diagnostic> {
         if let Some(next) = rest.first() {
-            let path = &self.nodes[leaf.0].path;
+            let path = &self.classes.tree.nodes[leaf.0].path;
             let name = next.name;
             return Err(fault!(
                 UNKNOWN_NAME,
@@ -156,15 +141,17 @@ impl Instantiation<'_> {
         let ends = places(&chosen, &dims).into_iter().map(|place| End::Scalar(leaf, place));
         Ok((kept, ends.collect()))
     }
+}
 
+impl Tree {
     /// Where an end is declared, for messages.
-    pub(super) fn end_path(&self, end: End) -> String {
+    pub fn end_path(&self, end: End) -> String {
         match end {
             End::Composite(node) | End::Scalar(node, _) => self.nodes[node.0].path.clone(),
         }
     }
 
-    pub(super) fn end_span(&self, end: End) -> Span {
+    pub fn end_span(&self, end: End) -> Span {
         match end {
             End::Composite(_) => Span::NONE,
             End::Scalar(node, _) => match &self.nodes[node.0].kind {

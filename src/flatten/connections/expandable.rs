@@ -2,15 +2,21 @@
 //! ones get those of each other; components that nothing connects are left out.
 
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::modification::Modifier;
-use super::super::scope::ScopeId;
+use super::super::instantiate::instance::Declaration;
+use super::super::instantiate::instance::Member;
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
+use super::super::lookup::modification::Modifier;
 use super::collect::Connect;
-use super::ends::{End, Ends};
-use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Ident;
 use crate::syntax::ast::{
     ComponentReference, ElementPrefixes, Expression, ExpressionKind, ReferencePart, Restriction,
@@ -31,7 +37,7 @@ struct Undeclared {
 
 impl Instantiation<'_> {
     /// Adds to all expandable connectors what connections ask of them.
-    pub(super) fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
+    pub fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
         let mut links: Vec<(NodeId, NodeId)> = Vec::new();
         for round in 0..MAX_ROUNDS {
             let mut wanted: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
@@ -59,13 +65,6 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(in super::super) fn is_expandable(&self, node: NodeId) -> bool {
-        self.scope_of(node).is_some_and(|scope| {
-            scope != ScopeId::TOP
-                && self.text(scope).restriction() == Restriction::ExpandableConnector
-        })
-    }
-
     /// The component that a reference would add to an expandable connector.
     fn undeclared(
         &mut self,
@@ -77,14 +76,14 @@ impl Instantiation<'_> {
             return Ok(None);
         }
         let holder = ComponentReference { parts: before.to_vec(), ..reference.clone() };
-        // Any error is told when the connection itself is made.
+        // Any error is reported when the connection itself is made.
         let Ok(Some(Ends { ends, .. })) = self.ends(&holder, connect.context, &connect.local)
         else {
             return Ok(None);
         };
         let [End::Composite(connector)] = ends.as_slice() else { return Ok(None) };
-        let known = self.declaration_of(*connector, last.name).is_some();
-        if known || !self.is_expandable(*connector) {
+        let known = self.classes.tree.declaration_of(*connector, last.name).is_some();
+        if known || !self.classes.is_expandable(*connector) {
             return Ok(None);
         }
         Ok(Some(Undeclared { connector: *connector, part: last.clone() }))
@@ -104,8 +103,9 @@ impl Instantiation<'_> {
         let Some(end) = ends.ends.first() else { return Ok(()) };
         let (End::Composite(node) | End::Scalar(node, _)) = *end;
         let name = partner.parts[partner.parts.len() - 1].name;
-        let holder = self.nodes[node.0].parent;
-        let Some(model) = holder.and_then(|holder| self.declaration_of(holder, name)) else {
+        let holder = self.classes.tree.nodes[node.0].parent;
+        let Some(model) = holder.and_then(|holder| self.classes.tree.declaration_of(holder, name))
+        else {
             return Ok(());
         };
         let mut sizes = Vec::new();
@@ -169,8 +169,8 @@ impl Instantiation<'_> {
         let (Ok(Some(one)), Ok(Some(other))) = (one, other) else { return Ok(()) };
         for pair in one.ends.iter().zip(&other.ends) {
             if let (End::Composite(a), End::Composite(b)) = pair
-                && self.is_expandable(*a)
-                && self.is_expandable(*b)
+                && self.classes.is_expandable(*a)
+                && self.classes.is_expandable(*b)
             {
                 links.push((*a, *b));
             }
@@ -181,20 +181,20 @@ impl Instantiation<'_> {
     /// Gives one connector the components of another; `true` if it had not all of them. Expandable
     /// connectors inside are passed on to each other as well.
     fn pass_on(&mut self, from: NodeId, to: NodeId) -> bool {
-        let Ok(members) = self.members(from) else { return false };
+        let Ok(members) = self.classes.members(from) else { return false };
         let mut changed = false;
         for (name, state) in members {
             if matches!(state, MemberState::Absent) {
                 continue;
             }
-            let Some(declaration) = self.declaration_of(from, name) else { continue };
-            if self.declaration_of(to, name).is_none() {
+            let Some(declaration) = self.classes.tree.declaration_of(from, name) else { continue };
+            if self.classes.tree.declaration_of(to, name).is_none() {
                 self.add_member(to, (*declaration).clone());
                 changed = true;
             } else if let (Ok(Some(MemberState::Single(a))), Ok(Some(MemberState::Single(b)))) =
                 (self.member(from, name), self.member(to, name))
-                && self.is_expandable(a)
-                && self.is_expandable(b)
+                && self.classes.is_expandable(a)
+                && self.classes.is_expandable(b)
             {
                 changed |= self.pass_on(a, b);
             }
@@ -205,7 +205,7 @@ impl Instantiation<'_> {
     fn add_member(&mut self, node: NodeId, declaration: Declaration) {
         let name = declaration.name;
         let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
-        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
+        if let NodeKind::Composite(composite) = &mut self.classes.tree.nodes[node.0].kind
             && let Some(members) = &mut composite.members
         {
             members.insert(name, member);
@@ -224,9 +224,18 @@ impl Instantiation<'_> {
             let _ = self.complete(node);
         }
     }
+}
+
+impl Classes<'_> {
+    pub fn is_expandable(&self, node: NodeId) -> bool {
+        self.tree.scope_of(node).is_some_and(|scope| {
+            scope != ScopeId::TOP
+                && self.text(scope).restriction() == Restriction::ExpandableConnector
+        })
+    }
 
     /// Leaves out the components of expandable connectors that no connection names.
-    pub(super) fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
+    pub fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
         let expandable = self.is_expandable(node);
         let Ok(members) = self.members(node) else { return };
         for (name, state) in members {
@@ -236,7 +245,7 @@ impl Instantiation<'_> {
                 _ => continue,
             };
             if expandable && !nodes.iter().any(|one| self.is_connected(*one, connections)) {
-                self.set_state(node, name, MemberState::Absent);
+                self.tree.set_state(node, name, MemberState::Absent);
                 nodes.iter().for_each(|one| self.drop_leaves(*one, connections));
                 continue;
             }
@@ -247,7 +256,7 @@ impl Instantiation<'_> {
     }
 
     fn drop_leaves(&mut self, node: NodeId, connections: &mut Connections) {
-        if let NodeKind::Variable(_) = self.nodes[node.0].kind {
+        if let NodeKind::Variable(_) = self.tree.nodes[node.0].kind {
             connections.dropped.insert(node);
             return;
         }
@@ -262,26 +271,26 @@ impl Instantiation<'_> {
         }
     }
 
-    pub(in super::super) fn is_inside_expandable(&self, leaf: NodeId) -> bool {
-        let mut node = self.nodes[leaf.0].parent;
+    pub fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+        let mut node = self.tree.nodes[leaf.0].parent;
         while let Some(id) = node {
             if self.is_expandable(id) {
                 return true;
             }
-            node = self.nodes[id.0].parent;
+            node = self.tree.nodes[id.0].parent;
         }
         false
     }
 
     /// Whether a connection beyond expandable connectors names a scalar of an instance, or the instance has its own equations.
     fn is_connected(&mut self, node: NodeId, connections: &Connections) -> bool {
-        if let NodeKind::Variable(leaf) = &self.nodes[node.0].kind {
-            let count = self.variables[leaf.variable].0.len();
+        if let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind {
+            let count = self.tree.variables[leaf.variable].0.len();
             let bound = leaf.modifier.binding.is_some();
             return bound
                 || (0..count).any(|element| {
                     let set = connections.around(node, element);
-                    set.iter().any(|face| !self.is_inside_expandable(face.leaf))
+                    set.iter().any(|side| !self.is_inside_expandable(side.leaf))
                 });
         }
         let Ok(members) = self.members(node) else { return false };

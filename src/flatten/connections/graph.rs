@@ -1,41 +1,23 @@
 //! Overconstrained connections (MLS §9.4): a spanning tree of the connection graph says which
 //! connections of redundant records become equalities and which become `equalityConstraint`s.
 
-use super::super::FlatModel;
-use super::super::errors::INVALID_CONNECTION;
-use super::super::flat_expression::flat_reference;
-use super::super::instance::{NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::lookup::Type;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
-use super::ends::End;
-use super::sets::Connections;
-use crate::diag::Diagnostic;
-use crate::fault;
-use crate::name::{Ident, Name};
+use crate::flatten::ids::NodeId;
 use crate::source::Span;
-use crate::syntax::ast::{
-    Arguments, ComponentReference, Equation, EquationKind, Expression, ExpressionKind, Subscript,
-};
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
-/// The function that makes a record redundant.
-const EQUALITY_CONSTRAINT: &str = "equalityConstraint";
-
 /// A connection of two redundant records.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
-    nodes: (NodeId, NodeId),
-    outside: (bool, bool),
-    span: Span,
+pub struct Edge {
+    pub nodes: (NodeId, NodeId),
+    pub outside: (bool, bool),
+    pub span: Span,
 }
 
 /// The virtual connection graph.
 #[derive(Debug, Default)]
-pub(in super::super) struct Graph {
+pub struct Graph {
     nodes: IndexSet<NodeId>,
     branches: Vec<(NodeId, NodeId)>,
     edges: Vec<Edge>,
@@ -51,43 +33,37 @@ pub(in super::super) struct Graph {
 
 impl Graph {
     /// The redundant records that take part.
-    pub(in super::super) fn nodes(&self) -> impl Iterator<Item = NodeId> {
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> {
         self.nodes.iter().copied()
     }
 
-    pub(super) fn branch(&mut self, one: NodeId, other: NodeId) {
+    pub fn branch(&mut self, one: NodeId, other: NodeId) {
         self.nodes.extend([one, other]);
         self.branches.push((one, other));
     }
 
-    pub(super) fn root(&mut self, node: NodeId) {
+    pub fn root(&mut self, node: NodeId) {
         self.nodes.insert(node);
         self.definite.push(node);
     }
 
-    pub(super) fn potential_root(&mut self, node: NodeId, priority: i64) {
+    pub fn potential_root(&mut self, node: NodeId, priority: i64) {
         self.nodes.insert(node);
         self.potential.entry(node).or_insert(priority);
     }
 
-    pub(super) fn connect(
-        &mut self,
-        one: NodeId,
-        other: NodeId,
-        outside: (bool, bool),
-        span: Span,
-    ) {
+    pub fn connect(&mut self, one: NodeId, other: NodeId, outside: (bool, bool), span: Span) {
         self.nodes.extend([one, other]);
         self.edges.push(Edge { nodes: (one, other), outside, span });
     }
 
     /// Whether a node was chosen as the root of its tree.
-    pub(super) fn is_root(&self, node: NodeId) -> bool {
+    pub fn is_root(&self, node: NodeId) -> bool {
         self.roots.contains(&node)
     }
 
     /// Whether a node is nearer to the root than the node at the other end of its branch.
-    pub(super) fn is_rooted(&self, node: NodeId) -> bool {
+    pub fn is_rooted(&self, node: NodeId) -> bool {
         let other = self.branches.iter().find_map(|(a, b)| match node {
             node if node == *a => Some(*b),
             node if node == *b => Some(*a),
@@ -99,8 +75,13 @@ impl Graph {
         }
     }
 
+    /// The connections that the tree does not hold.
+    pub fn broken(&self) -> &[Edge] {
+        &self.broken
+    }
+
     /// Chooses the tree; returns the connections that it holds.
-    fn span(&mut self) -> Vec<Edge> {
+    pub fn span(&mut self) -> Vec<Edge> {
         let mut sets = Sets::new(self.nodes.len());
         let at = |nodes: &IndexSet<NodeId>, node: NodeId| nodes.get_index_of(&node).unwrap_or(0);
         for node in &self.definite {
@@ -186,103 +167,4 @@ impl Sets {
             self.rooted[one] |= self.rooted[other];
         }
     }
-}
-
-impl Instantiation<'_> {
-    /// Chooses the spanning tree and joins the records that it connects.
-    pub(super) fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
-        let kept = connections.graph.span();
-        for edge in kept {
-            let (one, other) = edge.nodes;
-            match self.scalars_of(one).zip(self.scalars_of(other)) {
-                Some((ones, others)) => {
-                    for (a, b) in ones.into_iter().zip(others) {
-                        self.pair(a, b, edge.outside, edge.span, connections)?;
-                    }
-                }
-                None => self.pair_members(one, other, edge.outside, edge.span, connections)?,
-            }
-        }
-        connections.close();
-        Ok(())
-    }
-
-    /// Whether the class of a component declares itself redundant.
-    pub(super) fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
-        let Some(class) = self.redundant_class(node) else { return Ok(false) };
-        Ok(self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?.is_some())
-    }
-
-    /// The class of a record or of a variable, which may be redundant.
-    fn redundant_class(&self, node: NodeId) -> Option<ScopeId> {
-        match &self.nodes[node.0].kind {
-            NodeKind::Composite(composite) => {
-                let class = composite.class;
-                (!composite.connector && self.is_record(class)).then_some(class)
-            }
-            NodeKind::Variable(leaf) => leaf.class.filter(|_| !leaf.connector),
-        }
-    }
-
-    /// The scalars of a variable; `None` for an instance with components.
-    fn scalars_of(&self, node: NodeId) -> Option<Vec<End>> {
-        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return None };
-        let count = self.variables[leaf.variable].0.len();
-        Some((0..count).map(|element| End::Scalar(node, element)).collect())
-    }
-
-    /// `0 = equalityConstraint(a, b)` for every connection outside the tree.
-    pub(super) fn add_constraint_equations(
-        &mut self,
-        connections: &Connections,
-        model: &mut FlatModel,
-    ) -> Result<(), Diagnostic> {
-        for edge in &connections.graph.broken {
-            let equation = self.constraint_equation(edge)?;
-            model.equations.push(equation);
-        }
-        Ok(())
-    }
-
-    fn constraint_equation(&mut self, edge: &Edge) -> Result<Equation, Diagnostic> {
-        let span = edge.span;
-        let class = self.redundant_class(edge.nodes.0).unwrap_or(ScopeId::TOP);
-        let invalid = || {
-            fault!(INVALID_CONNECTION, "`{EQUALITY_CONSTRAINT}` of this record is not a function")
-                .at(span)
-        };
-        let nested = self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?;
-        let Some(Type::Class(scope)) = nested.map(|nested| self.instance(&nested)).transpose()?
-        else {
-            return Err(invalid());
-        };
-        let name = self.function(scope)?.ok_or_else(invalid)?;
-        let size = self
-            .functions
-            .get(&name)
-            .and_then(|function| function.as_ref())
-            .and_then(|function| function.outputs.first()?.dims.first().cloned());
-        let Some(Subscript::Index(size)) = size else { return Err(invalid()) };
-        let flat = self.flat_scope();
-        let record = |this: &mut Self, node: NodeId| {
-            let reference = flat_reference(&this.nodes[node.0].path, span);
-            this.resolve(
-                &Expression::new(ExpressionKind::Reference(reference), span),
-                flat,
-                &Local::default(),
-            )
-        };
-        let positional = vec![record(self, edge.nodes.0)?, record(self, edge.nodes.1)?];
-        let left = call(&name, positional, span);
-        let right = call(&Name::parse("zeros"), vec![size], span);
-        let kind = EquationKind::Equal { left, right };
-        Ok(Equation { kind, comment: Default::default(), span })
-    }
-}
-
-/// A call with positional arguments.
-pub(super) fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
-    let function = ComponentReference::from_name(name, span);
-    let arguments = Box::new(Arguments { positional, ..Arguments::default() });
-    Expression::new(ExpressionKind::Call { function, arguments }, span)
 }

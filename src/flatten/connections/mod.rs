@@ -1,6 +1,6 @@
 //! Connections (MLS ch. 9): connection sets over the whole instance tree become equations.
 //!
-//! Each scalar of a connector has two faces: the inside one, seen by the instance that holds the
+//! Each scalar of a connector has two sides: the inside one, seen by the instance that holds the
 //! component with the connector, and the outside one, seen by that component's own connections
 //! (MLS §9.1.2). Potentials of a set are equal, flows sum to zero, a flow that no connection sees
 //! from the inside is zero, and streams mix (ch. 15). Because the sets are formed over the whole
@@ -8,12 +8,16 @@
 //! as in the connections made inside that component.
 
 mod collect;
+pub mod end;
 mod ends;
 mod expandable;
-mod graph;
+pub mod graph;
 mod operators;
-mod sets;
+mod overconstrained;
+mod pairs;
+mod set_equations;
+pub mod sets;
 mod stream;
 
-pub(super) use sets::{Connections, Edge, Face};
-pub(super) use stream::arranged;
+pub use sets::ScalarPair;
+pub use stream::arranged;

@@ -2,19 +2,19 @@
 //! `cardinality` (MLS §3.7.4.3), `Connections.isRoot` and `Connections.rooted` (MLS §9.4.1).
 
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
-use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use std::rc::Rc;
 
 impl Instantiation<'_> {
     /// The value of such an operator; `None` for any other call.
-    pub(in super::super) fn connection_operator(
+    pub fn connection_operator(
         &mut self,
         span: Span,
         function: &ComponentReference,

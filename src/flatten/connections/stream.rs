@@ -2,13 +2,19 @@
 
 use super::super::FlatModel;
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::ends::{End, Ends};
-use super::graph::call;
-use super::sets::{Connections, Face};
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::end::Ends;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::connections::sets::ConnectorSide;
+use crate::flatten::flat_expression::call;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -25,7 +31,7 @@ const MAX_LEVELS: usize = 50;
 
 impl Instantiation<'_> {
     /// The values of `inStream` or `actualStream` of what a reference names, as one expression.
-    pub(super) fn stream_value(
+    pub fn stream_value(
         &mut self,
         ends: &Ends,
         actual: bool,
@@ -37,8 +43,8 @@ impl Instantiation<'_> {
             let End::Scalar(leaf, element) = *end else {
                 return Err(fault!(INVALID_CONNECTION, "expected a stream variable").at(span));
             };
-            if self.connection_of(leaf) != Some(ConnectionPrefix::Stream) {
-                let path = &self.nodes[leaf.0].path;
+            if self.classes.tree.connection_of(leaf) != Some(ConnectionPrefix::Stream) {
+                let path = &self.classes.tree.nodes[leaf.0].path;
                 return Err(
                     fault!(INVALID_CONNECTION, "`{path}` is not a stream variable").at(span)
                 );
@@ -46,52 +52,10 @@ impl Instantiation<'_> {
             let inside = self.in_stream(leaf, element, connections, span, 0)?;
             values.push(match actual {
                 false => inside,
-                true => self.actual_stream(leaf, element, inside, span)?,
+                true => self.classes.actual_stream(leaf, element, inside, span)?,
             });
         }
         Ok(arranged(values, &ends.dims, span))
-    }
-
-    fn actual_stream(
-        &mut self,
-        leaf: NodeId,
-        element: usize,
-        inside: Expression,
-        span: Span,
-    ) -> Result<Expression, Diagnostic> {
-        let flow = self.flow_beside(leaf, span)?;
-        let zero = Expression::new(ExpressionKind::Real(0.0), span);
-        let condition = binary(BinaryOperator::Greater, self.scalar(flow, 0, span), zero);
-        let own = self.scalar(leaf, element, span);
-        let choice =
-            ExpressionKind::If { branches: vec![(condition, inside)], otherwise: Box::new(own) };
-        let order = Expression::new(ExpressionKind::Integer(0), span);
-        Ok(call(&Name::parse("smooth"), vec![order, Expression::new(choice, span)], span))
-    }
-
-    /// The flow variable of the connector that holds a stream variable.
-    fn flow_beside(&mut self, leaf: NodeId, span: Span) -> Result<NodeId, Diagnostic> {
-        let path = self.nodes[leaf.0].path.clone();
-        let missing = || {
-            fault!(
-                INVALID_CONNECTION,
-                "the connector of `{path}` does not have exactly one flow variable"
-            )
-            .at(span)
-        };
-        let holder = self.nodes[leaf.0].parent.ok_or_else(missing)?;
-        let mut flows = Vec::new();
-        for (_, state) in self.members(holder)? {
-            if let MemberState::Single(one) = state
-                && self.connection_of(one) == Some(ConnectionPrefix::Flow)
-            {
-                flows.push(one);
-            }
-        }
-        match flows.as_slice() {
-            [flow] => Ok(*flow),
-            _ => Err(missing()),
-        }
     }
 
     /// What would flow in through a connector (MLS §15.2).
@@ -103,11 +67,11 @@ impl Instantiation<'_> {
         span: Span,
         level: usize,
     ) -> Result<Expression, Diagnostic> {
-        let own = Face { leaf, element, outside: false };
-        let others: Vec<Face> =
-            connections.set_of(own).into_iter().filter(|face| *face != own).collect();
+        let own = ConnectorSide { leaf, element, outside: false };
+        let others: Vec<ConnectorSide> =
+            connections.set_of(own).into_iter().filter(|side| *side != own).collect();
         if others.is_empty() {
-            return Ok(self.scalar(leaf, element, span));
+            return Ok(self.classes.tree.scalar(leaf, element, span));
         }
         self.mixture(&others, connections, span, level)
     }
@@ -115,7 +79,7 @@ impl Instantiation<'_> {
     /// The mixture of what flows out of connectors into their connection set.
     fn mixture(
         &mut self,
-        faces: &[Face],
+        sides: &[ConnectorSide],
         connections: &Connections,
         span: Span,
         level: usize,
@@ -123,18 +87,18 @@ impl Instantiation<'_> {
         if level > MAX_LEVELS {
             return Err(fault!(INVALID_CONNECTION, "the stream connections form a cycle").at(span));
         }
-        if let [face] = faces {
-            return self.outflow(*face, connections, span, level);
+        if let [side] = sides {
+            return self.outflow(*side, connections, span, level);
         }
         let (mut numerator, mut denominator): (Option<Expression>, Option<Expression>) =
             (None, None);
-        for face in faces {
-            let flow = self.flow_beside(face.leaf, span)?;
-            if self.never_flows_out(flow, face.outside) {
+        for side in sides {
+            let flow = self.classes.flow_beside(side.leaf, span)?;
+            if self.never_flows_out(flow, side.outside) {
                 continue;
             }
-            let weight = self.weight(flow, face.outside, span);
-            let value = self.outflow(*face, connections, span, level)?;
+            let weight = self.classes.tree.weight(flow, side.outside, span);
+            let value = self.outflow(*side, connections, span, level)?;
             let product = binary(BinaryOperator::Multiply, weight.clone(), value);
             numerator = Some(sum(numerator, product));
             denominator = Some(sum(denominator, weight));
@@ -144,26 +108,110 @@ impl Instantiation<'_> {
                 Ok(binary(BinaryOperator::Divide, numerator, denominator))
             }
             // Nothing ever flows out: any of them is as good (MLS §15.2).
-            _ => self.outflow(faces[0], connections, span, level),
+            _ => self.outflow(sides[0], connections, span, level),
         }
     }
 
-    /// What flows from a face into its set: the component's own value, or, through a connector of
+    /// What flows from a side into its set: the component's own value, or, through a connector of
     /// the instance, what comes in from outside.
     fn outflow(
         &mut self,
-        face: Face,
+        side: ConnectorSide,
         connections: &Connections,
         span: Span,
         level: usize,
     ) -> Result<Expression, Diagnostic> {
-        if face.outside {
-            self.in_stream(face.leaf, face.element, connections, span, level + 1)
+        if side.outside {
+            self.in_stream(side.leaf, side.element, connections, span, level + 1)
         } else {
-            Ok(self.scalar(face.leaf, face.element, span))
+            Ok(self.classes.tree.scalar(side.leaf, side.element, span))
         }
     }
 
+    /// Whether `min` or `max` of the flow say that nothing leaves the component here.
+    fn never_flows_out(&mut self, flow: NodeId, outside: bool) -> bool {
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[flow.0].kind else { return false };
+        let attribute = Ident::new(if outside { "max" } else { "min" });
+        let Some(bound) = leaf.modifier.elements.get(&attribute) else { return false };
+        let Some(bound) = bound.binding.clone() else { return false };
+        let Some(value) = bound.value else { return false };
+        let read = std::mem::take(&mut self.values.read);
+        let known = self.known_value(&value, bound.context);
+        self.values.read = read;
+        let number = match known {
+            Ok(Value::Real(number)) => number,
+            Ok(Value::Integer(number)) => number as f64,
+            _ => return false,
+        };
+        if outside { number <= 0.0 } else { number >= 0.0 }
+    }
+
+    /// The equations of the connectors of an instance: what leaves through them is the mixture of
+    /// all others (MLS §15.2).
+    pub fn add_stream_equations(
+        &mut self,
+        sides: &[ConnectorSide],
+        connections: &Connections,
+        span: Span,
+        model: &mut FlatModel,
+    ) -> Result<(), Diagnostic> {
+        for side in sides.iter().filter(|side| side.outside) {
+            let others: Vec<ConnectorSide> =
+                sides.iter().copied().filter(|other| other != side).collect();
+            let left = self.classes.tree.scalar(side.leaf, side.element, span);
+            let right = self.mixture(&others, connections, span, 0)?;
+            let kind = EquationKind::Equal { left, right };
+            model.equations.push(Equation { kind, comment: Default::default(), span });
+        }
+        Ok(())
+    }
+}
+
+impl Classes<'_> {
+    fn actual_stream(
+        &mut self,
+        leaf: NodeId,
+        element: usize,
+        inside: Expression,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let flow = self.flow_beside(leaf, span)?;
+        let zero = Expression::new(ExpressionKind::Real(0.0), span);
+        let condition = binary(BinaryOperator::Greater, self.tree.scalar(flow, 0, span), zero);
+        let own = self.tree.scalar(leaf, element, span);
+        let choice =
+            ExpressionKind::If { branches: vec![(condition, inside)], otherwise: Box::new(own) };
+        let order = Expression::new(ExpressionKind::Integer(0), span);
+        Ok(call(&Name::parse("smooth"), vec![order, Expression::new(choice, span)], span))
+    }
+
+    /// The flow variable of the connector that holds a stream variable.
+    fn flow_beside(&mut self, leaf: NodeId, span: Span) -> Result<NodeId, Diagnostic> {
+        let path = self.tree.nodes[leaf.0].path.clone();
+        let missing = || {
+            fault!(
+                INVALID_CONNECTION,
+                "the connector of `{path}` does not have exactly one flow variable"
+            )
+            .at(span)
+        };
+        let holder = self.tree.nodes[leaf.0].parent.ok_or_else(missing)?;
+        let mut flows = Vec::new();
+        for (_, state) in self.members(holder)? {
+            if let MemberState::Single(one) = state
+                && self.tree.connection_of(one) == Some(ConnectionPrefix::Flow)
+            {
+                flows.push(one);
+            }
+        }
+        match flows.as_slice() {
+            [flow] => Ok(*flow),
+            _ => Err(missing()),
+        }
+    }
+}
+
+impl Tree {
     /// max(flow into the set, ε), without events.
     fn weight(&self, flow: NodeId, outside: bool, span: Span) -> Expression {
         let mut out = self.scalar(flow, 0, span);
@@ -175,43 +223,6 @@ impl Instantiation<'_> {
         let small = Expression::new(ExpressionKind::Real(SMALL_FLOW), span);
         let largest = call(&Name::parse("max"), vec![out, small], span);
         call(&Name::parse("noEvent"), vec![largest], span)
-    }
-
-    /// Whether `min` or `max` of the flow say that nothing leaves the component here.
-    fn never_flows_out(&mut self, flow: NodeId, outside: bool) -> bool {
-        let NodeKind::Variable(leaf) = &self.nodes[flow.0].kind else { return false };
-        let attribute = Ident::new(if outside { "max" } else { "min" });
-        let Some(bound) = leaf.modifier.elements.get(&attribute) else { return false };
-        let Some(bound) = bound.binding.clone() else { return false };
-        let Some(value) = bound.value else { return false };
-        let read = std::mem::take(&mut self.read);
-        let known = self.known_value(&value, bound.context);
-        self.read = read;
-        let number = match known {
-            Ok(Value::Real(number)) => number,
-            Ok(Value::Integer(number)) => number as f64,
-            _ => return false,
-        };
-        if outside { number <= 0.0 } else { number >= 0.0 }
-    }
-
-    /// The equations of the connectors of an instance: what leaves through them is the mixture of
-    /// all others (MLS §15.2).
-    pub(super) fn add_stream_equations(
-        &mut self,
-        faces: &[Face],
-        connections: &Connections,
-        span: Span,
-        model: &mut FlatModel,
-    ) -> Result<(), Diagnostic> {
-        for face in faces.iter().filter(|face| face.outside) {
-            let others: Vec<Face> = faces.iter().copied().filter(|other| other != face).collect();
-            let left = self.scalar(face.leaf, face.element, span);
-            let right = self.mixture(&others, connections, span, 0)?;
-            let kind = EquationKind::Equal { left, right };
-            model.equations.push(Equation { kind, comment: Default::default(), span });
-        }
-        Ok(())
     }
 }
 
@@ -229,11 +240,7 @@ fn sum(so_far: Option<Expression>, term: Expression) -> Expression {
 }
 
 /// Values as an array of these sizes; a single one without dimensions.
-pub(in super::super) fn arranged(
-    mut values: Vec<Expression>,
-    dims: &[usize],
-    span: Span,
-) -> Expression {
+pub fn arranged(mut values: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
     let Some((size, inner)) = dims.split_first() else {
         return match values.len() {
             1 => values.remove(0),

@@ -1,7 +1,7 @@
 //! A class is read: its elements, and for the package of a folder the names of what lies there.
 
 use super::files::{Entry, Folder};
-use super::habits::{self, Habit};
+use super::legacy::{self, LegacyConstruct};
 use super::{Class, ClassId, Declared, Library, Origin, Slot};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 const MAX_FOLDERS: usize = 20;
 
 impl Library {
-    /// A class, read now if it was not; nobody is told of its problems.
+    /// A class, read now if it was not; its problems are not reported.
     pub(super) fn read(&self, id: ClassId) -> &Class {
         let slot = self.slot(id);
         slot.class.get_or_init(|| self.read_slot(id, slot))
@@ -60,8 +60,8 @@ impl Library {
 
     fn add_elements(&self, id: ClassId, class: &mut Class, long: &LongClass) {
         class.problems.extend(long.sections.error().cloned());
-        for (habit, span) in habits::of_sections(&long.sections) {
-            self.habits.meet(class.name.first(), habit, span);
+        for (construct, span) in legacy::of_sections(&long.sections) {
+            self.legacy.meet(class.name.first(), construct, span);
         }
         for section in &long.sections {
             let Section::Elements { elements, .. } = section else { continue };
@@ -108,7 +108,7 @@ impl Library {
                     self.meet_file(&class.name, &entry, &file, None);
                     entry.classes(&folder.files, &file)
                 }
-                // Not needed yet, or told when it is needed that it cannot be read.
+                // Not needed yet, or reported as unreadable when it is needed.
                 None => vec![(name, Origin::File(folder.files.clone(), entry))],
             };
             for (name, origin) in found {
@@ -147,9 +147,9 @@ impl Library {
         let library = package.first();
         let span = file.classes.first().map_or(file.span, |class| class.name.span);
         match &file.within {
-            None => self.habits.meet(library, Habit::NoWithin, span),
+            None => self.legacy.meet(library, LegacyConstruct::NoWithin, span),
             Some(within) if within.node.parts != package.parts => {
-                self.habits.meet(library, Habit::OtherWithin, within.span);
+                self.legacy.meet(library, LegacyConstruct::OtherWithin, within.span);
             }
             Some(_) => {}
         }
@@ -185,8 +185,9 @@ impl Library {
         }
         let span = file.classes.first().map_or(file.span, |class| class.name.span);
         let is_folder = entry.folder.is_some();
-        let habit = if is_folder { Habit::FolderName } else { Habit::FileName };
-        self.habits.meet(library, habit, span);
+        let construct =
+            if is_folder { LegacyConstruct::FolderName } else { LegacyConstruct::FileName };
+        self.legacy.meet(library, construct, span);
     }
 }
 

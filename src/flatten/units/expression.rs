@@ -12,7 +12,7 @@ use crate::units::Dimension;
 const SECOND: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0]);
 
 /// What an operator compares, as messages call it; `None` if its operands may differ.
-pub(super) fn compared(operator: BinaryOperator) -> Option<&'static str> {
+pub fn compared(operator: BinaryOperator) -> Option<&'static str> {
     use BinaryOperator as B;
     match operator {
         B::Add | B::Subtract | B::ElementwiseAdd | B::ElementwiseSubtract => {
@@ -27,12 +27,12 @@ pub(super) fn compared(operator: BinaryOperator) -> Option<&'static str> {
 
 impl Units {
     /// That of a variable. `time` has none: ramps are written `slope*time` with the unit of the value.
-    pub(super) fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
+    pub fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
         self.known.get(path(reference).as_str()).copied()
     }
 
     /// The dimension, where the units of all that matters are known.
-    pub(super) fn of_expression(&self, e: &Expression) -> Option<Dimension> {
+    pub fn of_expression(&self, e: &Expression) -> Option<Dimension> {
         match &e.kind {
             ExpressionKind::Reference(reference) => self.of_reference(reference),
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => None,

@@ -7,10 +7,10 @@ mod expression;
 
 use super::balance::path;
 use super::errors::INCONSISTENT_UNITS;
-use super::instantiation::Instantiation;
 use super::{FlatModel, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::lookup::classes::Classes;
 use crate::name::Ident;
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::{
@@ -26,7 +26,8 @@ const MAX_WARNINGS: usize = 100;
 
 /// What does not fit, each place once.
 fn check(model: &FlatModel) -> Vec<Diagnostic> {
-    let mut walk = Walk { units: Units::of(model), told: FxHashSet::default(), found: Vec::new() };
+    let mut walk =
+        Walk { units: Units::of(model), reported: FxHashSet::default(), found: Vec::new() };
     if walk.units.known.is_empty() {
         return Vec::new();
     }
@@ -46,21 +47,21 @@ fn check(model: &FlatModel) -> Vec<Diagnostic> {
     walk.found
 }
 
-impl Instantiation<'_> {
+impl Classes<'_> {
     /// What does not fit; of an old library, only the first finding.
-    pub(super) fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
+    pub fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
         let found = check(model);
         if found.is_empty() {
             return found;
         }
-        let texts = self.scopes.iter().filter_map(|scope| scope.text.as_ref());
+        let classes = self.scopes.iter().filter_map(|scope| scope.text.as_ref());
         let library_of: FxHashMap<SourceId, Ident> =
-            texts.filter_map(|text| Some((text.span().source, text.name.first()?))).collect();
-        let mut told = FxHashSet::default();
+            classes.filter_map(|text| Some((text.span().source, text.name.first()?))).collect();
+        let mut reported = FxHashSet::default();
         let mut is_told = |warning: &Diagnostic| {
             let source = warning.labels.first().map(|label| label.span.source);
             let library = source.and_then(|source| library_of.get(&source).copied());
-            library.is_none_or(|one| !self.library.is_old(one) || told.insert(one))
+            library.is_none_or(|one| !self.library.is_old(one) || reported.insert(one))
         };
         found.into_iter().filter(|one| is_told(one)).collect()
     }
@@ -87,7 +88,7 @@ impl Units {
 
 struct Walk {
     units: Units,
-    told: FxHashSet<Span>,
+    reported: FxHashSet<Span>,
     found: Vec<Diagnostic>,
 }
 
@@ -103,7 +104,7 @@ impl Walk {
         if let (Some(one), Some(other)) = (one, other)
             && one != other
         {
-            self.tell(
+            self.warn(
                 format!("`{name}` has the dimension of `{one}`, but its value that of `{other}`"),
                 span,
             );
@@ -116,15 +117,15 @@ impl Walk {
         if let (Some(one), Some(other)) = both
             && one != other
         {
-            self.tell(
+            self.warn(
                 format!("the {sides} have different dimensions, those of `{one}` and `{other}`"),
                 span,
             );
         }
     }
 
-    fn tell(&mut self, message: String, span: Span) {
-        if self.found.len() < MAX_WARNINGS && self.told.insert(span) {
+    fn warn(&mut self, message: String, span: Span) {
+        if self.found.len() < MAX_WARNINGS && self.reported.insert(span) {
             self.found.push(fault!(INCONSISTENT_UNITS, "{message}").at(span).warning());
         }
     }

@@ -321,7 +321,9 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     for k in elites..genomes.len() {
         let genome = genomes.row_mut(k);
         let mutated = match (&own, operator.function.clone()) {
-            (Some(own), _) => own.mutate(Child { genome, genes: &genes, rate, course }, &mut draws.rng),
+            (Some(own), _) => {
+                own.mutate(Child { genome, genes: &genes, rate, course }, &mut draws.rng)
+            }
             (None, Some(function)) => mutation::mutate_by(
                 &mut |inputs| operator.call(session, &function, n_genes, inputs),
                 genome,

@@ -1,12 +1,11 @@
-//! Classes (MLS §A.2.1, A.2.2).
+//! Classes and all that they contain (MLS §A.2.1 to §A.2.6): components, modifications, equations
+//! and statements. Any of them may carry an annotation, whose modifications may redeclare classes:
+//! one recursive tree.
 
-use super::{
-    Argument, ComponentClause, ComponentReference, Equation, Expression, Statement, Subscript,
-    TypePrefixes, TypeSpecifier,
-};
+use super::{ComponentReference, Expression, ForIndex, Subscript};
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
-use crate::syntax::lazy::Sections;
+use crate::syntax::lazy::Lazy;
 use std::sync::Arc;
 
 /// A whole `.mo` file.
@@ -19,6 +18,10 @@ pub struct StoredDefinition {
     /// The whole text.
     pub span: Span,
 }
+
+/// The sections of a long class. Those of a class of a lazily read file are read at the first
+/// access.
+pub type Sections = Lazy<Section>;
 
 /// `class-definition`.
 #[derive(Debug, Clone, PartialEq)]
@@ -328,4 +331,269 @@ pub struct Comment {
     pub text: Option<Arc<str>>,
     /// The annotation.
     pub annotation: Option<Annotation>,
+}
+
+/// `parameter Real x[3](start = 1) = y if c "text", z;`
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentClause {
+    /// `redeclare final inner outer replaceable`.
+    pub prefixes: ElementPrefixes,
+    /// `flow`, `parameter`, `input`, ….
+    pub type_prefixes: TypePrefixes,
+    /// The type.
+    pub type_specifier: TypeSpecifier,
+    /// Dimensions written behind the type.
+    pub subscripts: Vec<Subscript>,
+    /// The components.
+    pub components: Vec<ComponentDeclaration>,
+    /// `constrainedby …`.
+    pub constraint: Option<Constraint>,
+    /// The whole clause.
+    pub span: Span,
+}
+
+/// `type-prefix`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TypePrefixes {
+    /// `flow` or `stream`.
+    pub connection: Option<ConnectionPrefix>,
+    /// `constant`, `parameter` or `discrete`.
+    pub variability: Option<VariabilityPrefix>,
+    /// `input` or `output`.
+    pub causality: Option<CausalityPrefix>,
+}
+
+/// `flow` or `stream`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConnectionPrefix {
+    /// Sums to zero in a connection set.
+    Flow,
+    /// Carried by a flow (MLS ch. 15).
+    Stream,
+}
+
+/// The written variability of a component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum VariabilityPrefix {
+    /// Never changes.
+    Constant,
+    /// Constant during a simulation.
+    Parameter,
+    /// Changes at events only.
+    Discrete,
+}
+
+/// `input` or `output`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CausalityPrefix {
+    /// Known from outside.
+    Input,
+    /// Determined inside.
+    Output,
+}
+
+/// A type's name with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TypeSpecifier {
+    /// The name, global if it begins with a dot.
+    pub name: Name,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// One component of a clause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentDeclaration {
+    /// Its name.
+    pub name: Spanned<Ident>,
+    /// Dimensions written behind the name.
+    pub subscripts: Vec<Subscript>,
+    /// `(…) = e`.
+    pub modification: Option<Modification>,
+    /// `if c`.
+    pub condition: Option<Expression>,
+    /// String and annotation.
+    pub comment: Comment,
+    /// From the name to the end of the comment.
+    pub span: Span,
+}
+
+/// `(a = 1, b(c = 2)) = e`: arguments, a binding, or both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modification {
+    /// What stands in the parentheses, in order.
+    pub arguments: Vec<Argument>,
+    /// What stands behind `=` or `:=`.
+    pub binding: Option<Binding>,
+    /// The whole modification.
+    pub span: Span,
+}
+
+/// What stands behind the `=` of a modification.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Binding {
+    /// `= e`
+    Expression(Expression),
+    /// `= break`: removes the binding (MLS §7.2.7).
+    Break(Span),
+}
+
+/// One argument of a class modification.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Argument {
+    /// `each final a.b(…) = e "text"`
+    Element(ElementModification),
+    /// `redeclare …` or `replaceable …`
+    Redeclaration(ElementRedeclaration),
+}
+
+/// `each final a.b(…) = e "text"`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementModification {
+    /// `each`
+    pub each: bool,
+    /// `final`
+    pub is_final: bool,
+    /// The element modified; dotted only in the old style `a.b = 1`.
+    pub name: Spanned<Name>,
+    /// What it is modified by.
+    pub modification: Option<Modification>,
+    /// The string behind it.
+    pub description: Option<Arc<str>>,
+    /// The whole argument.
+    pub span: Span,
+}
+
+/// `redeclare each final replaceable …`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementRedeclaration {
+    /// `each`
+    pub each: bool,
+    /// What is declared anew; its prefixes hold `redeclare`, `final` and `replaceable`.
+    pub element: RedeclaredElement,
+    /// The whole argument.
+    pub span: Span,
+}
+
+/// A class or a component (a clause with exactly one component).
+#[derive(Debug, Clone, PartialEq)]
+pub enum RedeclaredElement {
+    /// `redeclare package Medium = Water`
+    Class(Box<ClassElement>),
+    /// `redeclare Resistor r(R = 2)`
+    Component(Box<ComponentClause>),
+}
+
+/// An equation with its comment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equation {
+    /// What it says.
+    pub kind: EquationKind,
+    /// String and annotation.
+    pub comment: Comment,
+    /// The equation without its semicolon.
+    pub span: Span,
+}
+
+/// The forms of equations.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EquationKind {
+    /// `a = b`
+    Equal {
+        /// Left side.
+        left: Expression,
+        /// Right side.
+        right: Expression,
+    },
+    /// `if c then … elseif … else … end if`
+    If {
+        /// Conditions with their equations.
+        branches: Vec<(Expression, Vec<Equation>)>,
+        /// Equations behind `else`; empty without it.
+        otherwise: Vec<Equation>,
+    },
+    /// `for i in 1:n loop … end for`
+    For {
+        /// Loop variables.
+        indices: Vec<ForIndex>,
+        /// The equations.
+        body: Vec<Equation>,
+    },
+    /// `connect(a, b)`
+    Connect {
+        /// First connector.
+        left: ComponentReference,
+        /// Second connector.
+        right: ComponentReference,
+    },
+    /// `when c then … elsewhen … end when`
+    When {
+        /// Conditions with their equations.
+        branches: Vec<(Expression, Vec<Equation>)>,
+    },
+    /// A call without a value: `assert(…)`, `terminate(…)`, `reinit(…)`, `Connections.root(…)`;
+    /// always an [`ExpressionKind::Call`](super::ExpressionKind::Call).
+    Call(Expression),
+}
+
+/// A statement with its comment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// What it does.
+    pub kind: StatementKind,
+    /// String and annotation.
+    pub comment: Comment,
+    /// The statement without its terminator.
+    pub span: Span,
+}
+
+/// The forms of statements.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StatementKind {
+    /// `a := e`
+    Assign {
+        /// Left side.
+        target: ComponentReference,
+        /// Right side.
+        value: Expression,
+    },
+    /// `(a, , b) := f(x)`
+    MultiAssign {
+        /// Left sides; `None` where an output is not wanted.
+        targets: Vec<Option<ComponentReference>>,
+        /// The call; in a script any expression, so that `(a, b) := (1, 2)` can be refused by name.
+        value: Expression,
+    },
+    /// A call whose value is not used.
+    Call(Expression),
+    /// `if c then … end if`
+    If {
+        /// Conditions with their statements.
+        branches: Vec<(Expression, Vec<Statement>)>,
+        /// Statements behind `else`; empty without it.
+        otherwise: Vec<Statement>,
+    },
+    /// `for i in 1:n loop … end for`
+    For {
+        /// Loop variables.
+        indices: Vec<ForIndex>,
+        /// The statements.
+        body: Vec<Statement>,
+    },
+    /// `while c loop … end while`
+    While {
+        /// Condition.
+        condition: Expression,
+        /// The statements.
+        body: Vec<Statement>,
+    },
+    /// `when c then … elsewhen … end when`
+    When {
+        /// Conditions with their statements.
+        branches: Vec<(Expression, Vec<Statement>)>,
+    },
+    /// `break`
+    Break,
+    /// `return`
+    Return,
 }

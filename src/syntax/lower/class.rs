@@ -1,17 +1,21 @@
-//! Classes (MLS §A.2.1–A.2.3).
+//! Classes, component clauses and modifications (MLS §A.2.1–A.2.5), which contain one another.
 
 use super::{
-    Lowered, annotation, comment, component, description_string, equation, expression, ident,
-    modification, name, statement, string,
+    Lowered, annotation, comment, description_string, equation, expression, ident, name, statement,
+    string,
 };
+use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Spanned;
 use crate::syntax::ast::{
-    ClassDefinition, ClassElement, ClassSpecifier, Constraint, DerivativeClass, Deselection,
-    Element, ElementPrefixes, EnumerationClass, EnumerationLiteral, Extends, External, Import,
-    ImportKind, LongClass, Purity, Restriction, Section, ShortClass, StoredDefinition, Visibility,
+    Argument, Binding, CausalityPrefix, ClassDefinition, ClassElement, ClassSpecifier,
+    ComponentClause, ComponentDeclaration, ConnectionPrefix, Constraint, DerivativeClass,
+    Deselection, Element, ElementModification, ElementPrefixes, ElementRedeclaration,
+    EnumerationClass, EnumerationLiteral, Extends, External, Import, ImportKind, LongClass,
+    Modification, Purity, RedeclaredElement, Restriction, Section, Sections, ShortClass,
+    StoredDefinition, Subscript, TypePrefixes, TypeSpecifier, VariabilityPrefix, Visibility,
 };
-use crate::syntax::lazy::Sections;
+use crate::syntax::errors::SYNTAX_ERROR;
 use crate::syntax::parser::{Nodes, Rule};
 use std::sync::Arc;
 
@@ -91,15 +95,15 @@ fn class_specifier(parts: &mut Nodes<'_>, name: Spanned<Ident>) -> Lowered<Class
     Ok(match rule {
         Rule::long_class_specifier => ClassSpecifier::Long(long_class(inside, name, false)?),
         Rule::short_class_specifier => ClassSpecifier::Short(ShortClass {
-            prefixes: component::type_prefixes(&mut inside)?,
-            target: component::type_specifier(&mut inside),
+            prefixes: type_prefixes(&mut inside)?,
+            target: type_specifier(&mut inside),
             subscripts: expression::optional_subscripts(&mut inside)?,
-            modification: modification::class_modification(&mut inside)?,
+            modification: class_modification(&mut inside)?,
             comment: comment(&mut inside)?,
         }),
         Rule::enumeration_specifier => ClassSpecifier::Enumeration(enumeration(inside)?),
         Rule::der_class_specifier => ClassSpecifier::Derivative(DerivativeClass {
-            target: component::type_specifier(&mut inside),
+            target: type_specifier(&mut inside),
             variables: idents(&mut inside),
             comment: comment(&mut inside)?,
         }),
@@ -128,7 +132,7 @@ fn enumeration(mut inside: Nodes<'_>) -> Lowered<EnumerationClass> {
 }
 
 fn long_class(mut inside: Nodes<'_>, name: Spanned<Ident>, extends: bool) -> Lowered<LongClass> {
-    let modification = modification::class_modification(&mut inside)?;
+    let modification = class_modification(&mut inside)?;
     let description = description_string(&mut inside);
     let composition = inside.enter(Rule::composition);
     let sections = match inside.place.unread(name.span) {
@@ -267,9 +271,9 @@ fn element(list: &mut Nodes<'_>) -> Lowered<Element> {
 
 fn declared_element(mut inside: Nodes<'_>) -> Lowered<Element> {
     let mut prefixes = ElementPrefixes::default();
-    while component::element_prefix(&mut inside, &mut prefixes) {}
+    while element_prefix(&mut inside, &mut prefixes) {}
     let Some(class) = inside.try_enter(Rule::class_definition) else {
-        return component::clause(&mut inside, prefixes).map(Element::Component);
+        return component_clause(&mut inside, prefixes).map(Element::Component);
     };
     let class = definition(class, false)?;
     Ok(Element::Class(ClassElement { prefixes, class, constraint: constraint(&mut inside)? }))
@@ -298,13 +302,13 @@ pub(super) fn import(mut inside: Nodes<'_>) -> Lowered<Import> {
 }
 
 fn extends(mut inside: Nodes<'_>) -> Lowered<Extends> {
-    let base = component::type_specifier(&mut inside);
+    let base = type_specifier(&mut inside);
     let (mut arguments, mut deselected) = (Vec::new(), Vec::new());
     if let Some(mut list) = inside.try_enter(Rule::class_or_inheritance_modification) {
         while list.peek().is_some() {
             match list.try_enter(Rule::inheritance_modification) {
                 Some(deselection) => deselected.push(self::deselection(deselection)?),
-                None => arguments.push(modification::argument(&mut list)?),
+                None => arguments.push(argument(&mut list)?),
             }
         }
     }
@@ -330,9 +334,194 @@ fn deselection(mut inside: Nodes<'_>) -> Lowered<Deselection> {
 pub(super) fn constraint(nodes: &mut Nodes<'_>) -> Lowered<Option<Constraint>> {
     let Some(mut inside) = nodes.try_enter(Rule::constraining_clause) else { return Ok(None) };
     Ok(Some(Constraint {
-        target: component::type_specifier(&mut inside),
-        modification: modification::class_modification(&mut inside)?,
+        target: type_specifier(&mut inside),
+        modification: class_modification(&mut inside)?,
         comment: comment(&mut inside)?,
         span: inside.whole,
     }))
+}
+
+/// The component clause that the grammar promises next, and its constraining clause.
+pub(super) fn component_clause(
+    nodes: &mut Nodes<'_>,
+    prefixes: ElementPrefixes,
+) -> Lowered<ComponentClause> {
+    let mut parts = nodes.enter(Rule::component_clause);
+    let (type_prefixes, type_specifier, subscripts) = clause_head(&mut parts)?;
+    let mut components = Vec::new();
+    while let Some(inside) = parts.try_enter(Rule::component_declaration) {
+        components.push(component_declaration(inside)?);
+    }
+    let constraint = constraint(nodes)?;
+    Ok(ComponentClause {
+        prefixes,
+        type_prefixes,
+        type_specifier,
+        subscripts,
+        components,
+        constraint,
+        span: parts.whole,
+    })
+}
+
+/// Prefixes, type and dimensions.
+pub(super) fn clause_head(
+    parts: &mut Nodes<'_>,
+) -> Lowered<(TypePrefixes, TypeSpecifier, Vec<Subscript>)> {
+    let prefixes = type_prefixes(parts)?;
+    let specifier = type_specifier(parts);
+    Ok((prefixes, specifier, expression::optional_subscripts(parts)?))
+}
+
+/// The inside of a component declaration.
+pub(super) fn component_declaration(mut parts: Nodes<'_>) -> Lowered<ComponentDeclaration> {
+    let name = ident(&mut parts);
+    let subscripts = expression::optional_subscripts(&mut parts)?;
+    let modification = modification(&mut parts)?;
+    let condition = match parts.try_enter(Rule::condition_attribute) {
+        Some(mut attribute) => Some(expression::expression(&mut attribute)?),
+        None => None,
+    };
+    let comment = comment(&mut parts)?;
+    let span = parts.whole;
+    Ok(ComponentDeclaration { name, subscripts, modification, condition, comment, span })
+}
+
+/// The type specifier that the grammar promises next.
+pub(super) fn type_specifier(nodes: &mut Nodes<'_>) -> TypeSpecifier {
+    let mut inside = nodes.enter(Rule::type_specifier);
+    let name = name(&mut inside);
+    TypeSpecifier { name: name.node, span: name.span }
+}
+
+/// The type prefixes that come next, in any order, each kind once.
+pub(super) fn type_prefixes(nodes: &mut Nodes<'_>) -> Lowered<TypePrefixes> {
+    let mut prefixes = TypePrefixes::default();
+    while let Some(word) = nodes.take(Rule::type_prefix) {
+        let earlier = match word.as_str() {
+            "flow" => prefixes.connection.replace(ConnectionPrefix::Flow).is_some(),
+            "stream" => prefixes.connection.replace(ConnectionPrefix::Stream).is_some(),
+            "constant" => prefixes.variability.replace(VariabilityPrefix::Constant).is_some(),
+            "parameter" => prefixes.variability.replace(VariabilityPrefix::Parameter).is_some(),
+            "discrete" => prefixes.variability.replace(VariabilityPrefix::Discrete).is_some(),
+            "input" => prefixes.causality.replace(CausalityPrefix::Input).is_some(),
+            _ => prefixes.causality.replace(CausalityPrefix::Output).is_some(),
+        };
+        if earlier {
+            return Err(fault!(
+                SYNTAX_ERROR,
+                "`{}` cannot follow another prefix of the same kind",
+                word.as_str()
+            )
+            .help("keep one of `flow`, `stream`; one of `constant`, `parameter`, `discrete`; one of `input`, `output`")
+            .at(nodes.span(&word)));
+        }
+    }
+    Ok(prefixes)
+}
+
+/// Adds the element prefix that comes next; whether one does.
+pub(super) fn element_prefix(nodes: &mut Nodes<'_>, prefixes: &mut ElementPrefixes) -> bool {
+    let flag = match nodes.peek() {
+        Some(Rule::kw_redeclare) => &mut prefixes.redeclare,
+        Some(Rule::kw_final) => &mut prefixes.is_final,
+        Some(Rule::kw_inner) => &mut prefixes.inner,
+        Some(Rule::kw_outer) => &mut prefixes.outer,
+        Some(Rule::kw_replaceable) => &mut prefixes.replaceable,
+        _ => return false,
+    };
+    *flag = true;
+    nodes.next();
+    true
+}
+
+/// The modification that comes next, if one does.
+pub(super) fn modification(nodes: &mut Nodes<'_>) -> Lowered<Option<Modification>> {
+    let Some(mut parts) = nodes.try_enter(Rule::modification) else { return Ok(None) };
+    let arguments = class_modification(&mut parts)?;
+    let binding = match parts.take(Rule::kw_break) {
+        Some(keyword) => Some(Binding::Break(parts.span(&keyword))),
+        None => expression::try_expression(&mut parts)?.map(Binding::Expression),
+    };
+    Ok(Some(Modification { arguments, binding, span: parts.whole }))
+}
+
+/// The arguments of the class modification that comes next; empty if none does.
+pub(super) fn class_modification(nodes: &mut Nodes<'_>) -> Lowered<Vec<Argument>> {
+    match nodes.try_enter(Rule::class_modification) {
+        Some(mut list) => arguments(&mut list),
+        None => Ok(Vec::new()),
+    }
+}
+
+fn arguments(list: &mut Nodes<'_>) -> Lowered<Vec<Argument>> {
+    let mut all = Vec::new();
+    while list.peek().is_some() {
+        all.push(argument(list)?);
+    }
+    Ok(all)
+}
+
+/// The argument that the grammar promises next.
+pub(super) fn argument(list: &mut Nodes<'_>) -> Lowered<Argument> {
+    match list.try_enter(Rule::element_redeclaration) {
+        Some(parts) => redeclaration(parts).map(Argument::Redeclaration),
+        None => element_modification(list.enter(Rule::element_modification)).map(Argument::Element),
+    }
+}
+
+fn element_modification(mut parts: Nodes<'_>) -> Lowered<ElementModification> {
+    let (each, prefixes) = prefixes(&mut parts);
+    Ok(ElementModification {
+        each,
+        is_final: prefixes.is_final,
+        name: name(&mut parts),
+        modification: modification(&mut parts)?,
+        description: description_string(&mut parts),
+        span: parts.whole,
+    })
+}
+
+fn redeclaration(mut parts: Nodes<'_>) -> Lowered<ElementRedeclaration> {
+    let (each, prefixes) = prefixes(&mut parts);
+    let element = match parts.try_enter(Rule::short_class_definition) {
+        Some(inside) => RedeclaredElement::Class(Box::new(ClassElement {
+            prefixes,
+            class: definition(inside, false)?,
+            constraint: constraint(&mut parts)?,
+        })),
+        None => RedeclaredElement::Component(Box::new(redeclared_component(&mut parts, prefixes)?)),
+    };
+    Ok(ElementRedeclaration { each, element, span: parts.whole })
+}
+
+fn redeclared_component(
+    parts: &mut Nodes<'_>,
+    prefixes: ElementPrefixes,
+) -> Lowered<ComponentClause> {
+    let mut clause = parts.enter(Rule::component_clause1);
+    let (type_prefixes, type_specifier, subscripts) = clause_head(&mut clause)?;
+    let declaration = clause.enter(Rule::component_declaration1);
+    Ok(ComponentClause {
+        prefixes,
+        type_prefixes,
+        type_specifier,
+        subscripts,
+        components: vec![component_declaration(declaration)?],
+        constraint: constraint(parts)?,
+        span: clause.whole,
+    })
+}
+
+/// `each` and the prefixes of an argument, in any order.
+fn prefixes(parts: &mut Nodes<'_>) -> (bool, ElementPrefixes) {
+    let mut each = false;
+    let mut prefixes = ElementPrefixes::default();
+    loop {
+        if parts.skip(Rule::kw_each) {
+            each = true;
+        } else if !element_prefix(parts, &mut prefixes) {
+            return (each, prefixes);
+        }
+    }
 }

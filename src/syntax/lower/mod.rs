@@ -1,10 +1,8 @@
-//! From the grammar's nodes to the syntax tree, one file per file of the tree.
+//! From the grammar's nodes to the syntax tree.
 
 mod class;
-mod component;
 mod equation;
 mod expression;
-mod modification;
 mod script;
 mod statement;
 
@@ -29,7 +27,7 @@ pub(super) fn lone_expression(mut nodes: Nodes<'_>) -> Lowered<Expression> {
 /// `M(p = 2)` as the whole text.
 pub(super) fn class_with_modification(mut nodes: Nodes<'_>) -> Lowered<(Name, Vec<Argument>)> {
     let name = name(&mut nodes).node;
-    Ok((name, modification::class_modification(&mut nodes)?))
+    Ok((name, class::class_modification(&mut nodes)?))
 }
 
 fn ident_of<'i>(nodes: &Nodes<'i>, node: &Node<'i>) -> Spanned<Ident> {
@@ -104,6 +102,6 @@ fn comment(nodes: &mut Nodes<'_>) -> Lowered<Comment> {
 /// The annotation that comes next, if one does.
 fn annotation(nodes: &mut Nodes<'_>) -> Lowered<Option<Annotation>> {
     let Some(mut clause) = nodes.try_enter(Rule::annotation_clause) else { return Ok(None) };
-    let arguments = modification::class_modification(&mut clause)?;
+    let arguments = class::class_modification(&mut clause)?;
     Ok(Some(Annotation { arguments, span: clause.whole }))
 }

@@ -1,6 +1,6 @@
 //! Scripts: the top level of a `.mos` file.
 
-use super::{Lowered, class, comment, component, expression, statement};
+use super::{Lowered, class, comment, expression, statement};
 use crate::source::Spanned;
 use crate::syntax::ast::{
     ElementPrefixes, InteractiveKind, InteractiveStatement, Script, Statement,
@@ -30,8 +30,10 @@ fn kind(mut nodes: Nodes<'_>) -> Lowered<InteractiveKind> {
         Rule::import_clause => {
             class::import(inside).map(|import| InteractiveKind::Import(Box::new(import)))
         }
-        Rule::script_declaration => component::clause(&mut inside, ElementPrefixes::default())
-            .map(|clause| InteractiveKind::Declaration(Box::new(clause))),
+        Rule::script_declaration => {
+            class::component_clause(&mut inside, ElementPrefixes::default())
+                .map(|clause| InteractiveKind::Declaration(Box::new(clause)))
+        }
         _ => statement_or_expression(inside),
     }
 }

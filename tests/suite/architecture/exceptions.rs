@@ -3,9 +3,7 @@
 
 /// Folders with larger cycles of files than three: the sizes of these cycles, and what ties the
 /// files together.
-pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
-    ("flatten", &[16], "`Instantiation` is one structure for the tree, scopes, types and values"),
-];
+pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[];
 
 const PER_CASE: &str = "one arm for every case of the enumeration, each short";
 const ONE_TABLE: &str = "one row for every name";
@@ -22,15 +20,9 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("codegen/tape_builder.rs", "instruction", PER_CASE),
     ("codegen/translation.rs", "instruction", PER_CASE),
     ("eval/external.rs", "external", ONE_TABLE),
-    ("flatten/connections/collect.rs", "collect_equation", PER_CASE),
-    ("flatten/declarations.rs", "expand_type", IN_ORDER),
-    ("flatten/instantiation.rs", "variable", IN_ORDER),
-    ("flatten/paths.rs", "walk", PER_CASE),
-    ("flatten/resolve.rs", "resolve_kind", PER_CASE),
-    ("flatten/resolve.rs", "call", ONE_TABLE),
+    ("flatten/expressions/resolve.rs", "resolve_kind", PER_CASE),
     ("lower/build.rs", "build", IN_ORDER),
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
-    ("flatten/vectorization.rs", "vectorized", IN_ORDER),
     ("lower/inline.rs", "statement", PER_CASE),
     ("syntax/failure.rs", "described", PER_CASE),
     ("syntax/print/expression.rs", "expression", PER_CASE),

@@ -1,0 +1,23 @@
+//! The ends of a connection: connectors, or scalars of connectors.
+
+use crate::flatten::ids::NodeId;
+
+/// One connector, or one scalar of a connector that is a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum End {
+    /// A connector with components.
+    Composite(NodeId),
+    /// A scalar: the variable's node and the place of the element in it, from 0.
+    Scalar(NodeId, usize),
+}
+
+/// The connectors that a reference names.
+#[derive(Debug, Clone)]
+pub struct Ends {
+    /// Sizes of the dimensions that subscripts leave.
+    pub dims: Vec<usize>,
+    /// One connector for each, the last index fastest.
+    pub ends: Vec<End>,
+    /// Whether they are seen from the outside: connectors of the instance itself.
+    pub outside: bool,
+}

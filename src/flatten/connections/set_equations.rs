@@ -1,0 +1,148 @@
+//! The equations of connection sets (MLS §9.2): potentials are equal, flows sum to zero.
+
+use super::super::instantiate::instance::MemberState;
+use super::super::instantiate::instance::NodeKind;
+use super::super::{FlatModel, Variability};
+use crate::diag::Diagnostic;
+use crate::flatten::connections::end::End;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::connections::sets::ConnectorSide;
+use crate::flatten::ids::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::instantiate::tree::Tree;
+use crate::flatten::lookup::classes::Classes;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, ConnectionPrefix, Equation, EquationKind,
+    Expression, ExpressionKind, UnaryOperator,
+};
+
+impl Instantiation<'_> {
+    /// Adds the equations of all sets, and those of flows that are not connected.
+    pub fn add_connection_equations(
+        &mut self,
+        connections: &Connections,
+        model: &mut FlatModel,
+    ) -> Result<(), Diagnostic> {
+        for (sides, span) in connections.sets() {
+            match self.classes.tree.connection_of(sides[0].leaf) {
+                None => self.classes.tree.add_potential_equations(&sides, span, model),
+                Some(ConnectionPrefix::Flow) => {
+                    model.equations.push(self.classes.tree.flow_equation(&sides, span));
+                }
+                Some(ConnectionPrefix::Stream) => {
+                    self.add_stream_equations(&sides, connections, span, model)?;
+                }
+            }
+        }
+        self.add_constraint_equations(connections, model)?;
+        let mut unconnected = Vec::new();
+        self.classes.unconnected_flows(self.classes.tree.root, connections, &mut unconnected);
+        for side in unconnected {
+            let span = self.classes.tree.end_span(End::Scalar(side.leaf, side.element));
+            model.equations.push(self.classes.tree.flow_equation(&[side], span));
+        }
+        Ok(())
+    }
+}
+
+/// Parameters of connected connectors must be equal (MLS §9.2).
+fn equal_parameters(left: Expression, right: Expression, span: Span) -> Expression {
+    let message = "connected connectors have different values of a parameter";
+    let condition = ExpressionKind::Binary {
+        operator: BinaryOperator::Equal,
+        left: Box::new(left),
+        right: Box::new(right),
+    };
+    let arguments = Arguments {
+        positional: vec![
+            Expression::new(condition, span),
+            Expression::new(ExpressionKind::String(message.into()), span),
+        ],
+        ..Arguments::default()
+    };
+    let function = ComponentReference::from_name(&Name::parse("assert"), span);
+    Expression::new(ExpressionKind::Call { function, arguments: Box::new(arguments) }, span)
+}
+
+impl Tree {
+    fn add_potential_equations(&self, sides: &[ConnectorSide], span: Span, model: &mut FlatModel) {
+        for pair in sides.windows(2) {
+            let left = self.scalar(pair[0].leaf, pair[0].element, span);
+            let right = self.scalar(pair[1].leaf, pair[1].element, span);
+            let fixed = |side: &ConnectorSide| {
+                self.variability_of_leaf(side.leaf) <= Variability::Parameter
+            };
+            let kind = if pair.iter().all(fixed) {
+                EquationKind::Call(equal_parameters(left, right, span))
+            } else {
+                EquationKind::Equal { left, right }
+            };
+            model.equations.push(Equation { kind, comment: Default::default(), span });
+        }
+    }
+
+    /// Σ of the flows into the components = Σ of those through the connectors of the instance.
+    fn flow_equation(&self, sides: &[ConnectorSide], span: Span) -> Equation {
+        let mut sum: Option<Expression> = None;
+        for side in sides {
+            let term = self.scalar(side.leaf, side.element, span);
+            let kind = match (sum.take(), side.outside) {
+                (None, false) => term.kind,
+                (None, true) => ExpressionKind::Unary {
+                    operator: UnaryOperator::Minus,
+                    operand: Box::new(term),
+                },
+                (Some(sum), outside) => ExpressionKind::Binary {
+                    operator: if outside { BinaryOperator::Subtract } else { BinaryOperator::Add },
+                    left: Box::new(sum),
+                    right: Box::new(term),
+                },
+            };
+            sum = Some(Expression::new(kind, span));
+        }
+        let zero = Expression::new(ExpressionKind::Real(0.0), span);
+        let left = sum.unwrap_or_else(|| zero.clone());
+        let kind = EquationKind::Equal { left, right: zero };
+        Equation { kind, comment: Default::default(), span }
+    }
+
+    fn variability_of_leaf(&self, leaf: NodeId) -> Variability {
+        match &self.nodes[leaf.0].kind {
+            NodeKind::Variable(leaf) => self.variables[leaf.variable].0.variability,
+            NodeKind::Composite(_) => Variability::Continuous,
+        }
+    }
+}
+
+impl Classes<'_> {
+    /// Flows of connectors that no connection sees from the inside.
+    fn unconnected_flows(
+        &mut self,
+        node: NodeId,
+        connections: &Connections,
+        found: &mut Vec<ConnectorSide>,
+    ) {
+        if let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind {
+            if leaf.connection == Some(ConnectionPrefix::Flow) {
+                let count = self.tree.variables[leaf.variable].0.len();
+                let sides =
+                    (0..count).map(|element| ConnectorSide { leaf: node, element, outside: false });
+                found.extend(sides.filter(|side| !connections.contains(side)));
+            }
+            return;
+        }
+        let Ok(members) = self.members(node) else { return };
+        for (_, state) in members {
+            let nodes = match state {
+                MemberState::Single(one) => vec![one],
+                MemberState::Array(_, nodes) => nodes,
+                _ => continue,
+            };
+            for one in nodes {
+                self.unconnected_flows(one, connections, found);
+            }
+        }
+    }
+}

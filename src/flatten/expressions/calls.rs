@@ -1,0 +1,161 @@
+//! Calls with their names resolved (MLS ch. 12): operators and conversions become what they mean,
+//! functions their full names.
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::NOT_SUPPORTED;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Type;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+
+impl Instantiation<'_> {
+    /// A call as an expression.
+    pub fn call(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let special = self.special_call(span, function, arguments, context, local)?;
+        if let Some(value) = special {
+            return Ok(value);
+        }
+        let arguments = self.arguments(arguments, context, local)?;
+        if function.as_ident().is_some_and(|name| name == "sum")
+            && let ([argument], true) = (&arguments.positional[..], arguments.iterators.is_empty())
+            && let Some(sum) = self.overloaded_sum(argument, local, span)?
+        {
+            return Ok(sum);
+        }
+        let name = self.called_name(function, &arguments, span, context, local)?;
+        let arguments = self.functions.with_defaults(&name, arguments, span);
+        let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
+        if let Some(calls) = self.vectorized(&name, &arguments, span)? {
+            return Ok(calls);
+        }
+        let function = ComponentReference::from_name(&name, function.span);
+        let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// A call that is not one of a function: of an operator of connections, of a conversion, of
+    /// `size`, `getInstanceName` or `array`.
+    fn special_call(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
+            return Ok(Some(value));
+        }
+        if let Some(value) = self.conversion(span, function, arguments, context, local)? {
+            return Ok(Some(value));
+        }
+        if let Some(name) = function.as_ident()
+            && let Some(size) = self.size_call(name.as_str(), arguments, context, local, span)?
+        {
+            return Ok(Some(size));
+        }
+        if function.as_ident().is_some_and(|name| name == "getInstanceName")
+            && context != ScopeId::TOP
+            && !self.classes.tree.in_package(self.classes.node_of(context))
+        {
+            let name = self.classes.instance_name(context);
+            return Ok(Some(Expression::new(ExpressionKind::String(name.into()), span)));
+        }
+        if self.classes.is_array_constructor(function, arguments, context)? {
+            if let ([element], false) =
+                (arguments.positional.as_slice(), arguments.iterators.is_empty())
+            {
+                return self
+                    .comprehension(element, &arguments.iterators, span, context, local)
+                    .map(Some);
+            }
+            let elements = self.all(&arguments.positional, context, local)?;
+            return Ok(Some(Expression::new(ExpressionKind::Array(elements), span)));
+        }
+        Ok(None)
+    }
+
+    /// The full name of the function that a call means.
+    fn called_name(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Name, Diagnostic> {
+        let name = if function.as_ident().is_some_and(|name| local.get(name).is_some()) {
+            function.name()
+        } else {
+            self.function_name(&function.name(), context, function.span)?
+        };
+        let in_model =
+            context != ScopeId::TOP && !self.classes.tree.in_package(self.classes.node_of(context));
+        let name = match self.classes.lookup(context, &function.name())? {
+            Some(Type::Class(class)) => {
+                self.overloaded_constructor(class, arguments, local)?.unwrap_or(name)
+            }
+            _ if in_model
+                && !self.functions.table.contains_key(&name)
+                && !is_builtin(&name, local) =>
+            {
+                return Err(self.classes.unknown_function(context, &name, function.span));
+            }
+            _ => name,
+        };
+        let impure =
+            self.functions.table.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
+        if impure && !local.impure && in_model {
+            return Err(
+                fault!(NOT_SUPPORTED, "`{name}` is impure; calls of impure functions in models \
+                                       are not supported yet";
+                help: "declare it `pure` if it always returns equal values for equal arguments")
+                .at(span),
+            );
+        }
+        Ok(name)
+    }
+}
+
+/// Whether a call means a function that stands in no class: of the language, or one that is passed
+/// to the function in progress.
+fn is_builtin(name: &Name, local: &Local) -> bool {
+    let ident = name.first().filter(|_| name.is_simple());
+    ident.is_some_and(|ident| {
+        crate::functions::is_builtin(ident.as_str()) || local.get(ident).is_some()
+    })
+}
+
+impl Classes<'_> {
+    /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
+    fn instance_name(&self, context: ScopeId) -> String {
+        match self.tree.nodes[self.node_of(context).0].path.as_str() {
+            "" => self.tree.model_name.to_string(),
+            path => format!("{}.{path}", self.tree.model_name),
+        }
+    }
+
+    /// Whether a call is `array(a, b)`, another form of `{a, b}` (MLS §10.4).
+    fn is_array_constructor(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+    ) -> Result<bool, Diagnostic> {
+        let is_named = function.as_ident().is_some_and(|name| name == "array");
+        let lists = arguments.named.is_empty() && !arguments.positional.is_empty();
+        Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
+    }
+}

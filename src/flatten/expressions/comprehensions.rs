@@ -1,0 +1,155 @@
+//! Iterators in array constructors and reductions (MLS §10.4.1, §10.3.4): they stay as they are
+//! where the element is an expression of the loop variables, and are written out where a loop
+//! variable chooses a component of an array of components, which only a number can.
+
+use crate::diag::Diagnostic;
+use crate::eval::ValueType;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::TOO_LARGE;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::literal;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, Expression, ExpressionKind, ForIndex};
+use crate::syntax::visit::Visit;
+use crate::value::{ArrayValue, Elements, Value};
+use std::rc::Rc;
+
+/// The most elements that are written out.
+const MAX_ELEMENTS: usize = 100_000;
+
+impl Instantiation<'_> {
+    /// `{element for i in range}`.
+    pub fn comprehension(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        span: Span,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let visit = |uses: &mut dyn Visit| uses.expression(element);
+        let indices = self.with_ranges(indices, context, local, &visit)?;
+        match self.iterated(element, &indices, context, local) {
+            Ok((resolved, iterators)) => {
+                // Records are distinguished element by element.
+                if self.types().record_of(&resolved, local).is_some()
+                    && let Some(written) = self.unrolled(element, &indices, context, local)
+                {
+                    return written;
+                }
+                let (element, indices) = (Box::new(resolved), iterators);
+                Ok(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
+            }
+            Err(error) => self.unrolled(element, &indices, context, local).unwrap_or(Err(error)),
+        }
+    }
+
+    /// The arguments of a call, the element of a reduction among them.
+    pub fn arguments(
+        &mut self,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Arguments, Diagnostic> {
+        let ([element], false) = (arguments.positional.as_slice(), arguments.iterators.is_empty())
+        else {
+            return Ok(Arguments {
+                positional: self.all(&arguments.positional, context, local)?,
+                named: self.named_arguments(&arguments.named, context, local)?,
+                iterators: Vec::new(),
+            });
+        };
+        let visit = |uses: &mut dyn Visit| uses.expression(element);
+        let indices = self.with_ranges(&arguments.iterators, context, local, &visit)?;
+        let (element, iterators) = match self.iterated(element, &indices, context, local) {
+            Ok((resolved, iterators)) => match self.types().record_of(&resolved, local) {
+                Some(_) => match self.unrolled(element, &indices, context, local) {
+                    Some(elements) => (elements?, Vec::new()),
+                    None => (resolved, iterators),
+                },
+                None => (resolved, iterators),
+            },
+            Err(error) => match self.unrolled(element, &indices, context, local) {
+                Some(elements) => (elements?, Vec::new()),
+                None => return Err(error),
+            },
+        };
+        Ok(Arguments { positional: vec![element], named: Vec::new(), iterators })
+    }
+
+    fn iterated(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(Expression, Vec<ForIndex>), Diagnostic> {
+        let (indices, inner) = self.iterators(indices, context, local)?;
+        Ok((self.resolve(element, context, &inner)?, indices))
+    }
+
+    /// The iterators with resolved ranges, and what their body knows.
+    pub fn iterators(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(Vec<ForIndex>, Local), Diagnostic> {
+        let mut inner = local.clone();
+        let mut resolved = Vec::with_capacity(indices.len());
+        for index in indices {
+            let range = match &index.range {
+                Some(range) => match self.classes.type_range(range, context, &inner)? {
+                    Some(values) => Some(values),
+                    None => Some(self.resolve(range, context, &inner)?),
+                },
+                None => None,
+            };
+            if range.as_ref().and_then(|range| self.types().type_of(range))
+                == Some(BaseType::Boolean)
+            {
+                Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
+            }
+            resolved.push(ForIndex { name: index.name, range });
+            inner.names.push((index.name.node, None));
+        }
+        Ok((resolved, inner))
+    }
+
+    /// All elements, the last iterator outermost; `None` where a range is not known at translation.
+    fn unrolled(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+    ) -> Option<Result<Expression, Diagnostic>> {
+        let Some((last, before)) = indices.split_last() else {
+            return Some(self.resolve(element, context, local));
+        };
+        let mut iterations = Vec::new();
+        self.iterations(std::slice::from_ref(last), context, local, &mut iterations).ok()?;
+        if iterations.len() > MAX_ELEMENTS {
+            let error = fault!(TOO_LARGE, "the array has more than {MAX_ELEMENTS} elements");
+            return Some(Err(error.at(last.name.span)));
+        }
+        let mut elements = Vec::with_capacity(iterations.len());
+        for iteration in &iterations {
+            match self.unrolled(element, before, context, iteration)? {
+                Ok(one) => elements.push(one),
+                error => return Some(error),
+            }
+        }
+        let span = element.span;
+        if elements.is_empty() {
+            return Some(Ok(literal(
+                &Value::Array(ArrayValue::vector(Elements::Real(vec![]))),
+                span,
+            )));
+        }
+        Some(Ok(Expression::new(ExpressionKind::Array(elements), span)))
+    }
+}

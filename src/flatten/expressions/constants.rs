@@ -1,0 +1,365 @@
+//! Values known at translation: constants of packages, and parameters that shape the model
+//! (MLS §3.8, §4.5).
+
+use crate::budget;
+use crate::diag::{Diagnostic, Fault};
+use crate::eval::{Callee, Function, Host, Scope, evaluate};
+use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::NodeKind;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Type;
+use crate::flatten::{BaseType, Variability};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ReferencePart, Restriction, VariabilityPrefix,
+};
+use crate::value::{ArrayValue, Value};
+use std::sync::Arc;
+
+impl Instantiation<'_> {
+    /// The value of an expression that shapes the model; the parameters that it needs are marked.
+    pub fn structural_value(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+    ) -> Result<Value, Diagnostic> {
+        let outer = std::mem::take(&mut self.values.read);
+        let value = self.known_value(e, context);
+        let read = std::mem::replace(&mut self.values.read, outer);
+        self.values.structural.extend(read);
+        value
+    }
+
+    /// The value of an expression whose names are resolved already.
+    pub fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+        let outer = std::mem::take(&mut self.values.read);
+        let value = self.known_flat_value(e);
+        let read = std::mem::replace(&mut self.values.read, outer);
+        self.values.structural.extend(read);
+        value
+    }
+
+    /// The value of an expression of flat names of constants and parameters.
+    pub fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+        let local = Local { values: true, flat: true, ..Local::default() };
+        let resolved = self.resolve(e, self.classes.flat_scope(), &local)?;
+        evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
+    }
+
+    /// The value of an expression of constants and parameters.
+    pub fn known_value(&mut self, e: &Expression, context: ScopeId) -> Result<Value, Diagnostic> {
+        let local = Local { values: true, ..Local::default() };
+        let resolved = self.resolve(e, context, &local)?;
+        evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
+    }
+
+    /// The value of a constant or parameter, by its place.
+    pub fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
+        match self.values.known.get(&variable) {
+            Some(Some((value, read))) => {
+                self.values.read.extend(read.iter().copied());
+                return Ok(value.clone());
+            }
+            Some(None) => {
+                let name = &self.classes.tree.variables[variable].0.name;
+                return Err(
+                    fault!(NOT_CONSTANT, "the value of `{name}` depends on itself").at(span)
+                );
+            }
+            None => {}
+        }
+        self.values.known.insert(variable, None);
+        let outer = std::mem::take(&mut self.values.read);
+        let found = self.found_value(variable, span);
+        let mut read = std::mem::replace(&mut self.values.read, outer);
+        read.insert(variable);
+        self.values.read.extend(read.iter().copied());
+        match found {
+            Ok(value) => {
+                self.values.known.insert(variable, Some((value.clone(), read)));
+                Ok(value)
+            }
+            Err(error) => {
+                self.values.known.remove(&variable);
+                Err(error)
+            }
+        }
+    }
+
+    fn found_value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
+        let (declared, node) = &self.classes.tree.variables[variable];
+        let (name, base) = (declared.name.clone(), declared.base.clone());
+        let dims = declared.dims.clone();
+        if declared.variability > Variability::Parameter {
+            return Err(fault!(NOT_CONSTANT, "`{name}` is not known at translation";
+                help: "only constants and parameters are known at translation")
+            .at(span));
+        }
+        let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else {
+            return Err(fault!(NOT_CONSTANT, "`{name}` has no value").at(span));
+        };
+        let bound = leaf.modifier.binding.clone();
+        let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
+            return Err(
+                fault!(NOT_CONSTANT, "`{name}` has no value, but its value is needed here";
+                help: "give it a value in its declaration or by a modifier")
+                .at(span),
+            );
+        };
+        let value = picked(value, &bound.indices);
+        let found = self.known_value(&value, bound.context)?;
+        fitting(found, &base, &dims, bound.each).map_err(|fault| fault.at(value.span))
+    }
+
+    /// A constant of a package, or a literal of an enumeration, as its value.
+    pub fn constant(
+        &mut self,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let first = reference.parts[0].name;
+        let mut scope = if reference.global { ScopeId::TOP } else { context };
+        while scope != ScopeId::TOP {
+            if scope != context && self.classes.has_component(scope, first)? {
+                return self.enclosing_constant(scope, reference, context, local);
+            }
+            if let Some(nested) = self.classes.find_class(scope, first)? {
+                let found = if nested.outer {
+                    self.classes.lookup_simple(scope, first)?
+                } else {
+                    Some(self.classes.instance(&nested)?)
+                };
+                return self.inside_class(found, &reference.parts[1..], reference, context, local);
+            }
+            for name in self.classes.imported_names(scope, first) {
+                if let Some(found) = self.imported_constant(&name, reference, context, local)? {
+                    return Ok(found);
+                }
+            }
+            if self.classes.is_encapsulated(scope) {
+                break;
+            }
+            scope = self.classes.scope(scope).parent.unwrap_or(ScopeId::TOP);
+        }
+        let found = self.classes.lookup(ScopeId::TOP, &Name::from(first))?;
+        self.inside_class(found, &reference.parts[1..], reference, context, local)
+    }
+
+    /// A component of an enclosing class, which must be a constant.
+    fn enclosing_constant(
+        &mut self,
+        scope: ScopeId,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let first = reference.parts[0].name;
+        let node = self.classes.node_of(scope);
+        if self.classes.is_constant(node, first) {
+            return self.walk(node, &reference.parts, reference, context, local);
+        }
+        let class = &self.classes.text(scope).name;
+        Err(fault!(
+            NOT_CONSTANT,
+            "`{first}` is a component of the enclosing class `{class}`, not a constant";
+            help: "only constants of enclosing classes can be used (MLS §5.3.1)")
+        .at(reference.span))
+    }
+
+    /// What an import makes of the first part of a reference, followed to the end.
+    fn imported_constant(
+        &mut self,
+        name: &Name,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        if let Some(found) = self.classes.lookup(ScopeId::TOP, name)? {
+            let rest = &reference.parts[1..];
+            return self.inside_class(Some(found), rest, reference, context, local).map(Some);
+        }
+        let package = Name { global: true, ..name.parent() };
+        let Some(Type::Class(package)) = self.classes.lookup(ScopeId::TOP, &package)? else {
+            return Ok(None);
+        };
+        let (Some(last), node) = (name.last(), self.classes.node_of(package)) else {
+            return Ok(None);
+        };
+        if !self.classes.has_component(package, last)? || !self.classes.is_constant(node, last) {
+            return Ok(None);
+        }
+        let mut parts = reference.parts.clone();
+        parts[0].name = last;
+        self.walk(node, &parts, reference, context, local).map(Some)
+    }
+
+    /// The constant at the end of a path inside a class.
+    fn inside_class(
+        &mut self,
+        found: Option<Type>,
+        path: &[ReferencePart],
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut found = found;
+        for (at, part) in path.iter().enumerate() {
+            let Some(class) = found else { break };
+            if let Some(definition) = self.classes.enumeration(class, reference.span)? {
+                let literal = definition.literals.iter().position(|known| *known == part.name);
+                let Some(ordinal) = literal.filter(|_| at + 1 == path.len()) else { break };
+                let kind = ExpressionKind::Integer(ordinal as i64 + 1);
+                return Ok(Expression::new(kind, reference.span));
+            }
+            let Type::Class(scope) = class else { break };
+            if self.classes.has_component(scope, part.name)? {
+                let node = self.classes.node_of(scope);
+                if !self.classes.is_constant(node, part.name) {
+                    break;
+                }
+                return self.walk(node, &path[at..], reference, context, local);
+            }
+            found = self.classes.lookup_inside(found, &[part.name])?;
+            if at + 1 == path.len()
+                && let Some(function) = self.function_reference(found, reference.span)?
+            {
+                return Ok(function);
+            }
+        }
+        if path.is_empty()
+            && let Some(function) = self.function_reference(found, reference.span)?
+        {
+            return Ok(function);
+        }
+        Err(self.classes.unknown_name(reference, context))
+    }
+
+    /// The name of a function, to be passed to another one (MLS §12.4.2).
+    fn function_reference(
+        &mut self,
+        found: Option<Type>,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(Type::Class(class)) = found else { return Ok(None) };
+        if !matches!(self.classes.text(class).restriction(), Restriction::Function { .. }) {
+            return Ok(None);
+        }
+        let Some(name) = self.function(class)? else { return Ok(None) };
+        let reference = ComponentReference::from_name(&name, span);
+        Ok(Some(Expression::new(ExpressionKind::Reference(reference), span)))
+    }
+}
+
+impl Classes<'_> {
+    /// Whether a class has a component of this name, itself or inherited.
+    pub fn has_component(&mut self, scope: ScopeId, name: Ident) -> Result<bool, Diagnostic> {
+        if scope == ScopeId::TOP {
+            return Ok(false);
+        }
+        Ok(self.elements(scope)?.contains(name))
+    }
+
+    /// Whether a package's instance has a constant of this name.
+    fn is_constant(&mut self, package: NodeId, name: Ident) -> bool {
+        if self.members(package).is_err() {
+            return false;
+        }
+        self.tree.declaration_of(package, name).is_some_and(|declaration| {
+            declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant)
+        })
+    }
+
+    /// The scope in which flat names mean variables.
+    pub fn flat_scope(&self) -> ScopeId {
+        self.tree.scope_of(self.tree.root).unwrap_or(ScopeId::TOP)
+    }
+}
+
+/// A value as a variable of this type and these sizes holds it.
+fn fitting(value: Value, base: &BaseType, dims: &[usize], each: bool) -> Result<Value, Fault> {
+    let value = match (base, value) {
+        (BaseType::Real, value) => value.promoted(),
+        (BaseType::Enumeration(definition), Value::Integer(ordinal)) => {
+            Value::Enumeration(crate::value::EnumerationValue {
+                definition: definition.clone(),
+                ordinal,
+            })
+        }
+        (_, value) => value,
+    };
+    check_type(&value, base)?;
+    match &value {
+        Value::Array(array) if array.dims == dims => Ok(value),
+        Value::Array(array) => Err(fault!(
+            crate::flatten::errors::SIZE_MISMATCH,
+            "the value has the sizes {:?}, but the declaration has {dims:?}",
+            array.dims
+        )),
+        _ if dims.is_empty() => Ok(value),
+        _ if each => ArrayValue::filled(dims.to_vec(), &value).map(Value::Array),
+        _ => Err(fault!(
+            crate::flatten::errors::SIZE_MISMATCH,
+            "the value is a scalar, but the declaration has the sizes {dims:?}"
+        )),
+    }
+}
+
+fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
+    let found = match value {
+        Value::Array(array) => array.elements.type_name(),
+        scalar => scalar.type_name(),
+    };
+    let wanted = match base {
+        BaseType::Real => "Real",
+        BaseType::Integer => "Integer",
+        BaseType::Boolean => "Boolean",
+        BaseType::String => "String",
+        BaseType::Enumeration(_) | BaseType::ExternalObject(_) => return Ok(()),
+    };
+    let empty = matches!(value, Value::Array(array) if array.elements.is_empty());
+    if found == wanted || empty {
+        return Ok(());
+    }
+    Err(fault!(TYPE_MISMATCH, "the value is {found}, expected {wanted}"))
+}
+
+/// Answers calls of functions while constants are evaluated; variables are values already.
+struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
+
+impl Host for Functions<'_, '_> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.0.functions.table.get(name).cloned().flatten().map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function", header.name).at(span))
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        self.0.values.steps += 1;
+        let limit = budget::step_limit();
+        (self.0.values.steps > limit).then(|| {
+            fault!(TOO_LARGE, "evaluating the values needed at translation takes more than {} \
+                               steps",
+                budget::in_millions(limit); help: "{}", budget::REMEDY)
+        })
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        Err(fault!(NOT_CONSTANT, "`{}` is not known at translation", reference.name())
+            .at(reference.span))
+    }
+}

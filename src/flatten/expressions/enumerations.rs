@@ -1,0 +1,246 @@
+//! Enumerations and Boolean as ranges, sizes and subscripts (MLS §10.1, §10.5, §11.2.2.2), and
+//! their conversions (§4.9.5.2, §4.9.5.3). In the flat model the literals are their ordinals.
+
+use crate::diag::Diagnostic;
+use crate::eval::ValueType;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::TYPE_MISMATCH;
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
+use crate::flatten::types::Types;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, ReferencePart,
+    Subscript,
+};
+
+/// How many short classes a type may lead through.
+const MAX_CHAIN: usize = 100;
+
+impl Classes<'_> {
+    /// All values of the type that an expression names, as a vector; `None` if it names none.
+    pub fn type_range(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
+        let first = reference.parts[0].name;
+        if local.names.iter().any(|(name, _)| *name == first)
+            || (!reference.global && self.has_component(context, first)?)
+        {
+            return Ok(None);
+        }
+        let Some(found) = self.lookup(context, &reference.name())? else { return Ok(None) };
+        if self.is_boolean(found)? {
+            return Ok(Some(all_booleans(e.span)));
+        }
+        let Some(definition) = self.enumeration(found, e.span)? else { return Ok(None) };
+        let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), e.span);
+        let ordinals = (1..=definition.literals.len()).map(integer).collect();
+        Ok(Some(Expression::new(ExpressionKind::Array(ordinals), e.span)))
+    }
+
+    /// The type whose values are the subscripts of one dimension of a component, as its values; `None`
+    /// where the size is a number.
+    fn subscript_type(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(declared) = self.tree.declaration_of(node, name) else { return Ok(None) };
+        match declared.dims.get(dimension) {
+            Some((Subscript::Index(size), scope)) => {
+                self.type_range(size, *scope, &Local::default())
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// A dimension that is sized by an enumeration or by Boolean has subscripts of that type alone
+    /// (MLS §10.5).
+    pub fn check_subscript_types(
+        &mut self,
+        node: NodeId,
+        part: &ReferencePart,
+    ) -> Result<(), Diagnostic> {
+        for (at, subscript) in part.subscripts.iter().enumerate() {
+            let Subscript::Index(index) = subscript else { continue };
+            if matches!(index.kind, ExpressionKind::Integer(_))
+                && self.subscript_type(node, part.name, at)?.is_some()
+            {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` has enumeration or Boolean subscripts, not Integer ones",
+                    part.name;
+                    help: "write a literal of the index type in its declaration")
+                .at(index.span));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a type is Boolean, through short classes.
+    fn is_boolean(&mut self, mut found: Type) -> Result<bool, Diagnostic> {
+        for _ in 0..MAX_CHAIN {
+            let Type::Class(id) = found else {
+                return Ok(found == Type::Predefined(Predefined::Boolean));
+            };
+            let text = self.text(id).clone();
+            let ClassSpecifier::Short(short) = &text.definition.specifier else { break };
+            let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
+            found = self.lookup_type(parent, &short.target)?;
+        }
+        Ok(false)
+    }
+}
+
+impl Instantiation<'_> {
+    /// Whether the subscripts of one dimension of a component are of type Boolean.
+    pub fn is_sized_by_boolean(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<bool, Diagnostic> {
+        let values = self.classes.subscript_type(node, name, dimension)?;
+        Ok(values.is_some_and(|values| self.types().type_of(&values) == Some(BaseType::Boolean)))
+    }
+
+    /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
+    pub fn conversion(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let [argument] = arguments.positional.as_slice() else { return Ok(None) };
+        if !arguments.named.is_empty() || !arguments.iterators.is_empty() {
+            return Ok(None);
+        }
+        match self.classes.lookup(context, &function.name())? {
+            Some(Type::Predefined(Predefined::Integer)) => {
+                let value = self.resolve(argument, context, local)?;
+                Ok(Some(match self.types().type_of(&value) {
+                    Some(BaseType::Integer) => value,
+                    // Also where the type is not known here, as that of a record's component.
+                    _ => ordinal(value),
+                }))
+            }
+            Some(Type::Predefined(Predefined::String)) => {
+                self.literal_name(argument, context, local)
+            }
+            Some(found @ Type::Class(_)) => {
+                let Some(definition) = self.classes.enumeration(found, span)? else {
+                    return Ok(None);
+                };
+                let value = self.resolve(argument, context, local)?;
+                let count = definition.literals.len() as i64;
+                match value.kind {
+                    ExpressionKind::Integer(n) if !(1..=count).contains(&n) => Err(fault!(
+                        TYPE_MISMATCH,
+                        "`{}` has {count} literals; there is no literal number {n}",
+                        definition.name
+                    )
+                    .at(span)),
+                    ExpressionKind::Reference(_) => Ok(Some(ordinal(value))),
+                    _ => Ok(Some(value)),
+                }
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// The name of a literal, or of the value of a variable of an enumeration.
+    fn literal_name(
+        &mut self,
+        argument: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
+        let span = argument.span;
+        let resolved = self.resolve(argument, context, local)?;
+        let definition = match self.types().type_of(&resolved) {
+            Some(BaseType::Enumeration(definition)) => definition,
+            Some(BaseType::Integer) => {
+                let prefix = crate::name::Name {
+                    parts: reference.name().parent().parts,
+                    global: reference.global,
+                };
+                let first = reference.parts[0].name;
+                if prefix.parts.is_empty() || self.classes.has_component(context, first)? {
+                    return Ok(None);
+                }
+                let Some(found) = self.classes.lookup(context, &prefix)? else { return Ok(None) };
+                match self.classes.enumeration(found, span)? {
+                    Some(definition) => definition,
+                    None => return Ok(None),
+                }
+            }
+            _ => return Ok(None),
+        };
+        let name = |literal: &crate::name::Ident| {
+            let text = literal.as_str().trim_matches('\'');
+            Expression::new(ExpressionKind::String(text.into()), span)
+        };
+        let names = ExpressionKind::Array(definition.literals.iter().map(name).collect());
+        let base = Expression::new(names, span);
+        Ok(Some(crate::flatten::flat_expression::subscripted(
+            base,
+            vec![Subscript::Index(resolved)],
+            span,
+        )))
+    }
+}
+
+impl Types<'_> {
+    /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
+    pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
+        if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
+            return index;
+        }
+        let span = index.span;
+        let place = |n| Expression::new(ExpressionKind::Integer(n), span);
+        match index.kind {
+            ExpressionKind::Boolean(truth) => place(1 + i64::from(truth)),
+            ExpressionKind::Array(elements) => {
+                let places =
+                    elements.into_iter().map(|e| self.boolean_subscript(e, local)).collect();
+                Expression::new(ExpressionKind::Array(places), span)
+            }
+            _ => {
+                let kind = ExpressionKind::If {
+                    branches: vec![(index, place(2))],
+                    otherwise: Box::new(place(1)),
+                };
+                Expression::new(kind, span)
+            }
+        }
+    }
+}
+
+/// `false` and `true` as a vector.
+pub fn all_booleans(span: Span) -> Expression {
+    let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
+    Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
+}
+
+/// A value of Integer or of an enumeration as the Integer that stands for it in the flat model.
+fn ordinal(value: Expression) -> Expression {
+    let span = value.span;
+    let function = ComponentReference::from_name(&Name::parse("Integer"), span);
+    let arguments = Box::new(Arguments { positional: vec![value], ..Arguments::default() });
+    Expression::new(ExpressionKind::Call { function, arguments }, span)
+}

@@ -1,0 +1,176 @@
+//! Ranges that a loop does not write and its body shows: the sizes of the arrays that its variable
+//! is a subscript of (MLS §11.2.2.1).
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::{MemberState, NodeKind};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::name::{Ident, Name};
+use crate::syntax::ast::{
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Subscript,
+};
+use crate::syntax::visit::{Visit, walk_reference};
+
+/// Where a loop variable is a subscript: the array without this and later subscripts, and the
+/// dimension, from 0.
+struct Use {
+    array: ComponentReference,
+    dimension: usize,
+}
+
+/// What a subscript of one dimension of an array runs over.
+#[derive(PartialEq)]
+enum Extent {
+    /// The numbers from 1 to the size.
+    Size(usize),
+    /// The values of Boolean.
+    Booleans,
+}
+
+/// Finds the uses of a loop variable as a subscript.
+struct Uses {
+    name: Ident,
+    found: Vec<Use>,
+}
+
+impl Visit for Uses {
+    fn reference(&mut self, reference: &ComponentReference) {
+        for (at, part) in reference.parts.iter().enumerate() {
+            for (dimension, subscript) in part.subscripts.iter().enumerate() {
+                let Subscript::Index(Expression { kind: ExpressionKind::Reference(index), .. }) =
+                    subscript
+                else {
+                    continue;
+                };
+                if index.as_ident() == Some(self.name) {
+                    let mut parts: Vec<ReferencePart> = reference.parts[..=at].to_vec();
+                    parts[at].subscripts.clear();
+                    let array = ComponentReference { parts, ..reference.clone() };
+                    self.found.push(Use { array, dimension });
+                }
+            }
+        }
+        walk_reference(self, reference);
+    }
+}
+
+impl Instantiation<'_> {
+    /// The loop variables with ranges; those that are not written are found by letting `visit` look
+    /// through the body.
+    pub fn with_ranges(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+        visit: &dyn Fn(&mut dyn Visit),
+    ) -> Result<Vec<ForIndex>, Diagnostic> {
+        let mut all = Vec::with_capacity(indices.len());
+        for index in indices {
+            let mut index = index.clone();
+            if index.range.is_none() {
+                let mut uses = Uses { name: index.name.node, found: Vec::new() };
+                visit(&mut uses);
+                index.range = Some(self.deduced(&index, &uses.found, context, local)?);
+            }
+            all.push(index);
+        }
+        Ok(all)
+    }
+
+    fn deduced(
+        &mut self,
+        index: &ForIndex,
+        uses: &[Use],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let (name, span) = (index.name.node, index.name.span);
+        let mut known: Option<Extent> = None;
+        let mut of_local = None;
+        for one in uses {
+            let first = one.array.parts[0].name;
+            if local.names.iter().any(|(known, _)| *known == first) {
+                of_local = Some(one);
+                continue;
+            }
+            let Some(extent) = self.extent_of_array(one, context)? else { continue };
+            if known.as_ref().is_some_and(|known| *known != extent) {
+                return Err(fault!(
+                    SIZE_MISMATCH,
+                    "the deduced range of `{name}` is ambiguous: the arrays have different sizes";
+                    help: "write the range: `for {name} in 1:n loop`")
+                .at(span));
+            }
+            known = Some(extent);
+        }
+        let integer = |n: i64| Expression::new(ExpressionKind::Integer(n), span);
+        let stop = match (known, of_local) {
+            (Some(Extent::Booleans), _) => return Ok(super::enumerations::all_booleans(span)),
+            (Some(Extent::Size(size)), _) => integer(size as i64),
+            (None, Some(one)) => {
+                let array = ExpressionKind::Reference(one.array.clone());
+                let positional =
+                    vec![Expression::new(array, span), integer(one.dimension as i64 + 1)];
+                let function = ComponentReference::from_name(&Name::parse("size"), span);
+                let arguments = Box::new(Arguments { positional, ..Arguments::default() });
+                Expression::new(ExpressionKind::Call { function, arguments }, span)
+            }
+            (None, None) => {
+                return Err(fault!(
+                    NOT_CONSTANT,
+                    "the range of `{name}` is missing and cannot be deduced: `{name}` alone is \
+                     not a subscript of any array";
+                    help: "write the range: `for {name} in 1:n loop`")
+                .at(span));
+            }
+        };
+        let kind =
+            ExpressionKind::Range { start: Box::new(integer(1)), step: None, stop: Box::new(stop) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// The extent of one dimension of an array of variables or components.
+    fn extent_of_array(
+        &mut self,
+        one: &Use,
+        context: ScopeId,
+    ) -> Result<Option<Extent>, Diagnostic> {
+        let mut node = self.classes.node_of(context);
+        if !self.classes.has_component(context, one.array.parts[0].name)? {
+            return Ok(None);
+        }
+        let count = one.array.parts.len();
+        for (at, part) in one.array.parts.iter().enumerate() {
+            let is_last = at + 1 == count;
+            let dims = match self.member(node, part.name)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => match &self.classes.tree.nodes[next.0].kind {
+                    NodeKind::Variable(leaf) => {
+                        self.classes.tree.variables[leaf.variable].0.dims.clone()
+                    }
+                    NodeKind::Composite(_) => {
+                        node = next;
+                        continue;
+                    }
+                },
+                Some(MemberState::Array(dims, _)) if is_last => dims,
+                Some(MemberState::Array(_, nodes)) => match nodes.first() {
+                    Some(first) => {
+                        node = *first;
+                        continue;
+                    }
+                    None => return Ok(None),
+                },
+                _ => return Ok(None),
+            };
+            if is_last && self.is_sized_by_boolean(node, part.name, one.dimension)? {
+                return Ok(Some(Extent::Booleans));
+            }
+            let size = dims.get(one.dimension).copied().filter(|_| is_last);
+            return Ok(size.map(Extent::Size));
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,312 @@
+//! Resolves the names in expressions: components become their flat paths, constants of packages
+//! their values, functions their full names (MLS §5.3, §5.6.2).
+
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::subscripted;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::classes::Classes;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{
+    BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
+    Subscript, UnaryOperator,
+};
+use crate::value::Value;
+
+/// The deepest nesting of expressions, bindings that lead to one another included.
+const MAX_DEPTH: usize = 400;
+
+impl Instantiation<'_> {
+    /// The expression with its names resolved.
+    pub fn resolve(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        if self.depth >= MAX_DEPTH {
+            return Err(fault!(TOO_LARGE, "expressions are nested too deeply").at(e.span));
+        }
+        self.depth += 1;
+        let resolved = self.resolve_kind(e, context, local);
+        self.depth -= 1;
+        resolved
+    }
+
+    fn resolve_kind(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let sub = |this: &mut Self, inner: &Expression| this.resolve(inner, context, local);
+        let kind = match &e.kind {
+            ExpressionKind::Real(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Boolean(_)
+            | ExpressionKind::String(_)
+            | ExpressionKind::TypeName(_)
+            | ExpressionKind::Code(_)
+            | ExpressionKind::End => e.kind.clone(),
+            ExpressionKind::Reference(reference) => {
+                return self.reference(reference, context, local);
+            }
+            ExpressionKind::Call { function, arguments } => {
+                return self.call(e.span, function, arguments, context, local);
+            }
+            ExpressionKind::PartialApplication { function, named } => {
+                let function = self.function_name(function, context, e.span)?;
+                let named = self.named_arguments(named, context, local)?;
+                ExpressionKind::PartialApplication { function, named }
+            }
+            ExpressionKind::Unary { operator, operand } => {
+                let operand = sub(self, operand)?;
+                return self.unary(*operator, operand, local, e.span);
+            }
+            ExpressionKind::Binary { operator, left, right } => {
+                let sides = (sub(self, left)?, sub(self, right)?);
+                return self.binary(*operator, sides, local, e.span);
+            }
+            ExpressionKind::If { branches, otherwise } => {
+                return self.if_expression(e.span, branches, otherwise, context, local);
+            }
+            ExpressionKind::Range { start, step: None, stop }
+                if is_boolean(start) && is_boolean(stop) =>
+            {
+                ExpressionKind::Array(booleans(start, stop))
+            }
+            ExpressionKind::Range { start, step, stop } => ExpressionKind::Range {
+                start: Box::new(sub(self, start)?),
+                step: step.as_ref().map(|step| sub(self, step).map(Box::new)).transpose()?,
+                stop: Box::new(sub(self, stop)?),
+            },
+            ExpressionKind::Array(elements) => {
+                ExpressionKind::Array(self.all(elements, context, local)?)
+            }
+            ExpressionKind::Comprehension { element, indices } => {
+                return self.comprehension(element, indices, e.span, context, local);
+            }
+            ExpressionKind::Matrix(rows) => ExpressionKind::Matrix(
+                rows.iter()
+                    .map(|row| self.all(row, context, local))
+                    .collect::<Result<_, Diagnostic>>()?,
+            ),
+            ExpressionKind::Tuple(parts) => ExpressionKind::Tuple(
+                parts
+                    .iter()
+                    .map(|part| part.as_ref().map(|part| sub(self, part)).transpose())
+                    .collect::<Result<_, Diagnostic>>()?,
+            ),
+            ExpressionKind::Subscripted { base, subscripts } => {
+                let base = sub(self, base)?;
+                let subscripts = self.subscripts(subscripts, context, local)?;
+                return Ok(subscripted(base, subscripts, e.span));
+            }
+            ExpressionKind::Field { base, name } => {
+                return self.field_of(base, *name, e.span, context, local);
+            }
+        };
+        Ok(Expression::new(kind, e.span))
+    }
+
+    /// The operation, or the call of the function that a record overloads the operator with.
+    fn unary(
+        &mut self,
+        operator: UnaryOperator,
+        operand: Expression,
+        local: &Local,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let sign = match operator {
+            UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
+            UnaryOperator::Not => "'not'",
+            UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
+        };
+        if let Some(call) = self.overloaded_unary(sign, &operand, local, span)? {
+            return Ok(call);
+        }
+        let kind = ExpressionKind::Unary { operator, operand: Box::new(operand) };
+        Ok(Expression::new(kind, span))
+    }
+
+    fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        (left, right): (Expression, Expression),
+        local: &Local,
+        span: Span,
+    ) -> Result<Expression, Diagnostic> {
+        let call = self.overloaded_binary(operator, &left, &right, local, span)?;
+        if let Some(call) = call {
+            return Ok(call);
+        }
+        let kind =
+            ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// Branches whose conditions hold no variables are chosen at once: the others may name what
+    /// does not exist, such as the element before the first one.
+    fn if_expression(
+        &mut self,
+        span: Span,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut resolved = Vec::with_capacity(branches.len());
+        for (condition, value) in branches {
+            let condition = self.resolve(condition, context, local)?;
+            match self.literal_condition(&condition) {
+                Some(true) if resolved.is_empty() => return self.resolve(value, context, local),
+                Some(false) => continue,
+                _ => resolved.push((condition, self.resolve(value, context, local)?)),
+            }
+        }
+        let otherwise = self.resolve(otherwise, context, local)?;
+        if resolved.is_empty() {
+            return Ok(otherwise);
+        }
+        let kind = ExpressionKind::If { branches: resolved, otherwise: Box::new(otherwise) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// The value of a resolved condition without references.
+    fn literal_condition(&mut self, condition: &Expression) -> Option<bool> {
+        if let ExpressionKind::Boolean(truth) = condition.kind {
+            return Some(truth);
+        }
+        if !crate::flatten::types::has_only_literals(condition) {
+            return None;
+        }
+        match self.flat_value(condition) {
+            Ok(Value::Boolean(truth)) => Some(truth),
+            _ => None,
+        }
+    }
+
+    pub fn all(
+        &mut self,
+        expressions: &[Expression],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<Expression>, Diagnostic> {
+        expressions.iter().map(|e| self.resolve(e, context, local)).collect()
+    }
+
+    pub fn named_arguments(
+        &mut self,
+        named: &[NamedArgument],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<NamedArgument>, Diagnostic> {
+        named
+            .iter()
+            .map(|argument| {
+                let value = self.resolve(&argument.value, context, local)?;
+                Ok(NamedArgument { name: argument.name, value })
+            })
+            .collect()
+    }
+
+    pub fn subscripts(
+        &mut self,
+        subscripts: &[Subscript],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<Subscript>, Diagnostic> {
+        subscripts
+            .iter()
+            .map(|subscript| match subscript {
+                Subscript::All(span) => Ok(Subscript::All(*span)),
+                Subscript::Index(e) => {
+                    let index = match self.classes.type_range(e, context, local)? {
+                        Some(values) => values,
+                        None => self.resolve(e, context, local)?,
+                    };
+                    Ok(Subscript::Index(self.types().boolean_subscript(index, local)))
+                }
+            })
+            .collect()
+    }
+
+    /// A reference as an expression: `time`, a loop variable, a component or a constant.
+    pub fn reference(
+        &mut self,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let first = &reference.parts[0];
+        if !reference.global {
+            if let Some(value) = local.get(first.name) {
+                return match value {
+                    Some(value) if reference.as_ident().is_some() => Ok(value.clone()),
+                    _ => self.local_reference(reference, context, local),
+                };
+            }
+            if self.classes.has_component(context, first.name)? {
+                let node = self.classes.node_of(context);
+                return self.walk(node, &reference.parts, reference, context, local);
+            }
+            if reference.as_ident().is_some_and(|name| name == "time") {
+                if local.values {
+                    return Err(fault!(NOT_CONSTANT, "`time` is not known at translation")
+                        .at(reference.span));
+                }
+                return Ok(Expression::new(
+                    ExpressionKind::Reference(reference.clone()),
+                    reference.span,
+                ));
+            }
+        }
+        self.constant(reference, context, local)
+    }
+
+    fn local_reference(
+        &mut self,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut parts = Vec::with_capacity(reference.parts.len());
+        for part in &reference.parts {
+            let subscripts = self.subscripts(&part.subscripts, context, local)?;
+            parts.push(ReferencePart { name: part.name, subscripts });
+        }
+        let resolved = ComponentReference { global: false, parts, span: reference.span };
+        Ok(Expression::new(ExpressionKind::Reference(resolved), reference.span))
+    }
+}
+
+impl Classes<'_> {
+    /// The diagnostic for a name that is neither a component nor a constant.
+    pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
+        let name = reference.name();
+        let known = self.tree.component_names(self.node_of(context));
+        let first = name.first().map_or("", Ident::as_str);
+        fault!(UNKNOWN_NAME, "`{name}` is not declared")
+            .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))
+            .at(reference.span)
+    }
+}
+
+fn is_boolean(e: &Expression) -> bool {
+    matches!(e.kind, ExpressionKind::Boolean(_))
+}
+
+/// The literals of a range of Booleans (MLS §10.4.3).
+fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
+    let is_in = |truth: &bool| {
+        let below = matches!(start.kind, ExpressionKind::Boolean(true)) && !*truth;
+        let above = matches!(stop.kind, ExpressionKind::Boolean(false)) && *truth;
+        !below && !above
+    };
+    let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
+    [false, true].into_iter().filter(is_in).map(literal).collect()
+}

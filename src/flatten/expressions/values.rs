@@ -1,0 +1,21 @@
+//! The values of constants and parameters found so far, with the parameters that each needed.
+
+use crate::value::Value;
+use indexmap::IndexSet;
+use rustc_hash::FxHashMap;
+
+/// Variables read while a value is found.
+pub type Read = IndexSet<usize>;
+
+/// The values of constants and parameters that are known at translation.
+#[derive(Debug, Default)]
+pub struct Values {
+    /// Variables whose values shaped the model.
+    pub structural: IndexSet<usize>,
+    /// Values found so far with the variables that they need; `None` while one is being found.
+    pub known: FxHashMap<usize, Option<(Value, Read)>>,
+    /// Variables read by the evaluation that is going on.
+    pub read: Read,
+    /// Statements run so far to find values.
+    pub steps: u64,
+}

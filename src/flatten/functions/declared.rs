@@ -1,0 +1,735 @@
+//! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
+
+use crate::diag::Diagnostic;
+use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::literal;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::{MemberState, Shape};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::library::Library;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::modification::Modifier;
+use crate::flatten::lookup::scope::Text;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::lookup::types::Type;
+use crate::name::{Ident, Name};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
+    Expression, ExpressionKind, ForIndex, NamedArgument, Purity, Restriction, Section, Statement,
+    StatementKind, Subscript, Visibility,
+};
+use crate::syntax::visit::Visit;
+use indexmap::IndexMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Packages of the standard library whose functions the language has under bare names too.
+const INTRINSIC_PACKAGES: &[&str] = &["Modelica.Math"];
+
+impl Library {
+    /// The function that a name means at the top level, with the functions that it calls; `None`
+    /// if the name means nothing here. A record's name means its constructor.
+    pub fn function(
+        &self,
+        name: &Name,
+    ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
+        // What follows the first name may be inherited, which only the instantiation knows.
+        if name.first().is_none_or(|first| self.find(&Name::from(first)).is_none()) {
+            return Ok(None);
+        }
+        crate::flatten::on_deep_stack(|| self.ready_function(name))?
+    }
+
+    fn ready_function(
+        &self,
+        name: &Name,
+    ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
+        let mut instantiation = Instantiation::new(self);
+        instantiation.functions.asked = Some(name.clone());
+        let Some(Type::Class(id)) = instantiation.classes.class_named(name)? else {
+            return Ok(None);
+        };
+        let Some(full) = instantiation.function(id)? else { return Ok(None) };
+        let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
+        let own = instantiation.functions.table.shift_remove(&full).flatten();
+        functions.extend(own.map(|function| (full, function)));
+        for (name, function) in instantiation.functions.table {
+            functions.extend(function.map(|function| (name, function)));
+        }
+        Ok(Some(functions))
+    }
+}
+
+impl Instantiation<'_> {
+    /// The full name of a called function, which is made ready; a name that no class declares is
+    /// left for evaluation (operators and intrinsics).
+    pub fn function_name(
+        &mut self,
+        name: &Name,
+        context: ScopeId,
+        span: Span,
+    ) -> Result<Name, Diagnostic> {
+        match self.classes.lookup(context, name)? {
+            Some(Type::Class(id)) => match self.function(id)? {
+                Some(full) => Ok(full),
+                None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
+            },
+            _ => match self.function_of_component(name, context, span)? {
+                Some(full) => Ok(full),
+                None => Ok(self.intrinsic_name(name)),
+            },
+        }
+    }
+
+    /// A function of the class of a component: `component.f` (MLS §5.3.2).
+    fn function_of_component(
+        &mut self,
+        name: &Name,
+        context: ScopeId,
+        span: Span,
+    ) -> Result<Option<Name>, Diagnostic> {
+        let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
+        if rest.is_empty() || name.global || !self.classes.has_component(context, *first)? {
+            return Ok(None);
+        }
+        let mut node = self.classes.node_of(context);
+        for (at, part) in name.parts.iter().enumerate() {
+            match self.member(node, *part)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => node = next,
+                _ => {
+                    let Some(scope) = self.classes.tree.scope_of(node) else { return Ok(None) };
+                    if at > 0 && self.classes.is_protected_class(scope, *part) {
+                        let path = &self.classes.tree.nodes[node.0].path;
+                        return Err(
+                            fault!(PROTECTED_ACCESS, "`{part}` is protected in `{path}`").at(span)
+                        );
+                    }
+                    let found = Some(Type::Class(scope));
+                    return match self.classes.lookup_inside(found, &name.parts[at..])? {
+                        Some(Type::Class(id)) => self.function(id),
+                        _ => Ok(None),
+                    };
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// `Modelica.Math.sin` is `sin` where no library declares it.
+    fn intrinsic_name(&self, name: &Name) -> Name {
+        let package = Name::new(name.parent().parts).to_string();
+        match name.last() {
+            Some(last) if INTRINSIC_PACKAGES.contains(&package.as_str()) => Name::from(last),
+            _ => name.clone(),
+        }
+    }
+
+    /// Makes a function ready and returns its full name; `None` if the class is no function.
+    pub fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
+        if let Some(known) = self.functions.names.get(&id) {
+            return Ok(Some(known.clone()));
+        }
+        let class = self.classes.long_class(id)?;
+        let is_function = matches!(
+            self.classes.text(class).restriction(),
+            Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
+        );
+        if !is_function {
+            return self.object_constructor(class);
+        }
+        if let ClassSpecifier::Derivative(derivative) =
+            &self.classes.text(class).definition.specifier
+        {
+            let (name, span) = (self.classes.text(id).name.clone(), derivative.target.span);
+            return Err(fault!(NOT_SUPPORTED,
+                "`{name}` is a partial derivative of a function, which is not supported yet";
+                help: "write the derivative as a separate function")
+            .at(span));
+        }
+        // Known by name before its body is read, which may call the function itself.
+        let name = self.free_name(id, class);
+        self.functions.table.insert(name.clone(), None);
+        self.functions.names.insert(id, name.clone());
+        if self.classes.is_record(class) {
+            self.functions.record_scopes.insert(name.clone(), class);
+        }
+        let function = match self.classes.is_record(class) {
+            false => self.ready(&name, class),
+            true => self.constructor(&name, class),
+        };
+        match function {
+            Ok(function) => Ok(Some(self.keep_function(id, name, function))),
+            Err(error) => {
+                self.functions.table.shift_remove(&name);
+                self.functions.names.remove(&id);
+                Err(error)
+            }
+        }
+    }
+
+    /// The function `constructor` of an external object (MLS §12.9.7), which its class stands for.
+    fn object_constructor(&mut self, class: ScopeId) -> Result<Option<Name>, Diagnostic> {
+        let text = self.classes.text(class).clone();
+        let base = self.classes.predefined_base(class, &text)?.map(|(base, _)| base);
+        if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
+            return Ok(None);
+        }
+        match self.classes.lookup(class, &Name::from(Ident::new("constructor")))? {
+            Some(Type::Class(id)) => self.function(id),
+            _ => Ok(None),
+        }
+    }
+
+    /// Makes the functions of `derivative` annotations ready and writes their full names; those
+    /// that cannot be made ready are left out (MLS §12.7.1).
+    fn derivatives(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
+        let mut kept = Vec::with_capacity(arguments.len());
+        for mut argument in arguments {
+            if let Argument::Element(element) = &mut argument
+                && element.name.node.last().is_some_and(|name| name == "derivative")
+                && let Some(modification) = &mut element.modification
+                && let Some(Binding::Expression(e)) = &mut modification.binding
+                && let ExpressionKind::Reference(reference) = &mut e.kind
+            {
+                match self.function_name(&reference.name(), context, e.span) {
+                    Ok(full) => *reference = ComponentReference::from_name(&full, e.span),
+                    Err(_) => continue,
+                }
+            }
+            kept.push(argument);
+        }
+        kept
+    }
+
+    /// The name of a function, with a number if another function has it: the same text in another
+    /// environment.
+    fn free_name(&mut self, id: ScopeId, class: ScopeId) -> Name {
+        let name = self.classes.text(id).name.clone();
+        let is_plain = self.functions.asked.is_none() || self.classes.is_record(class);
+        if !self.functions.table.contains_key(&name)
+            && (is_plain || self.classes.is_found_as(&name, id))
+        {
+            return name;
+        }
+        // The function that is asked for keeps the name that it has there.
+        if let Some(asked) =
+            self.functions.asked.as_ref().filter(|_| self.functions.table.is_empty())
+        {
+            return asked.clone();
+        }
+        let numbered = (2..).map(|number| self.functions.numbered(&name, number));
+        numbered
+            .into_iter()
+            .find(|name| !self.functions.table.contains_key(name))
+            .unwrap_or(name.clone())
+    }
+
+    /// Stores a function, unless one that differs in the name alone is known already.
+    fn keep_function(&mut self, id: ScopeId, name: Name, function: Function) -> Name {
+        let text = self.classes.text(id).name.clone();
+        if name != text && self.functions.asked.as_ref() != Some(&name) {
+            let mut at = 1;
+            let mut candidate = text.clone();
+            while candidate != name {
+                let renamed = Function { name: candidate.clone(), ..function.clone() };
+                let known = self.functions.table.get(&candidate).cloned().flatten();
+                if known.is_some_and(|known| same_function(&known, &renamed)) {
+                    self.functions.table.shift_remove(&name);
+                    self.functions.names.insert(id, candidate.clone());
+                    return candidate;
+                }
+                at += 1;
+                candidate = self.functions.numbered(&text, at);
+            }
+        }
+        self.functions.table.insert(name.clone(), Some(Arc::new(function)));
+        name
+    }
+
+    /// The name of a record's constructor, made ready.
+    pub fn record_constructor(&mut self, class: ScopeId, span: Span) -> Result<Name, Diagnostic> {
+        self.function(class)?.ok_or_else(|| {
+            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.classes.text(class).name).at(span)
+        })
+    }
+
+    fn ready(&mut self, name: &Name, class: ScopeId) -> Result<Function, Diagnostic> {
+        let components = self.components_of(class)?;
+        let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
+        let inputs_of = |c: &Declared| c.causality == Some(CausalityPrefix::Input);
+        let read_only = components.iter().filter(|c| inputs_of(c)).map(|c| c.component.name);
+        let types = components.iter().map(|c| (c.component.name, c.component.value_type.clone()));
+        let local = Local {
+            read_only: read_only.collect(),
+            types: Rc::new(types.collect()),
+            ..Local::default().with(names)
+        };
+        let (mut inputs, mut outputs, mut locals) = (Vec::new(), Vec::new(), Vec::new());
+        for declared in components {
+            let list = match declared.causality {
+                Some(CausalityPrefix::Input) => &mut inputs,
+                Some(CausalityPrefix::Output) => &mut outputs,
+                None => &mut locals,
+            };
+            list.push(declared.component);
+        }
+        let lineage: Vec<ScopeId> = self.classes.elements(class)?.lineage().collect();
+        let text = self.classes.text(class).clone();
+        self.classes.check_complete(class, text.span())?;
+        let purity = match text.restriction() {
+            Restriction::Function { purity, .. } => purity,
+            _ => None,
+        };
+        let mut annotations = Vec::new();
+        for scope in &lineage {
+            let own = annotation(self.classes.text(*scope).sections());
+            annotations.extend(self.derivatives(own, *scope));
+        }
+        Ok(Function {
+            name: name.clone(),
+            inputs,
+            outputs,
+            locals,
+            body: self.body(&lineage, &local)?,
+            description: description(&text.definition.specifier),
+            annotation: annotations,
+            impure: purity == Some(Purity::Impure),
+            span: text.span(),
+            compiled: Compiled::default(),
+        })
+    }
+
+    fn constructor(&mut self, name: &Name, class: ScopeId) -> Result<Function, Diagnostic> {
+        let fields: Vec<FunctionComponent> =
+            self.components_of(class)?.into_iter().map(|declared| declared.component).collect();
+        let span = self.classes.text(class).span();
+        let table = fields.iter().map(|field| (field.name, field.clone())).collect();
+        let output = FunctionComponent {
+            name: Ident::new("'constructed record'"),
+            value_type: ValueType::Record(name.clone(), Arc::new(table)),
+            dims: Vec::new(),
+            binding: None,
+            description: None,
+            span,
+        };
+        Ok(Function {
+            name: name.clone(),
+            inputs: fields,
+            outputs: vec![output],
+            locals: Vec::new(),
+            body: FunctionBody::RecordConstructor,
+            description: None,
+            annotation: Vec::new(),
+            impure: false,
+            span,
+            compiled: Compiled::default(),
+        })
+    }
+
+    /// The components of a function or record, inherited ones included.
+    fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
+        let elements = self.classes.elements(class)?;
+        let mut local = Local::default().with(elements.names());
+        let is_function = !self.classes.is_record(class);
+        let lineage: Vec<ScopeId> = elements.lineage().collect();
+        let mut components = Vec::new();
+        for (_, declared) in elements.iter() {
+            let expanded = self.classes.expand(declared)?;
+            let mut dims = Vec::with_capacity(declared.dims.len());
+            for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
+                dims.push(match subscript {
+                    Subscript::All(span) => Subscript::All(*span),
+                    Subscript::Index(e) => match self.classes.type_range(e, *context, &local)? {
+                        Some(values) => {
+                            let dims = self.shape_of(&values).unwrap_or_default();
+                            let size = dims.first().copied().unwrap_or(0) as i64;
+                            let kind = ExpressionKind::Integer(size);
+                            Subscript::Index(Expression::new(kind, e.span))
+                        }
+                        None => Subscript::Index(self.resolve(e, *context, &local)?),
+                    },
+                });
+            }
+            let value_type = self.value_type(&expanded.shape, declared.span)?;
+            let bound = expanded.modifier.binding.as_ref();
+            let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
+            {
+                // What a modifier gives from outside does not see the function's own names.
+                Some((value, written)) if !lineage.contains(&written) => {
+                    Some(self.resolve(value, written, &Local::default())?)
+                }
+                Some((value, written)) => Some(self.resolve(value, written, &local)?),
+                None => {
+                    self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?
+                }
+            };
+            Rc::make_mut(&mut local.types).push((declared.name, value_type.clone()));
+            let causality = declared.type_prefixes.causality.or(expanded.causality);
+            if is_function && !declared.protected && causality.is_none() {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` is public in a function but neither input nor output",
+                    declared.name;
+                    help: "declare it `input` or `output`, or move it after `protected`")
+                .at(declared.span));
+            }
+            components.push(Declared {
+                causality: causality.filter(|_| !declared.protected),
+                component: FunctionComponent {
+                    name: declared.name,
+                    value_type,
+                    dims,
+                    binding,
+                    description: declared.description.clone(),
+                    span: declared.span,
+                },
+            });
+        }
+        Ok(components)
+    }
+
+    /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`. Those
+    /// that are not given have no value yet.
+    fn value_of_fields(
+        &mut self,
+        value_type: &ValueType,
+        modifier: &Modifier,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ValueType::Record(record, _) = value_type else { return Ok(None) };
+        let mut named = Vec::new();
+        for (name, modifier) in &modifier.elements {
+            let Some(bound) = &modifier.binding else { continue };
+            let Some(value) = &bound.value else { continue };
+            let value = self.resolve(value, bound.context, local)?;
+            named.push(NamedArgument { name: Spanned { node: *name, span }, value });
+        }
+        if named.is_empty() {
+            return Ok(None);
+        }
+        let function = ComponentReference::from_name(record, span);
+        let arguments = Box::new(Arguments { named, ..Arguments::default() });
+        Ok(Some(Expression::new(ExpressionKind::Call { function, arguments }, span)))
+    }
+
+    fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {
+        let class = match shape {
+            Shape::Predefined(Predefined::Real) => return Ok(ValueType::Real),
+            Shape::Predefined(Predefined::Integer) => return Ok(ValueType::Integer),
+            Shape::Predefined(Predefined::Boolean) => return Ok(ValueType::Boolean),
+            Shape::Predefined(Predefined::String) => return Ok(ValueType::String),
+            Shape::Enumeration(definition) => {
+                return Ok(ValueType::Enumeration(definition.clone()));
+            }
+            Shape::Class(class) => *class,
+            Shape::ExternalObject(name) => return Ok(ValueType::ExternalObject(name.clone())),
+            Shape::Function => return Ok(ValueType::Function),
+            Shape::Predefined(_) => {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "a component of a function needs a type with values"
+                )
+                .at(span));
+            }
+        };
+        let name = self.record_constructor(class, span)?;
+        match self.functions.table.get(&name) {
+            Some(Some(constructor)) => {
+                let fields = constructor.inputs.iter().map(|f| (f.name, f.clone())).collect();
+                Ok(ValueType::Record(name, Arc::new(fields)))
+            }
+            _ => Err(fault!(NOT_SUPPORTED, "`{name}` contains itself").at(span)),
+        }
+    }
+
+    fn body(&mut self, lineage: &[ScopeId], local: &Local) -> Result<FunctionBody, Diagnostic> {
+        let mut statements = Vec::new();
+        let mut has_algorithm = false;
+        for context in lineage.iter().copied() {
+            let text: Text = self.classes.text(context).clone();
+            for section in text.sections() {
+                match section {
+                    Section::Algorithm { initial: false, statements: own, span } => {
+                        if std::mem::replace(&mut has_algorithm, true) {
+                            let name = &text.name;
+                            return Err(fault!(
+                                TYPE_MISMATCH,
+                                "function `{name}` has more than one algorithm"
+                            )
+                            .at(*span));
+                        }
+                        statements.extend(self.statements(own, context, local)?);
+                    }
+                    Section::Algorithm { span, .. } | Section::Equations { span, .. } => {
+                        let name = &text.name;
+                        return Err(fault!(
+                            TYPE_MISMATCH,
+                            "function `{name}` has equations; write an algorithm"
+                        )
+                        .at(*span));
+                    }
+                    Section::External(external) => {
+                        let mut external = external.clone();
+                        for argument in &mut external.arguments {
+                            *argument = self.resolve(argument, context, local)?;
+                        }
+                        return Ok(FunctionBody::External(external));
+                    }
+                    Section::Elements { .. } | Section::Annotation(_) => {}
+                }
+            }
+        }
+        Ok(FunctionBody::Algorithm(statements))
+    }
+
+    /// Statements with their names resolved.
+    pub fn statements(
+        &mut self,
+        statements: &[Statement],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<Statement>, Diagnostic> {
+        let mut resolved = Vec::with_capacity(statements.len());
+        for statement in statements {
+            match self.statement(statement, context, local) {
+                Ok(one) => resolved.push(one),
+                Err(error) => match self.iterations_of_statement(statement, context, local) {
+                    Some(iterations) => resolved.extend(iterations?),
+                    None => return Err(error),
+                },
+            }
+        }
+        Ok(resolved)
+    }
+
+    /// The iterations of a loop in an algorithm of a model one after another: its variable may choose
+    /// among components, which only a number can. `None` where iterations are not known, or one may be
+    /// the last.
+    fn iterations_of_statement(
+        &mut self,
+        statement: &Statement,
+        context: ScopeId,
+        local: &Local,
+    ) -> Option<Result<Vec<Statement>, Diagnostic>> {
+        let StatementKind::For { indices, body } = &statement.kind else { return None };
+        if !self.classes.is_in_model(context) || body.iter().any(breaks) {
+            return None;
+        }
+        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+        let indices = self.with_ranges(indices, context, local, &visit).ok()?;
+        let mut iterations = Vec::new();
+        self.iterations(&indices, context, local, &mut iterations).ok()?;
+        let mut all = Vec::new();
+        for iteration in iterations {
+            match self.statements(body, context, &iteration) {
+                Ok(statements) => all.extend(statements),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        Some(Ok(all))
+    }
+
+    fn statement(
+        &mut self,
+        statement: &Statement,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Statement, Diagnostic> {
+        let kind = match &statement.kind {
+            StatementKind::Assign { target, value } => StatementKind::Assign {
+                target: self.target(target, context, local)?,
+                value: self.resolve(value, context, local)?,
+            },
+            StatementKind::MultiAssign { targets, value } => StatementKind::MultiAssign {
+                targets: targets
+                    .iter()
+                    .map(|t| t.as_ref().map(|t| self.target(t, context, local)).transpose())
+                    .collect::<Result<_, Diagnostic>>()?,
+                value: self.resolve(value, context, local)?,
+            },
+            StatementKind::Call(call) => StatementKind::Call(self.resolve(call, context, local)?),
+            StatementKind::If { branches, otherwise } => StatementKind::If {
+                branches: self.statement_branches(branches, context, local)?,
+                otherwise: self.statements(otherwise, context, local)?,
+            },
+            StatementKind::For { indices, body } => {
+                let visit =
+                    |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                let indices = self.with_ranges(indices, context, local, &visit)?;
+                let (mut indices, inner) = self.iterators(&indices, context, local)?;
+                if self.classes.is_in_model(context) {
+                    indices.iter_mut().for_each(|index| self.evaluate_range(index));
+                }
+                StatementKind::For { indices, body: self.statements(body, context, &inner)? }
+            }
+            StatementKind::While { condition, body } => StatementKind::While {
+                condition: self.resolve(condition, context, local)?,
+                body: self.statements(body, context, local)?,
+            },
+            StatementKind::When { branches } => {
+                let acting = Local { impure: true, ..local.clone() };
+                StatementKind::When {
+                    branches: self.statement_branches(branches, context, &acting)?,
+                }
+            }
+            StatementKind::Break => StatementKind::Break,
+            StatementKind::Return => StatementKind::Return,
+        };
+        Ok(Statement { kind, comment: statement.comment.clone(), span: statement.span })
+    }
+
+    /// Writes the values of a loop variable out where parameters give them: an algorithm of a model
+    /// is unrolled, as loops of equations are.
+    fn evaluate_range(&mut self, index: &mut ForIndex) {
+        let Some(range) = &mut index.range else { return };
+        if let Ok(values) = self.range_values(range) {
+            let span = range.span;
+            let values = values.iter().map(|value| literal(value, span)).collect();
+            *range = Expression::new(ExpressionKind::Array(values), span);
+        }
+    }
+
+    fn statement_branches(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<(Expression, Vec<Statement>)>, Diagnostic> {
+        branches
+            .iter()
+            .map(|(condition, body)| {
+                let condition = self.resolve(condition, context, local)?;
+                Ok((condition, self.statements(body, context, local)?))
+            })
+            .collect()
+    }
+
+    fn target(
+        &mut self,
+        target: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<ComponentReference, Diagnostic> {
+        let span = target.span;
+        if let Some(first) = target.parts.first().map(|part| part.name)
+            && local.read_only.contains(&first)
+        {
+            return Err(fault!(TYPE_MISMATCH, "`{first}` is an input and cannot be assigned to";
+                help: "assign to a protected variable instead")
+            .at(span));
+        }
+        let e = Expression::new(ExpressionKind::Reference(target.clone()), span);
+        match record_or_variable(self.resolve(&e, context, local)?) {
+            Some(resolved) => Ok(resolved),
+            None => {
+                Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span))
+            }
+        }
+    }
+}
+
+impl Classes<'_> {
+    /// Whether a class declares another one behind `protected`.
+    fn is_protected_class(&self, scope: ScopeId, name: Ident) -> bool {
+        let class = self.text(scope).id.map(|id| self.library.class(id));
+        class.is_some_and(|class| {
+            class.elements().any(|(visibility, element)| match element {
+                Element::Class(nested) => {
+                    nested.class.name.node == name && visibility == Visibility::Protected
+                }
+                _ => false,
+            })
+        })
+    }
+
+    /// Whether the library has this very function under its name, not the same text in another
+    /// environment: a package that extends others modifies what their functions see.
+    fn is_found_as(&mut self, name: &Name, id: ScopeId) -> bool {
+        !matches!(self.class_named(name), Ok(Some(Type::Class(found))) if found != id)
+    }
+
+    fn long_class(&mut self, mut id: ScopeId) -> Result<ScopeId, Diagnostic> {
+        for _ in 0..100 {
+            let ClassSpecifier::Short(_) = &self.text(id).definition.specifier else { break };
+            match self.bases(id)?.first() {
+                Some(base) => id = *base,
+                None => break,
+            }
+        }
+        Ok(id)
+    }
+
+    /// Whether a scope is of a model, not of a function.
+    fn is_in_model(&self, context: ScopeId) -> bool {
+        context != ScopeId::TOP && !self.tree.in_package(self.node_of(context))
+    }
+}
+
+impl FunctionTable {
+    /// The name with a number. Functions of one instantiation alone differ by it; those
+    /// asked for one by one meet, so that their names say for which one they were made.
+    fn numbered(&self, name: &Name, number: usize) -> Name {
+        let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
+        let origin = self.asked.as_ref().map_or(String::new(), |name| format!(" in {name}"));
+        name.parent().child(Ident::new(&format!("'{last}${number}{origin}'")))
+    }
+}
+
+/// Whether a statement may leave the loop around it.
+fn breaks(statement: &Statement) -> bool {
+    match &statement.kind {
+        StatementKind::Break | StatementKind::Return => true,
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().any(|(_, body)| body.iter().any(breaks)) || otherwise.iter().any(breaks)
+        }
+        _ => false,
+    }
+}
+
+/// The path of a variable, or of a record, whose components a constructor lists.
+fn record_or_variable(e: Expression) -> Option<ComponentReference> {
+    match e.kind {
+        ExpressionKind::Reference(reference) => Some(reference),
+        ExpressionKind::Call { arguments, .. } => {
+            let first = arguments.named.into_iter().next()?;
+            let mut path = record_or_variable(first.value)?;
+            let component = path.parts.pop()?;
+            let is_record = component.name == first.name.node && !path.parts.is_empty();
+            is_record.then_some(path)
+        }
+        _ => None,
+    }
+}
+
+/// Whether two functions of one name do the same; of one that calls itself nothing is known.
+fn same_function(known: &Function, other: &Function) -> bool {
+    known == other
+}
+
+/// A component of a function with what it is.
+struct Declared {
+    causality: Option<CausalityPrefix>,
+    component: FunctionComponent,
+}
+
+fn description(specifier: &ClassSpecifier) -> Option<Arc<str>> {
+    match specifier {
+        ClassSpecifier::Long(long) => long.description.clone(),
+        ClassSpecifier::Short(short) => short.comment.text.clone(),
+        _ => None,
+    }
+}
+
+fn annotation(sections: &[Section]) -> Vec<Argument> {
+    let arguments = sections.iter().filter_map(|section| match section {
+        Section::Annotation(annotation) => Some(annotation.arguments.clone()),
+        _ => None,
+    });
+    arguments.flatten().collect()
+}

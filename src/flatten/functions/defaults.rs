@@ -1,0 +1,85 @@
+//! Inputs that a call leaves out and whose defaults refer to other inputs or, in a function with a
+//! modifier, to variables of the model (MLS §12.4.1): the default with the call's own arguments in
+//! place of the inputs is written into the call.
+
+use crate::eval::Function;
+use crate::flatten::flat_expression::subscripted;
+use crate::flatten::functions::table::FunctionTable;
+use crate::name::{Ident, Name};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{Arguments, Expression, ExpressionKind, NamedArgument};
+use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_expression};
+
+impl FunctionTable {
+    /// The arguments of a call with such defaults added.
+    pub fn with_defaults(
+        &self,
+        function: &Name,
+        mut arguments: Arguments,
+        span: Span,
+    ) -> Arguments {
+        let Some(Some(function)) = self.table.get(function) else { return arguments };
+        if !arguments.iterators.is_empty() {
+            return arguments;
+        }
+        for input in &function.inputs {
+            let Some(default) = &input.binding else { continue };
+            if given(function, &arguments, input.name).is_some() || !has_references(default) {
+                continue;
+            }
+            let mut value = default.clone();
+            Substitution { function, arguments: &arguments }.expression(&mut value);
+            let name = Spanned { node: input.name, span };
+            arguments.named.push(NamedArgument { name, value });
+        }
+        arguments
+    }
+}
+
+/// The argument that a call gives to an input.
+fn given<'e>(function: &Function, arguments: &'e Arguments, name: Ident) -> Option<&'e Expression> {
+    let at = function.inputs.iter().position(|input| input.name == name)?;
+    let named = || arguments.named.iter().find(|argument| argument.name.node == name);
+    arguments.positional.get(at).or_else(|| named().map(|argument| &argument.value))
+}
+
+/// Whether a default needs other inputs, or variables of the model from which a modifier of the
+/// function took it; constants are values by now.
+fn has_references(default: &Expression) -> bool {
+    struct References(bool);
+    impl Visit for References {
+        fn expression(&mut self, e: &Expression) {
+            self.0 |= matches!(e.kind, ExpressionKind::Reference(_));
+            walk_expression(self, e);
+        }
+    }
+    let mut search = References(false);
+    search.expression(default);
+    search.0
+}
+
+/// Puts the arguments of a call in place of the inputs.
+struct Substitution<'f> {
+    function: &'f Function,
+    arguments: &'f Arguments,
+}
+
+impl Rewrite for Substitution<'_> {
+    fn expression(&mut self, e: &mut Expression) {
+        rewrite_expression(self, e);
+        let ExpressionKind::Reference(reference) = &e.kind else { return };
+        let Some((first, rest)) = reference.parts.split_first() else { return };
+        let default = || {
+            let input = self.function.inputs.iter().find(|input| input.name == first.name)?;
+            input.binding.as_ref().filter(|default| !has_references(default))
+        };
+        let argument = given(self.function, self.arguments, first.name).or_else(default);
+        let Some(argument) = argument else { return };
+        let mut value = subscripted(argument.clone(), first.subscripts.clone(), e.span);
+        for part in rest {
+            let kind = ExpressionKind::Field { base: Box::new(value), name: part.name };
+            value = subscripted(Expression::new(kind, e.span), part.subscripts.clone(), e.span);
+        }
+        *e = value;
+    }
+}

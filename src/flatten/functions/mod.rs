@@ -1,0 +1,7 @@
+//! Functions of the flat model (MLS ch. 12): with their inherited elements and resolved names, with
+//! the default values of their inputs, and copied for the functions that they are passed.
+
+pub mod declared;
+pub mod defaults;
+pub mod specialization;
+pub mod table;

@@ -1,0 +1,217 @@
+//! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
+//! that gives a size may be declared behind the array that it sizes.
+
+use super::instance::{Declaration, MemberState};
+use super::own_sizes::with_own_sizes;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::{CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::picked;
+use crate::flatten::ids::NodeId;
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::Expanded;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{Expression, Subscript};
+use crate::value::Value;
+
+impl Instantiation<'_> {
+    /// The component of a node, built now if it was not; `None` if there is none of that name.
+    pub fn member(&mut self, node: NodeId, name: Ident) -> Result<Option<MemberState>, Diagnostic> {
+        self.classes.fill(node)?;
+        let members =
+            self.classes.tree.composite_of(node).and_then(|composite| composite.members.as_ref());
+        let Some(member) = members.and_then(|members| members.get(&name)) else {
+            return Ok(None);
+        };
+        let declaration = member.declaration.clone();
+        match &member.state {
+            MemberState::Pending => {}
+            MemberState::Busy => {
+                return Err(fault!(
+                    NOT_CONSTANT,
+                    "the size or condition of `{name}` depends on `{name}` itself"
+                )
+                .at(declaration.span));
+            }
+            done => return Ok(Some(done.clone())),
+        }
+        self.classes.tree.set_state(node, name, MemberState::Busy);
+        let built = self.build(node, &declaration);
+        let state = match &built {
+            Ok(state) => state.clone(),
+            Err(_) => MemberState::Absent,
+        };
+        self.classes.tree.set_state(node, name, state);
+        built.map(Some)
+    }
+
+    fn build(&mut self, node: NodeId, declared: &Declaration) -> Result<MemberState, Diagnostic> {
+        if let Some((condition, context)) = &declared.condition {
+            match self.structural_value(condition, *context)? {
+                Value::Boolean(true) => {}
+                Value::Boolean(false) => return Ok(MemberState::Absent),
+                other => {
+                    let found = other.type_name();
+                    return Err(fault!(
+                        TYPE_MISMATCH,
+                        "a condition must be Boolean, but this is {found}"
+                    )
+                    .at(condition.span));
+                }
+            }
+        }
+        if declared.prefixes.outer {
+            let outer = self.outer(node, declared)?;
+            if !declared.prefixes.inner {
+                return Ok(outer);
+            }
+            let inner = Box::new(self.built(node, declared)?);
+            return Ok(MemberState::Both { inner, outer: Box::new(outer.seen()) });
+        }
+        self.built(node, declared)
+    }
+
+    pub fn built(
+        &mut self,
+        node: NodeId,
+        declared: &Declaration,
+    ) -> Result<MemberState, Diagnostic> {
+        let expanded = self.classes.expand(declared)?;
+        let dims = self.dimensions(declared, &expanded)?;
+        match expanded.shape.base() {
+            Some(base) => self
+                .classes
+                .tree
+                .variable(node, declared, expanded, base, dims)
+                .map(MemberState::Single),
+            None => self.classes.components(node, declared, expanded, dims),
+        }
+    }
+
+    /// The sizes of a component, those of its type included.
+    pub fn dimensions(
+        &mut self,
+        declared: &Declaration,
+        expanded: &Expanded,
+    ) -> Result<Vec<usize>, Diagnostic> {
+        let rank = declared.dims.len() + expanded.dims.len();
+        let mut dims = Vec::with_capacity(rank);
+        let mut of_binding: Option<Vec<usize>> = None;
+        for (at, (subscript, context)) in declared.dims.iter().chain(&expanded.dims).enumerate() {
+            match subscript {
+                Subscript::Index(size) => {
+                    let size = with_own_sizes(size, declared.name, &dims);
+                    dims.push(self.size(&size, *context)?);
+                }
+                Subscript::All(span) => {
+                    if of_binding.is_none() {
+                        of_binding = Some(self.binding_dims(declared, expanded, *span)?);
+                    }
+                    let sizes = of_binding.as_deref().unwrap_or_default();
+                    let size = sizes.get(at).copied().ok_or_else(|| {
+                        fault!(
+                            SIZE_MISMATCH,
+                            "`{}` has {rank} dimensions, but its value has {}",
+                            declared.name,
+                            sizes.len()
+                        )
+                        .at(*span)
+                    })?;
+                    dims.push(size);
+                }
+            }
+        }
+        Ok(dims)
+    }
+
+    fn size(&mut self, size: &Expression, context: ScopeId) -> Result<usize, Diagnostic> {
+        if let Some(values) = self.classes.type_range(size, context, &Local::default())? {
+            return Ok(self.shape_of(&values).and_then(|dims| dims.first().copied()).unwrap_or(0));
+        }
+        match self.structural_value(size, context)? {
+            Value::Integer(n) if n >= 0 => Ok(n as usize),
+            Value::Integer(n) => {
+                Err(fault!(SIZE_MISMATCH, "{n} is not a valid array size").at(size.span))
+            }
+            other => {
+                let found = other.type_name();
+                Err(fault!(TYPE_MISMATCH, "an array size must be Integer, but this is {found}")
+                    .at(size.span))
+            }
+        }
+    }
+
+    /// The sizes of the value of `x[:] = value`.
+    fn binding_dims(
+        &mut self,
+        declared: &Declaration,
+        expanded: &Expanded,
+        span: Span,
+    ) -> Result<Vec<usize>, Diagnostic> {
+        let bound = expanded.modifier.binding.as_ref();
+        let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
+            return Err(fault!(NOT_CONSTANT, "the size of `{}` is unknown", declared.name;
+                help: "declare its size, or give it a value")
+            .at(span));
+        };
+        if let Some(dims) = self.bound_shape(&bound.clone())? {
+            return Ok(dims);
+        }
+        let value = picked(value, &bound.indices);
+        match self.structural_value(&value, bound.context)? {
+            Value::Array(array) => Ok(array.dims),
+            _ => Ok(Vec::new()),
+        }
+    }
+
+    /// Builds all components below a node.
+    pub fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
+        let mut errors = Vec::new();
+        let mut at = 0;
+        // An `outer` component without an `inner` one adds a component to the model itself.
+        while let Some(name) = self.classes.tree.member_at(node, at) {
+            at += 1;
+            let state = self.member(node, name).map(|state| state.map(MemberState::own));
+            let nodes = match state {
+                Ok(Some(MemberState::Single(one))) => vec![one],
+                Ok(Some(MemberState::Array(_, nodes))) => nodes,
+                Ok(_) => Vec::new(),
+                Err(error) => {
+                    errors.push(error);
+                    Vec::new()
+                }
+            };
+            for (number, one) in nodes.iter().copied().enumerate() {
+                // Whatever holds itself or is too large would only be found again and again.
+                if errors.iter().any(is_endless) {
+                    break;
+                }
+                self.growth.enter(
+                    node,
+                    at - 1,
+                    nodes.len() - number - 1,
+                    self.classes.tree.nodes.len(),
+                );
+                let completed = self.complete(one);
+                if let Err(error) = self.growth.check(&mut self.classes) {
+                    errors.push(error);
+                }
+                self.growth.leave();
+                if let Err(more) = completed {
+                    errors.extend(more);
+                }
+            }
+            if errors.iter().any(is_endless) {
+                break;
+            }
+        }
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+}
+
+fn is_endless(error: &Diagnostic) -> bool {
+    [CYCLIC_CLASS, TOO_LARGE].contains(&error.code)
+}

@@ -1,0 +1,47 @@
+//! The state of one instantiation: the classes with the instance tree, functions and values. Each is
+//! built as the others need it: a parameter that gives a size may be declared behind the array that
+//! it sizes.
+
+use super::growth::Growth;
+use crate::diag::Diagnostic;
+use crate::flatten::connections::sets::Connections;
+use crate::flatten::expressions::values::Values;
+use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::library::Library;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::types::Types;
+use std::rc::Rc;
+
+/// The parts of an instantiation.
+pub struct Instantiation<'a> {
+    pub classes: Classes<'a>,
+    pub functions: FunctionTable,
+    pub values: Values,
+    /// All connections, as soon as the tree is whole.
+    pub connections: Option<Rc<Connections>>,
+    pub warnings: Vec<Diagnostic>,
+    /// How deep expressions are being resolved.
+    pub depth: usize,
+    /// The components that are being completed, outermost first.
+    pub growth: Growth,
+}
+
+impl<'a> Instantiation<'a> {
+    /// A tree with the instance of the top scope alone.
+    pub fn new(library: &'a Library) -> Instantiation<'a> {
+        Instantiation {
+            classes: Classes::new(library),
+            functions: FunctionTable::default(),
+            values: Values::default(),
+            connections: None,
+            warnings: Vec::new(),
+            depth: 0,
+            growth: Growth::default(),
+        }
+    }
+
+    /// The types of resolved expressions.
+    pub fn types(&self) -> Types<'_> {
+        Types { tree: &self.classes.tree, functions: &self.functions }
+    }
+}

@@ -1,0 +1,327 @@
+//! Collects the components of a class, inherited ones included (MLS §5.6.1, §7.1), and finds out
+//! what their types are made of (MLS §4.6).
+
+use super::elements::Elements;
+use super::modification::{Modifier, Redeclaration, Replacement};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::Declaration;
+use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::elements::MAX_BASES;
+use crate::flatten::lookup::scope::Text;
+use crate::source::Span;
+use crate::syntax::ast::{
+    self, ClassSpecifier, ComponentClause, ComponentDeclaration, Deselection, Element, Restriction,
+};
+use std::sync::Arc;
+
+impl Classes<'_> {
+    pub fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
+        let text = self.text(id).clone();
+        let bases = self.bases(id)?;
+        let mut bases = bases.iter();
+        let mut found = Elements::default();
+        let class_extends = text.extended.is_some();
+        if matches!(text.definition.specifier, ClassSpecifier::Short(_)) || class_extends {
+            for base in bases.by_ref().take(1) {
+                self.inherit(id, *base, false, &[], &mut found)?;
+            }
+        }
+        for (protected, element) in text.elements() {
+            match element {
+                Element::Extends(extends) => {
+                    if let Some(base) = bases.next() {
+                        self.check_deselected(&text, *base, extends)?;
+                        self.check_base_kind(&text, *base, extends.span)?;
+                        self.inherit(id, *base, protected, &extends.deselected, &mut found)?;
+                    }
+                }
+                Element::Component(clause) if clause.prefixes.redeclare => {
+                    self.check_redeclared(id, clause, &found)?;
+                }
+                Element::Component(clause) => {
+                    for component in &clause.components {
+                        let declaration = self.declaration(clause, component, protected, id)?;
+                        self.add_component(id, Arc::new(declaration), &mut found)?;
+                    }
+                }
+                Element::Class(_) | Element::Import(_) => {}
+            }
+        }
+        found.add_base(id);
+        Ok(found)
+    }
+
+    fn inherit(
+        &mut self,
+        id: ScopeId,
+        base: ScopeId,
+        protected: bool,
+        deselected: &[Deselection],
+        found: &mut Elements,
+    ) -> Result<(), Diagnostic> {
+        let inherited = self.elements(base)?;
+        if found.is_empty() && !protected && deselected.is_empty() {
+            *found = Elements::sharing(&inherited);
+            return self.check_bases(id, found);
+        }
+        for (name, declaration) in inherited.iter() {
+            let is_out =
+                |one: &Deselection| matches!(one, Deselection::Component(out) if out.node == name);
+            if deselected.iter().any(is_out) {
+                continue;
+            }
+            let declaration = if protected && !declaration.protected {
+                Arc::new(Declaration { protected: true, ..(**declaration).clone() })
+            } else {
+                declaration.clone()
+            };
+            self.add_component(id, declaration, found)?;
+        }
+        inherited.lineage().for_each(|base| found.add_base(base));
+        self.check_bases(id, found)
+    }
+
+    fn check_bases(&self, id: ScopeId, found: &Elements) -> Result<(), Diagnostic> {
+        if found.bases() > MAX_BASES {
+            let text = self.text(id);
+            return Err(
+                fault!(TOO_LARGE, "`{}` has too many base classes", text.name).at(text.span())
+            );
+        }
+        Ok(())
+    }
+
+    /// A component redeclared among the elements must be inherited.
+    fn check_redeclared(
+        &mut self,
+        id: ScopeId,
+        clause: &ComponentClause,
+        found: &Elements,
+    ) -> Result<(), Diagnostic> {
+        for component in &clause.components {
+            let name = component.name.node;
+            if !found.contains(name) {
+                // The extends clause may stand behind the redeclaration.
+                let mut inherited = false;
+                for base in self.bases(id)?.iter() {
+                    inherited |= self.elements(*base)?.contains(name);
+                }
+                if !inherited {
+                    let class = &self.text(id).name;
+                    return Err(fault!(
+                        crate::flatten::errors::UNKNOWN_ELEMENT,
+                        "`{class}` does not inherit a component `{name}` to redeclare"
+                    )
+                    .at(component.name.span));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Which kinds of classes may extend which (MLS §7.1.3).
+    fn check_base_kind(&self, own: &Text, base: ScopeId, span: Span) -> Result<(), Diagnostic> {
+        use Restriction as R;
+        let inherited = self.text(base);
+        let fits = match (inherited.restriction(), own.restriction()) {
+            // What is only a class holds what all kinds may hold.
+            (R::Class, _) => true,
+            (R::Function { .. }, R::Function { .. }) => true,
+            (R::Package, R::Package) => true,
+            (R::Record, R::Record | R::OperatorRecord | R::Connector | R::ExpandableConnector)
+            | (R::Record, R::Model | R::Block | R::Class) => true,
+            (R::Model, R::Model | R::Class) => true,
+            (R::Block, R::Block | R::Model | R::Class) => true,
+            (
+                R::Connector,
+                R::Connector | R::ExpandableConnector | R::Model | R::Block | R::Class,
+            ) => true,
+            (R::ExpandableConnector, R::ExpandableConnector) => true,
+            (one, other) => one == other,
+        };
+        if fits {
+            return Ok(());
+        }
+        Err(fault!(
+            TYPE_MISMATCH,
+            "`{}` cannot extend `{}`, which is a different kind of class",
+            own.name,
+            inherited.name
+        )
+        .at(span))
+    }
+
+    /// A component inherited twice is one if both are the same declaration (MLS §7.1).
+    fn add_component(
+        &self,
+        id: ScopeId,
+        declaration: Arc<Declaration>,
+        found: &mut Elements,
+    ) -> Result<(), Diagnostic> {
+        let name = declaration.name;
+        if let Some(known) = found.get(name) {
+            if known.span == declaration.span
+                || (known.scope != declaration.scope && known.is_same(&declaration))
+            {
+                return Ok(());
+            }
+            return Err(fault!(
+                DUPLICATE_ELEMENT,
+                "`{}` has two components named `{name}`",
+                self.text(id).name
+            )
+            .at(declaration.span)
+            .related(known.span, "the other one"));
+        }
+        found.add(declaration);
+        Ok(())
+    }
+
+    fn declaration(
+        &mut self,
+        clause: &ComponentClause,
+        component: &ComponentDeclaration,
+        protected: bool,
+        context: ScopeId,
+    ) -> Result<Declaration, Diagnostic> {
+        let name = component.name.node;
+        let outer = self.scope(context).modifier.elements.get(&name).cloned().unwrap_or_default();
+        let redeclaration = outer.redeclaration.clone();
+        let defaults = constraining(clause, redeclaration.as_ref(), context)?;
+        let mut own = match (&redeclaration, &clause.constraint) {
+            (Some(_), Some(_)) => defaults,
+            _ => {
+                let own = Modifier::new(component.modification.as_ref(), false, context)?;
+                defaults.overridden_by(own, name)?
+            }
+        };
+        let declared_final = clause.prefixes.is_final;
+        own.is_final = declared_final;
+        let is_final = declared_final || outer.is_final;
+        let outer = Modifier { redeclaration: None, ..outer };
+        let outer_span = outer.span;
+        let mut modifier = own.overridden_by(outer, name)?;
+        modifier.is_final = false;
+        let subscripts = component.subscripts.iter().chain(&clause.subscripts);
+        let mut declaration = Declaration {
+            name,
+            type_specifier: clause.type_specifier.clone(),
+            scope: context,
+            dims: subscripts.map(|subscript| (subscript.clone(), context)).collect(),
+            modifier,
+            condition: component.condition.clone().map(|condition| (condition, context)),
+            prefixes: clause.prefixes,
+            type_prefixes: clause.type_prefixes,
+            is_final,
+            protected,
+            evaluate: evaluates(component),
+            description: component.comment.text.clone(),
+            span: component.span,
+        };
+        if let Some(redeclaration) = redeclaration {
+            let span = outer_span.unwrap_or(component.span);
+            if declared_final {
+                return Err(
+                    fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared").at(span)
+                );
+            }
+            redeclared(&mut declaration, &redeclaration, span)?;
+        }
+        Ok(declaration)
+    }
+}
+
+impl Declaration {
+    /// Whether both declare the same, as two base classes may (MLS §7.1).
+    fn is_same(&self, other: &Declaration) -> bool {
+        let plain = |one: &Declaration| one.dims.is_empty() && one.condition.is_none();
+        self.type_specifier.name == other.type_specifier.name
+            && self.prefixes == other.prefixes
+            && self.type_prefixes == other.type_prefixes
+            && self.modifier.is_same(&other.modifier)
+            && plain(self)
+            && plain(other)
+    }
+}
+
+/// The modifiers of the constraining clauses: of the declaration, and of redeclarations that stand
+/// under the last one (MLS §7.3.2).
+fn constraining(
+    clause: &ComponentClause,
+    redeclaration: Option<&Redeclaration>,
+    context: ScopeId,
+) -> Result<Modifier, Diagnostic> {
+    let mut modifier = match &clause.constraint {
+        Some(constraint) => Modifier::of_arguments(&constraint.modification, context)?,
+        None => Modifier::default(),
+    };
+    let mut under = Vec::new();
+    let mut next = redeclaration.and_then(|redeclaration| redeclaration.over.as_deref());
+    while let Some(one) = next {
+        under.push(one);
+        next = one.over.as_deref();
+    }
+    for one in under.into_iter().rev() {
+        let Replacement::Component(clause) = &one.replacement else { continue };
+        let Some(constraint) = &clause.constraint else { continue };
+        let more = Modifier::of_arguments(&constraint.modification, one.context)?;
+        modifier = match clause.components.first() {
+            Some(component) => modifier.overridden_by(more, component.name.node)?,
+            None => modifier,
+        };
+    }
+    Ok(modifier)
+}
+
+/// Puts the type, the prefixes and the dimensions of a redeclaration in the place of the declared
+/// ones (MLS §7.3); its modifiers were merged before.
+fn redeclared(
+    declaration: &mut Declaration,
+    redeclaration: &Redeclaration,
+    span: Span,
+) -> Result<(), Diagnostic> {
+    let name = declaration.name;
+    let Replacement::Component(clause) = &redeclaration.replacement else {
+        return Err(fault!(TYPE_MISMATCH, "component `{name}` is redeclared as a class").at(span));
+    };
+    let Some(component) = clause.components.first() else { return Ok(()) };
+    let context = redeclaration.context;
+    declaration.type_specifier = clause.type_specifier.clone();
+    declaration.scope = context;
+    let subscripts = component.subscripts.iter().chain(&clause.subscripts);
+    let dims: Vec<_> = subscripts.map(|subscript| (subscript.clone(), context)).collect();
+    if !dims.is_empty() {
+        declaration.dims = dims;
+    }
+    let (own, new) = (&mut declaration.type_prefixes, clause.type_prefixes);
+    own.variability = new.variability.or(own.variability);
+    own.causality = new.causality.or(own.causality);
+    own.connection = new.connection.or(own.connection);
+    declaration.is_final |= clause.prefixes.is_final;
+    declaration.evaluate |= evaluates(component);
+    if component.comment.text.is_some() {
+        declaration.description = component.comment.text.clone();
+    }
+    declaration.span = component.span;
+    Ok(())
+}
+
+/// Whether a declaration carries `annotation(Evaluate = true)` (MLS §18.3).
+fn evaluates(component: &ComponentDeclaration) -> bool {
+    let Some(annotation) = &component.comment.annotation else { return false };
+    annotation.arguments.iter().any(|argument| match argument {
+        ast::Argument::Element(element) => {
+            let binding = element.modification.as_ref().and_then(|m| m.binding.as_ref());
+            element.name.node.to_string() == "Evaluate"
+                && matches!(
+                    binding,
+                    Some(ast::Binding::Expression(value))
+                        if value.kind == ast::ExpressionKind::Boolean(true)
+                )
+        }
+        ast::Argument::Redeclaration(_) => false,
+    })
+}

@@ -1,0 +1,319 @@
+//! Merging modifications (MLS §7.2) and redeclarations (MLS §7.3): outer modifiers override inner
+//! ones, element by element.
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
+use crate::flatten::ids::ScopeId;
+use crate::flatten::library::ClassId;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{
+    Argument, Binding, ClassElement, ComponentClause, ComponentDeclaration, ElementRedeclaration,
+    Expression, Modification, RedeclaredElement,
+};
+use crate::syntax::print;
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// All that modifies one element, merged.
+#[derive(Debug, Clone, Default)]
+pub struct Modifier {
+    /// The value behind `=`, with the scope that it was written in.
+    pub binding: Option<Bound>,
+    /// Modifiers of the element's own elements or attributes.
+    pub elements: IndexMap<Ident, Modifier>,
+    /// Where the name of the element is written; unknown if several modifiers were merged.
+    pub span: Option<Span>,
+    /// Whether a `final` forbids outer modifiers.
+    pub is_final: bool,
+    /// What stands in the place of the element.
+    pub redeclaration: Option<Redeclaration>,
+}
+
+/// What an element is redeclared as.
+#[derive(Debug, Clone)]
+pub struct Redeclaration {
+    pub replacement: Replacement,
+    /// The scope that it was written in.
+    pub context: ScopeId,
+    /// The inner redeclaration that this one stands over, which a class extends may extend.
+    pub over: Option<Box<Redeclaration>>,
+    /// What modifies the element besides the modifiers of this redeclaration and of those that it
+    /// stands over.
+    pub plain: Box<Modifier>,
+}
+
+/// The text of a redeclaration.
+#[derive(Debug, Clone)]
+pub enum Replacement {
+    /// A short class in a modification.
+    Class(Arc<ClassElement>),
+    /// A class among the elements of a class.
+    Element(ClassId),
+    /// A component, in a modification or among the elements.
+    Component(Arc<ComponentClause>),
+}
+
+/// A value with the scope that it was written in.
+#[derive(Debug, Clone)]
+pub struct Bound {
+    /// The value; `None` for `= break`, which removes an inner one (MLS §7.2.7).
+    pub value: Option<Expression>,
+    pub context: ScopeId,
+    /// `each`: holds for every element of an array.
+    pub each: bool,
+    /// For modifiers of arrays of components: the element of the value that is meant, one index a
+    /// dimension, from 1.
+    pub indices: Vec<usize>,
+}
+
+impl Modifier {
+    /// The modifier that a declaration's or an argument's modification writes.
+    pub fn new(
+        modification: Option<&Modification>,
+        each: bool,
+        context: ScopeId,
+    ) -> Result<Modifier, Diagnostic> {
+        let Some(modification) = modification else { return Ok(Modifier::default()) };
+        let mut modifier = Modifier::of_each(&modification.arguments, each, context)?;
+        modifier.binding = modification.binding.as_ref().map(|binding| {
+            let value = match binding {
+                Binding::Expression(value) => Some(value.clone()),
+                Binding::Break(_) => None,
+            };
+            Bound { value, context, each, indices: Vec::new() }
+        });
+        Ok(modifier)
+    }
+
+    /// The modifier that stands in parentheses.
+    pub fn of_arguments(arguments: &[Argument], context: ScopeId) -> Result<Modifier, Diagnostic> {
+        Modifier::of_each(arguments, false, context)
+    }
+
+    /// As [`Modifier::of_arguments`], inside an argument that may be marked `each`.
+    fn of_each(
+        arguments: &[Argument],
+        each: bool,
+        context: ScopeId,
+    ) -> Result<Modifier, Diagnostic> {
+        let mut merged = Modifier::default();
+        for argument in arguments {
+            let element = match argument {
+                Argument::Element(element) => element,
+                Argument::Redeclaration(redeclaration) => {
+                    merged.add_redeclaration(redeclaration, each, context)?;
+                    continue;
+                }
+            };
+            let each = each || element.each;
+            let mut inner = Modifier::new(element.modification.as_ref(), each, context)?;
+            inner.is_final = element.is_final;
+            inner.span = Some(element.name.span);
+            let mut parts = element.name.node.parts.iter().rev();
+            let Some(last) = parts.next() else { continue };
+            let mut entry = (*last, inner);
+            for part in parts {
+                let span = entry.1.span;
+                let elements = [entry].into_iter().collect();
+                entry = (*part, Modifier { elements, span, ..Modifier::default() });
+            }
+            let known = merged.elements.shift_remove(&entry.0).unwrap_or_default();
+            if let Some(name) = known.conflict(&entry.1, entry.0) {
+                return Err(fault!(DUPLICATE_ELEMENT, "`{name}` is modified twice";
+                    help: "remove one of the two modifiers")
+                .at(element.name.span));
+            }
+            merged.elements.insert(entry.0, known.overridden_by(entry.1, entry.0)?);
+        }
+        Ok(merged)
+    }
+
+    fn add_redeclaration(
+        &mut self,
+        element: &ElementRedeclaration,
+        each: bool,
+        context: ScopeId,
+    ) -> Result<(), Diagnostic> {
+        let each = each || element.each;
+        let (name, replacement, mut modifier, is_final) = match &element.element {
+            RedeclaredElement::Class(class) => {
+                let replacement = Replacement::Class(Arc::new((**class).clone()));
+                (class.class.name, replacement, Modifier::default(), class.prefixes.is_final)
+            }
+            RedeclaredElement::Component(clause) => {
+                let Some(component) = clause.components.first() else { return Ok(()) };
+                // The values that the redeclaration gives are those of an outer modifier.
+                let modifier = Modifier::new(component.modification.as_ref(), each, context)?;
+                let replacement = Replacement::Component(Arc::new((**clause).clone()));
+                (component.name, replacement, modifier, clause.prefixes.is_final)
+            }
+        };
+        modifier.redeclaration = Some(Redeclaration::new(replacement, context));
+        modifier.is_final = is_final;
+        modifier.span = Some(name.span);
+        let known = self.elements.shift_remove(&name.node).unwrap_or_default();
+        if known.redeclaration.is_some() || known.conflict(&modifier, name.node).is_some() {
+            return Err(fault!(DUPLICATE_ELEMENT, "`{}` is modified twice", name.node;
+                help: "remove one of the two modifiers")
+            .at(name.span));
+        }
+        self.elements.insert(name.node, known.overridden_by(modifier, name.node)?);
+        Ok(())
+    }
+
+    /// Adds the redeclaration of a component by an element of a class.
+    pub fn redeclare_component(
+        &mut self,
+        clause: &ComponentClause,
+        component: &ComponentDeclaration,
+        context: ScopeId,
+    ) -> Result<(), Diagnostic> {
+        let mut modifier = Modifier::new(component.modification.as_ref(), false, context)?;
+        let one = ComponentClause { components: vec![component.clone()], ..clause.clone() };
+        let replacement = Replacement::Component(Arc::new(one));
+        modifier.redeclaration = Some(Redeclaration::new(replacement, context));
+        modifier.span = Some(component.name.span);
+        self.elements.insert(component.name.node, modifier);
+        Ok(())
+    }
+
+    /// Adds a redeclaration of a class.
+    pub fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
+        let entry = self.elements.entry(name).or_default();
+        entry.redeclaration = Some(redeclaration);
+        entry.span = Some(span);
+    }
+
+    /// Whether both are written alike, wherever they stand.
+    pub fn is_same(&self, other: &Modifier) -> bool {
+        let value = |one: &Modifier| {
+            one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
+        };
+        let elements = || {
+            self.elements.iter().all(|(name, modifier)| {
+                other.elements.get(name).is_some_and(|other| modifier.is_same(other))
+            })
+        };
+        value(self) == value(other)
+            && self.redeclaration.is_none()
+            && other.redeclaration.is_none()
+            && self.elements.len() == other.elements.len()
+            && elements()
+    }
+
+    /// Where it is written, or the first of the modifiers in it.
+    fn place(&self) -> Option<Span> {
+        self.span.or_else(|| self.elements.values().find_map(Modifier::place))
+    }
+
+    /// Whether it changes nothing.
+    pub fn is_empty(&self) -> bool {
+        self.binding.is_none() && self.elements.is_empty() && self.redeclaration.is_none()
+    }
+
+    /// The element to which both modifiers give a value (MLS §7.2.4).
+    fn conflict(&self, other: &Modifier, name: Ident) -> Option<Ident> {
+        if self.binding.is_some() && other.binding.is_some() {
+            return Some(name);
+        }
+        let inner = |(name, modifier): (&Ident, &Modifier)| {
+            self.elements.get(name)?.conflict(modifier, *name)
+        };
+        other.elements.iter().find_map(inner)
+    }
+
+    /// This modifier with an outer one over it; `name` is the element's, for messages.
+    pub fn overridden_by(
+        mut self,
+        mut outer: Modifier,
+        name: Ident,
+    ) -> Result<Modifier, Diagnostic> {
+        let changes = !outer.is_empty();
+        if self.is_final && changes {
+            return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified")
+                .at(outer.place().or(self.span).unwrap_or(Span::NONE)));
+        }
+        match (self.redeclaration.take(), outer.redeclaration.take()) {
+            (inner, Some(redeclaration)) => {
+                if let Some(inner) = &inner {
+                    self = (*inner.plain).clone();
+                }
+                self.redeclaration = Some(redeclaration.standing_over(inner, &self, name)?);
+            }
+            (Some(mut inner), None) => {
+                *inner.plain = inner.plain.overridden_by(outer.clone(), name)?;
+                self.redeclaration = Some(inner);
+            }
+            (None, None) => {}
+        }
+        if outer.binding.is_some() {
+            self.binding = outer.binding;
+        }
+        for (element, modifier) in outer.elements {
+            let inner = self.elements.shift_remove(&element).unwrap_or_default();
+            self.elements.insert(element, inner.overridden_by(modifier, element)?);
+        }
+        self.is_final |= outer.is_final;
+        self.span = outer.span.or(self.span);
+        Ok(self)
+    }
+
+    /// The modifier of one element of an array of components: values written without `each` are
+    /// arrays, and the element is picked from them.
+    pub fn at_element(&self, indices: &[usize]) -> Modifier {
+        let picked = |bound: &Bound| {
+            let mut bound = bound.clone();
+            if !bound.each {
+                bound.indices.extend(indices);
+            }
+            bound
+        };
+        Modifier {
+            binding: self.binding.as_ref().map(picked),
+            elements: self
+                .elements
+                .iter()
+                .map(|(name, modifier)| (*name, modifier.at_element(indices)))
+                .collect(),
+            span: self.span,
+            is_final: self.is_final,
+            redeclaration: self.redeclaration.clone(),
+        }
+    }
+}
+
+impl Redeclaration {
+    /// A redeclaration of an element that nothing else modifies.
+    pub fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
+        Redeclaration { replacement, context, over: None, plain: Box::default() }
+    }
+
+    /// This redeclaration of an element that has been redeclared before, maybe, and is modified
+    /// besides. The modifiers of the inner redeclaration belong to it alone: for further ones, those
+    /// of the original declaration or of a constraining clause hold (MLS §7.3.2).
+    fn standing_over(
+        mut self,
+        inner: Option<Redeclaration>,
+        plain: &Modifier,
+        name: Ident,
+    ) -> Result<Redeclaration, Diagnostic> {
+        self.over = match (self.over.take(), inner) {
+            (Some(mut over), Some(inner)) => {
+                over.put_under(inner);
+                Some(over)
+            }
+            (over, inner) => over.or(inner.map(Box::new)),
+        };
+        *self.plain = plain.clone().overridden_by(*self.plain, name)?;
+        Ok(self)
+    }
+
+    fn put_under(&mut self, inner: Redeclaration) {
+        match &mut self.over {
+            Some(over) => over.put_under(inner),
+            None => self.over = Some(Box::new(inner)),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What the name of a type means: a class, or a predefined type.
+
+use crate::flatten::ids::ScopeId;
+use crate::name::Ident;
+
+/// What the name of a type means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Type {
+    /// A class in its enclosing scope.
+    Class(ScopeId),
+    /// A predefined type (MLS §4.9).
+    Predefined(Predefined),
+}
+
+/// The predefined types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Predefined {
+    Real,
+    Integer,
+    Boolean,
+    String,
+    /// `StateSelect` (MLS §4.9.7.1).
+    StateSelect,
+    /// `AssertionLevel` (MLS §8.3.7).
+    AssertionLevel,
+    /// `ExternalObject` (MLS §12.9.7).
+    ExternalObject,
+}
+
+impl Predefined {
+    pub fn named(name: Ident) -> Option<Predefined> {
+        match name.as_str() {
+            "Real" => Some(Predefined::Real),
+            "Integer" => Some(Predefined::Integer),
+            "Boolean" => Some(Predefined::Boolean),
+            "String" => Some(Predefined::String),
+            "StateSelect" => Some(Predefined::StateSelect),
+            "AssertionLevel" => Some(Predefined::AssertionLevel),
+            "ExternalObject" => Some(Predefined::ExternalObject),
+            _ => None,
+        }
+    }
+
+    /// Whether no class can have its name (MLS §4.9).
+    pub fn is_reserved(self) -> bool {
+        use Predefined::{Boolean, Integer, Real, String};
+        matches!(self, Real | Integer | Boolean | String)
+    }
+}
