@@ -13,9 +13,7 @@
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993), section 4.
 
 use super::causalized::Selection;
-use crate::lower::derivative_of;
-use crate::lower::scalar_of_nothing;
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, Kind, derivative_of, scalar_of_nothing};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 

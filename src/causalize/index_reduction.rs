@@ -17,8 +17,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::{Bipartite, differentiate_equations, match_equations};
-use crate::lower::derivative_of;
-use crate::lower::{Dae, Equation, Kind, Variable};
+use crate::lower::{Dae, Equation, Kind, Variable, derivative_of};
 use crate::symbolic::{Expr, VarId, differentiate};
 use rustc_hash::FxHashMap;
 

@@ -12,8 +12,7 @@
 
 use super::instruction::{Instruction, Register};
 use super::registers::Registers;
-use crate::codegen::registers::Key;
-use crate::codegen::registers::Which;
+use crate::codegen::registers::{Key, Which};
 use std::mem::discriminant;
 
 /// Which instructions on fixed registers leave their tape.

@@ -4,8 +4,7 @@
 //! the writer of a register need not stand on every way to its readers. Code that keeps values in
 //! registers of the machine must know which these are.
 
-use super::instruction::LinearSolve;
-use super::instruction::{Instruction, Register};
+use super::instruction::{Instruction, LinearSolve, Register};
 use super::tape::Tape;
 use rustc_hash::{FxHashMap, FxHashSet};
 

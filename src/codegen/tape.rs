@@ -3,9 +3,7 @@
 
 use super::instruction::LinearSolve;
 use super::memory::Memory;
-use crate::codegen::instruction::Call;
-use crate::codegen::instruction::Instruction;
-use crate::codegen::instruction::Register;
+use crate::codegen::instruction::{Call, Instruction, Register};
 use crate::elementary;
 
 /// A sequence of instructions.

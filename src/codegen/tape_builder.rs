@@ -2,8 +2,7 @@
 
 use super::branches::{Branches, Computed};
 use super::hoist::Hoisting;
-use super::instruction::LinearSolve;
-use super::instruction::{Call, Instruction, Register};
+use super::instruction::{Call, Instruction, LinearSolve, Register};
 use super::routines::{Routine, Routines};
 use super::tape::Tape;
 use crate::codegen::registers::Registers;

@@ -5,8 +5,7 @@
 //! returns, is zero if all were finite. Calls of functions and linear systems that need a workspace
 //! are not translated.
 
-use super::instruction::LinearSolve;
-use super::instruction::{Instruction, Register};
+use super::instruction::{Instruction, LinearSolve, Register};
 use super::linear_system::{MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::regions::shared_by_branches;
 use super::tape::Tape;

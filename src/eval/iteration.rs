@@ -1,9 +1,8 @@
 //! Iterators: loops' ranges, comprehensions `{e for i in r}` (MLS §10.4.1) and reductions
 //! `sum(e for i in r)` (MLS §10.3.4).
 
-use super::Evaluator;
-use super::deduction;
 use super::errors::MISPLACED;
+use super::{Evaluator, deduction};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::functions::{self, Meaning};

@@ -4,9 +4,8 @@ use super::{Evaluator, Function, ValueType};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::source::Span;
-use crate::value::construct;
 use crate::value::errors::SIZE_MISMATCH;
-use crate::value::{Value, sizes};
+use crate::value::{Value, construct, sizes};
 use std::sync::Arc;
 
 impl Evaluator<'_> {

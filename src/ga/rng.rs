@@ -14,9 +14,8 @@
 //! [L'Ecuyer, Simard, Chen and Kelton 2002](crate::bibliography#lecuyer-2002).
 
 use super::errors::BAD_SEED;
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
+use crate::{bail, elementary};
 use rand::rand_core::Infallible;
 use rand::{SeedableRng, TryRng};
 

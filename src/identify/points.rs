@@ -1,9 +1,8 @@
 //! Where on a simulated trajectory the measured points lie.
 
 use super::errors::{NOT_MONOTONE, POINTS_OUTSIDE};
-use crate::bail;
 use crate::diag::Fault;
-use crate::fault;
+use crate::{bail, fault};
 
 /// A simulated trajectory of X: times, not decreasing, and the values there.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,8 @@
 use super::errors::BAD_TABLE;
 use super::matrix::MatFile;
 use super::table;
-use crate::bail;
 use crate::diag::Fault;
-use crate::fault;
+use crate::{bail, fault};
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;

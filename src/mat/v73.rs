@@ -7,8 +7,7 @@
 //! References: *HDF5 File Format Specification Version 3.0*, The HDF Group; for the attributes
 //! `MATLAB_class`, `MATLAB_empty`, `MATLAB_sparse` the files that MATLAB R2024a writes.
 
-use super::errors::BAD_MAT_FILE;
-use super::errors::UNSUPPORTED_MAT_FILE;
+use super::errors::{BAD_MAT_FILE, UNSUPPORTED_MAT_FILE};
 use super::matrix::{self, Kind, MatFile, Matrix, Version};
 use super::v5::MAX_INFLATED;
 use crate::diag::Fault;

@@ -3,10 +3,9 @@
 
 use super::errors::BAD_RESULT_FILE;
 use super::{Format, ResultTable, Series, Values};
-use crate::bail;
 use crate::diag::Fault;
-use crate::mat;
 use crate::registry::Entry;
+use crate::{bail, mat};
 use std::fmt::Write;
 use std::io;
 

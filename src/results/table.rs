@@ -1,9 +1,8 @@
 //! Results in memory.
 
 use super::errors::{BAD_RESULT_TABLE, OUTSIDE_RESULTS, UNKNOWN_RESULT_VARIABLE};
-use crate::bail;
 use crate::diag::{Fault, suggest};
-use crate::fault;
+use crate::{bail, fault};
 use std::collections::HashSet;
 
 /// The results of one simulation. Time does not decrease; an event is two points with equal time,

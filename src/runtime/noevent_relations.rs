@@ -4,8 +4,7 @@
 use super::execution::run;
 use super::system::System;
 use crate::codegen::memory::Memory;
-use crate::codegen::program::Differences;
-use crate::codegen::program::Program;
+use crate::codegen::program::{Differences, Program};
 use crate::sim::{DaeSystem, Failure};
 use std::sync::Arc;
 

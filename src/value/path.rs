@@ -1,9 +1,8 @@
 //! Parts of values: `a[2].b[1, :]` read and overwritten in place (MLS §10.5, slices of arrays of
 //! records included).
 
-use super::construct;
 use super::errors::TYPE_MISMATCH;
-use super::{ArrayValue, Elements, Index, RecordValue, Value};
+use super::{ArrayValue, Elements, Index, RecordValue, Value, construct};
 use crate::diag::{Fault, suggest};
 use crate::name::Ident;
 use crate::{bail, fault};

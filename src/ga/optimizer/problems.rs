@@ -1,8 +1,10 @@
 //! Problems with known minima, and the loop that solves them.
 
 // What includes this file, a test or a benchmark, names these in its own way.
-use super::{Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup, Wants};
-use super::{hypervolume, survivors};
+use super::{
+    Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup, Wants, hypervolume,
+    survivors,
+};
 use crate::elementary;
 
 /// Residuals at a point of the unit cube; `None` where it fails. The first objective is their sum

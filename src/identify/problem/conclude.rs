@@ -5,9 +5,10 @@
 use super::checks::rms;
 use super::minimum_test::is_at_minimum;
 use super::run::Cause;
-use super::saddle;
-use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
-use super::{curvature, limits};
+use super::{
+    Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma, curvature,
+    limits, saddle,
+};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::identify::fitness::{Fitness, median_deviation};

@@ -10,8 +10,7 @@
 
 use super::minimum_test::tested;
 use super::run::Cause;
-use super::{Linearization, Problem, Run};
-use super::{curvature, limits};
+use super::{Linearization, Problem, Run, curvature, limits};
 use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};

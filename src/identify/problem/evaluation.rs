@@ -3,11 +3,10 @@
 
 use super::{Failed, Linearization, Problem, Simulate};
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
 use crate::registry::BAD_OPTION;
+use crate::{elementary, fault};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicBool, Ordering};

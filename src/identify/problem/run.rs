@@ -2,15 +2,13 @@
 
 use super::evaluation::{Answered, Evaluation};
 use super::{FailureKind, Fingerprint, Problem, Record, Stop};
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
 };
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
 use crate::registry::BAD_OPTION;
+use crate::{bail, elementary, fault};
 use indexmap::IndexMap;
 
 /// The smallest relative improvement that is one.

@@ -1,10 +1,9 @@
 //! The search space: free parameters with their ranges, as genes of the unit cube and back.
 
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
 use crate::ga::Gene;
 use crate::ga::errors::BAD_RANGE;
+use crate::{bail, elementary};
 
 /// A positive range wider than this ratio is searched on a logarithmic scale unless told otherwise.
 const DECADE: f64 = 10.0;

@@ -10,11 +10,10 @@ use super::{
     SolvedSeries, Statistics, Verdict,
 };
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::ga::operators::KINDS;
 use crate::identify::Uncertainty;
 use crate::registry::BAD_OPTION;
+use crate::{elementary, fault};
 
 /// Values nearer to a bound than this fraction of the range are at it.
 const AT_BOUND: f64 = 1e-3;

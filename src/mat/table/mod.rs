@@ -19,9 +19,8 @@ pub(super) use moment::{duration, iso};
 
 use super::errors::BAD_TABLE;
 use super::matrix::{About, MatFile, Matrix, Version};
-use crate::bail;
 use crate::diag::Fault;
-use crate::fault;
+use crate::{bail, fault};
 use column::{Cells, Content, Parsed};
 use layout::Layout;
 use moment::{Kind, Moment};

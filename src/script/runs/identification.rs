@@ -2,7 +2,6 @@
 //! report at the end of a run.
 
 use super::tracing;
-use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
@@ -10,12 +9,12 @@ use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
 use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
-use crate::mat;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::builtins::Failure;
 use crate::script::models::{simulation, static_curve};
 use crate::source::Span;
+use crate::{bail, mat};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -3,8 +3,6 @@
 
 use super::identification::Request;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::ga::errors::BAD_POPULATION;
 use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup, Wants};
 use crate::ga::{Gene, Genomes, Individual, Mrg32k3a, best, has_failed};
@@ -15,6 +13,7 @@ use crate::registry::{self, Options};
 use crate::script::Session;
 use crate::script::builtins::Failure;
 use crate::script::models::simulation;
+use crate::{elementary, fault};
 
 /// Least squares draw no random numbers, but every search has a generator.
 const SEED: [f64; 6] = [12345.0; 6];

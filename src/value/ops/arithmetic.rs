@@ -1,9 +1,8 @@
 //! `+ - * / ^` (MLS §10.6).
 
 use super::elementwise::{added, divided, multiplied, subtracted};
-use super::matrix;
 use super::scalar::{overflow, real_add, real_divide, real_multiply, real_power, real_subtract};
-use super::unsuitable;
+use super::{matrix, unsuitable};
 use crate::diag::Fault;
 use crate::fault;
 use crate::value::errors::TYPE_MISMATCH;

@@ -7,9 +7,8 @@ use super::unsuitable;
 use crate::diag::Fault;
 use crate::fault;
 use crate::value::array::{has_room, sizes};
-use crate::value::check_length;
 use crate::value::errors::SIZE_MISMATCH;
-use crate::value::{ArrayValue, Elements, Value};
+use crate::value::{ArrayValue, Elements, Value, check_length};
 use std::cell::Cell;
 use std::sync::Arc;
 

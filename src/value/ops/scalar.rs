@@ -1,9 +1,8 @@
 //! Operators of two numbers, and what does not fit in their type.
 
 use crate::diag::Fault;
-use crate::elementary;
 use crate::value::errors::{DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW};
-use crate::{bail, fault};
+use crate::{bail, elementary, fault};
 
 pub fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
     representable("+", a, b, a + b)

@@ -6,12 +6,10 @@
 //! logarithms, and a point that violates a constraint is refused before it is simulated.
 
 use super::Constraint;
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::identify::problem::{ErrorModel, Failed, FailureKind, Problem, Series, Sigma, Simulate};
 use crate::registry::BAD_OPTION;
+use crate::{bail, elementary, fault};
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -8,14 +8,12 @@
 //! Reference: [Burnham & Anderson 2002](crate::bibliography#burnham-anderson-2002).
 
 use super::Likelihood;
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::identify::problem::distributions::chi_square_tails;
 use crate::identify::problem::{EndingKind, Solution};
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
+use crate::{bail, elementary, fault};
 use serde::Serialize;
 use std::fmt::Write;
 

@@ -16,11 +16,10 @@ use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
 use super::{Curve, Local, PRIOR, Reach, Wanted};
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::identify::problem::Problem;
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
+use crate::{elementary, fault};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 

@@ -7,9 +7,7 @@ use super::data::Notes;
 use super::file::{OneOrMany, ProblemFile, Role};
 use super::operators::{self, Named};
 use super::{experiment, own_fitness};
-use crate::bail;
 use crate::diag::{Diagnostic, Fault, visible_line};
-use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
@@ -17,10 +15,10 @@ use crate::identify::problem::{
     Experiment, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Origins, Problem, Series,
     Simulate, Stop, decide, likelihood,
 };
-use crate::mat;
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::script::Session;
 use crate::source::Span;
+use crate::{bail, fault, mat};
 use indexmap::IndexMap;
 use std::path::Path;
 

@@ -1,10 +1,7 @@
 //! Constraints between parameters, such as `a < b` or `a + 2*b <= 10`: inequalities of arithmetic
 //! expressions as in Modelica.
 
-use crate::bail;
 use crate::diag::{Fault, suggest};
-use crate::elementary;
-use crate::fault;
 use crate::identify::problem::inference::Constraint;
 use crate::registry::BAD_OPTION;
 use crate::source::SourceId;
@@ -12,6 +9,7 @@ use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
 };
 use crate::syntax::parse_expression;
+use crate::{bail, elementary, fault};
 use std::sync::Arc;
 
 /// An arithmetic expression of the parameters.

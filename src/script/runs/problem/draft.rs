@@ -1,8 +1,7 @@
 //! A first problem file from a data file and a model: columns are matched with variables by their names,
 //! ranges are guessed from the model.
 
-use super::build;
-use super::file;
+use super::{build, file};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;

@@ -6,10 +6,8 @@ use super::enclosing_class::EnclosingClass;
 use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile, Role};
 use super::series::Comparison;
 use super::{dynamics, inputs};
-use crate::bail;
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
-use crate::fault;
 use crate::flatten::FlatModel;
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model};
@@ -21,6 +19,7 @@ use crate::script::models::static_curve;
 use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
 use crate::syntax::ast::ExpressionKind;
+use crate::{bail, fault};
 use std::fmt::Write;
 use std::sync::Arc;
 

@@ -3,15 +3,14 @@
 use super::file::{
     BandsEntry, BootstrapEntry, DesignEntry, PosteriorEntry, PriorEntry, PriorNumbers, ProblemFile,
 };
-use crate::bail;
 use crate::diag::{Fault, suggest};
-use crate::fault;
 use crate::identify::problem::inference::{
     Adjustments, BootstrapSettings, Constraint, DesignSettings, Distribution, Inference,
     IntervalKind, ModelPredictions, PosteriorSettings, Prior, Resampling,
 };
 use crate::identify::problem::{Experiment, Free};
 use crate::registry::BAD_OPTION;
+use crate::{bail, fault};
 
 /// Points of a design unless the file says how many.
 const POINTS: usize = 5;

@@ -2,8 +2,7 @@
 
 use crate::identify::problem::Run;
 use crate::script::Session;
-use crate::script::runs::view::Progress;
-use crate::script::runs::view::{Fitted, Spread, View, labelled};
+use crate::script::runs::view::{Fitted, Progress, Spread, View, labelled};
 
 /// What a pause explains.
 const HELP: &str = "\

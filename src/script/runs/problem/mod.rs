@@ -26,9 +26,7 @@ mod series;
 mod sigma;
 
 use super::checkpoint::{self, Checkpoint, keep_old};
-use crate::bail;
 use crate::diag::{Diagnostic, Fault};
-use crate::fault;
 use crate::identify::problem::{
     self as solving, Finding, FindingKind, Importance, ModelSimulator, Origins, Run, Severity,
     Simulate, Solution, SolvedSeries,
@@ -38,6 +36,7 @@ use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::source::Span;
 use crate::value::RecordValue;
+use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, draft};
 
 use build::Built;

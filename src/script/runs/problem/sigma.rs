@@ -2,15 +2,13 @@
 //! data, a formula of the output, or `estimate`.
 
 use super::file::SigmaEntry;
-use crate::bail;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::fault;
 use crate::identify::problem::{Sigma, SigmaFormula};
 use crate::mat::MatFile;
 use crate::registry::BAD_OPTION;
 use crate::source::SourceId;
 use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind, UnaryOperator};
+use crate::{bail, elementary, fault};
 use std::sync::Arc;
 
 /// What is written for deviations that are estimated.
