@@ -1,7 +1,7 @@
 //! Block lower triangular form: which equation determines which unknown, in solving order.
 
 use super::causalized::{Assignment, Block, Loop};
-use super::linear_loops::solve_linear;
+use super::linear_loops::{is_safe, solve_linear};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
@@ -134,20 +134,6 @@ pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Op
     }
     let solution = solve(pool, equation.left, equation.right, variable)?;
     is_safe(dae, solution.divisor).then_some(solution.value)
-}
-
-/// Whether a divisor is a number that is not zero, or made of parameters that do not make it zero
-/// by default: where others make it zero, the division fails with a message rather than giving a
-/// wrong value.
-pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
-    if let Some(value) = dae.pool.as_constant(divisor) {
-        return value != 0.0;
-    }
-    let varies = |v: VarId| !matches!(dae.variable(v).kind, Kind::Parameter { .. });
-    !dae.pool.any_variable(divisor, varies) && {
-        let value = dae.defaults.of(dae, divisor);
-        value.is_finite() && value != 0.0
-    }
 }
 
 /// Where equations are written and, where instances share the place, whose they are.

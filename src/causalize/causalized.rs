@@ -22,7 +22,7 @@ pub struct CausalizedDae {
     pub initial_blocks: Vec<Block>,
     /// Discrete variables of loops: blocks read them before they write them, so the blocks are
     /// solved until these do not change.
-    pub lagged: Vec<VarId>,
+    pub iterated: Vec<VarId>,
     /// What the solution of these must fulfil besides.
     pub initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.

@@ -171,7 +171,7 @@ struct Choice {
 }
 
 /// How little a variable is wanted as a state, the least wanted first.
-type Wish = (StateSelect, bool, bool);
+type Preference = (StateSelect, bool, bool);
 
 impl Level<'_> {
     /// The variable that a derivative comes from.
@@ -181,25 +181,28 @@ impl Level<'_> {
 
     /// What is asked for a variable is asked for its derivatives too: the choice of speeds decides
     /// that of positions.
-    fn wish(&self, dae: &Dae, variable: usize) -> Wish {
+    fn preference(&self, dae: &Dae, variable: usize) -> Preference {
         let first = self.origin(variable);
-        let mut wish: Wish = (StateSelect::Default, false, false);
+        let mut preference: Preference = (StateSelect::Default, false, false);
         let mut next = Some(first);
         while let Some(origin) = next {
             let origin_of = dae.variable(self.chains.variables[origin]);
-            wish.0 = wish.0.merged_with(origin_of.state_select);
-            wish.1 |= origin_of.fixed;
-            wish.2 |= origin_of.start.is_some();
+            preference.0 = preference.0.merged_with(origin_of.state_select);
+            preference.1 |= origin_of.fixed;
+            preference.2 |= origin_of.start.is_some();
             next = self.var_to_origin[origin];
         }
-        wish
+        preference
     }
 
     fn choose(&self, dae: &mut Dae, values: &DefaultValues) -> Result<Choice, Diagnostic> {
         let mut columns = self.variables.clone();
         // Of those that are wanted alike the first declared stays a state.
-        columns.sort_by_key(|v| (self.wish(dae, *v), std::cmp::Reverse(self.chains.variables[*v])));
-        let wishes: Vec<Wish> = columns.iter().map(|v| self.wish(dae, *v)).collect();
+        columns.sort_by_key(|v| {
+            (self.preference(dae, *v), std::cmp::Reverse(self.chains.variables[*v]))
+        });
+        let preferences: Vec<Preference> =
+            columns.iter().map(|v| self.preference(dae, *v)).collect();
         let jacobian = self.jacobian(dae, &columns);
         let entry = |e: &Option<Expr>| {
             let value = e.map_or(0.0, |e| values.of(dae, e));
@@ -209,9 +212,9 @@ impl Level<'_> {
         let entries: Vec<Vec<(f64, bool)>> =
             jacobian.iter().map(|row| row.iter().map(entry).collect()).collect();
         let all = |places: Vec<usize>| places.into_iter().map(|at| columns[at]).collect();
-        let by_value = pivots(entries.clone(), &wishes, false);
-        let wanted = by_value.as_ref().filter(|chosen| is_wanted(chosen, &wishes));
-        let (dummies, is_static) = match (wanted, pivots(entries, &wishes, true)) {
+        let by_value = pivots(entries.clone(), &preferences, false);
+        let wanted = by_value.as_ref().filter(|chosen| is_wanted(chosen, &preferences));
+        let (dummies, is_static) = match (wanted, pivots(entries, &preferences, true)) {
             (Some(chosen), _) => (all(chosen.clone()), true),
             (None, Some(chosen)) => (all(chosen), true),
             (None, None) => {
@@ -310,18 +313,22 @@ fn is_known(dae: &Dae, e: Expr) -> bool {
 }
 
 /// Whether `stateSelect` prefers every state to every dummy.
-fn is_wanted(dummies: &[usize], wishes: &[Wish]) -> bool {
+fn is_wanted(dummies: &[usize], preferences: &[Preference]) -> bool {
     let is_dummy = |column: &usize| dummies.contains(column);
-    let (dummies, states): (Vec<usize>, Vec<usize>) = (0..wishes.len()).partition(is_dummy);
-    let most = dummies.iter().map(|column| wishes[*column].0).max();
-    let least = states.iter().map(|column| wishes[*column].0).min();
+    let (dummies, states): (Vec<usize>, Vec<usize>) = (0..preferences.len()).partition(is_dummy);
+    let most = dummies.iter().map(|column| preferences[*column].0).max();
+    let least = states.iter().map(|column| preferences[*column].0).min();
     least.is_some_and(|least| least >= StateSelect::Prefer && most.is_none_or(|most| most < least))
 }
 
 /// Columns that make a regular matrix, by elimination with pivots from the columns of the first
-/// wish while there are any, then from those of the next. An entry comes with whether it never
+/// preference while there are any, then from those of the next. An entry comes with whether it never
 /// changes; `known` allows only such pivots.
-fn pivots(mut rows: Vec<Vec<(f64, bool)>>, wishes: &[Wish], known: bool) -> Option<Vec<usize>> {
+fn pivots(
+    mut rows: Vec<Vec<(f64, bool)>>,
+    preferences: &[Preference],
+    known: bool,
+) -> Option<Vec<usize>> {
     for row in &mut rows {
         let scale = row.iter().fold(0.0, |a: f64, b| a.max(b.0.abs()));
         if scale == 0.0 {
@@ -332,11 +339,11 @@ fn pivots(mut rows: Vec<Vec<(f64, bool)>>, wishes: &[Wish], known: bool) -> Opti
     let n = rows.len();
     // By columns: they are sought through for pivots, and an elimination changes few of them.
     let mut matrix: Vec<Vec<(f64, bool)>> =
-        (0..wishes.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
+        (0..preferences.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
     let mut chosen: Vec<usize> = Vec::new();
-    let mut is_chosen = vec![false; wishes.len()];
+    let mut is_chosen = vec![false; preferences.len()];
     let mut end = 0;
-    for group in wishes.chunk_by(|a, b| a == b) {
+    for group in preferences.chunk_by(|a, b| a == b) {
         let columns = end..end + group.len();
         end = columns.end;
         while chosen.len() < n {
@@ -384,19 +391,19 @@ fn eliminate(matrix: &mut [Vec<(f64, bool)>], pivot: usize, column: usize) {
 mod tests {
     use super::*;
 
-    const PLAIN: Wish = (StateSelect::Default, false, false);
-    const PREFERRED: Wish = (StateSelect::Prefer, false, false);
+    const PLAIN: Preference = (StateSelect::Default, false, false);
+    const PREFERRED: Preference = (StateSelect::Prefer, false, false);
 
     #[test]
     fn the_least_wanted_columns_are_taken_while_they_are_regular() {
         let known = |values: &[f64]| values.iter().map(|v| (*v, true)).collect::<Vec<_>>();
         let rows = vec![known(&[1.0, 2.0, 1.0]), known(&[2.0, 4.0, 3.0])];
         // The first two columns are parallel.
-        let wishes = [PLAIN, PLAIN, PREFERRED];
-        assert_eq!(pivots(rows.clone(), &wishes, false), Some(vec![1, 2]));
+        let preferences = [PLAIN, PLAIN, PREFERRED];
+        assert_eq!(pivots(rows.clone(), &preferences, false), Some(vec![1, 2]));
         assert_eq!(pivots(vec![known(&[0.0, 0.0])], &[PLAIN, PLAIN], false), None);
-        assert!(!is_wanted(&[1, 2], &wishes));
-        assert!(is_wanted(&[0, 1], &wishes));
+        assert!(!is_wanted(&[1, 2], &preferences));
+        assert!(is_wanted(&[0, 1], &preferences));
     }
 
     #[test]

@@ -17,7 +17,7 @@ use crate::symbolic::{Expr, Substitution, VarId};
 #[derive(Debug, Default)]
 pub(super) struct EventSystem {
     pub(super) blocks: Vec<Block>,
-    pub(super) lagged: Vec<VarId>,
+    pub(super) iterated: Vec<VarId>,
 }
 
 /// Sorts the whole system as it is at events, the equations between events given; empty if nothing
@@ -168,7 +168,7 @@ fn cut(
     }
     let inner = sort_mixed(dae, system, &rest.0, &rest.1, &rest.2)?;
     sorted.blocks.extend(inner.blocks);
-    sorted.lagged.extend(assignments.iter().map(|assignment| assignment.variable));
+    sorted.iterated.extend(assignments.iter().map(|assignment| assignment.variable));
     sorted.blocks.extend(assignments.into_iter().map(Block::Assignment));
     Ok(())
 }

@@ -24,7 +24,7 @@ pub(super) struct InitialSystem {
     /// What the solution must fulfil besides.
     pub(super) checks: Vec<Equation>,
     /// Discrete variables that blocks read before they write them.
-    pub(super) lagged: Vec<VarId>,
+    pub(super) iterated: Vec<VarId>,
 }
 
 /// Equations with the numbers of what they come from.
@@ -96,7 +96,7 @@ pub(super) fn sort_initial(
     }
     let name = format!("the initial system of `{}`", dae.name);
     let sorted = sort_mixed(dae, &name, &used.equations, &used.origins, &all)?;
-    Ok(InitialSystem { blocks: sorted.blocks, checks, lagged: sorted.lagged })
+    Ok(InitialSystem { blocks: sorted.blocks, checks, iterated: sorted.iterated })
 }
 
 /// Number of the first variable among what equations come from: behind all equations.

@@ -12,9 +12,8 @@
 //! whether there is a solution; of many it takes the smallest. So that it is the smallest in all
 //! unknowns of the loop, one that is singular with the default parameters is solved without tearing.
 
-use super::blt::is_safe;
 use super::causalized::{Assignment, LinearLoop, Loop};
-use crate::lower::Dae;
+use crate::lower::{Dae, Kind};
 use crate::symbolic::{Expr, Linear, Node, Pool, VarId, differentiate_all, linear_in, substitute};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -218,4 +217,18 @@ fn by_elimination(pool: &mut Pool, unknowns: &[VarId], residuals: &[Expr]) -> Ve
     }
     let (matrix, right) = (pool.list(&matrix), pool.list(&right));
     (0..n as u32).map(|output| pool.solution(matrix, right, output)).collect()
+}
+
+/// Whether a divisor is a number that is not zero, or made of parameters that do not make it zero
+/// by default: where others make it zero, the division fails with a message rather than giving a
+/// wrong value.
+pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
+    if let Some(value) = dae.pool.as_constant(divisor) {
+        return value != 0.0;
+    }
+    let varies = |v: VarId| !matches!(dae.variable(v).kind, Kind::Parameter { .. });
+    !dae.pool.any_variable(divisor, varies) && {
+        let value = dae.defaults.of(dae, divisor);
+        value.is_finite() && value != 0.0
+    }
 }

@@ -203,10 +203,10 @@ impl<'a> Causalization<'a> {
     }
 
     fn finish(self) -> CausalizedDae {
-        let mut lagged = self.events.lagged;
-        lagged.extend(self.initial.lagged);
-        lagged.sort_unstable();
-        lagged.dedup();
+        let mut iterated = self.events.iterated;
+        iterated.extend(self.initial.iterated);
+        iterated.sort_unstable();
+        iterated.dedup();
         CausalizedDae {
             dae: self.dae,
             aliases: self.aliases,
@@ -216,7 +216,7 @@ impl<'a> Causalization<'a> {
             event_blocks: self.events.blocks,
             initial_blocks: self.initial.blocks,
             initial_checks: self.initial.checks,
-            lagged,
+            iterated,
             parameters: self.parameters,
         }
     }

@@ -82,8 +82,8 @@ fn write_events(sorted: &CausalizedDae, out: &mut String) -> std::fmt::Result {
         let (value, condition) = (text(sorted, reinit.value), text(sorted, reinit.condition));
         writeln!(out, "reinit {} := {value} if {condition}", name(reinit.state))?;
     }
-    for lagged in &sorted.lagged {
-        writeln!(out, "repeat until {} stays", name(*lagged))?;
+    for iterated in &sorted.iterated {
+        writeln!(out, "repeat until {} stays", name(*iterated))?;
     }
     Ok(())
 }

@@ -55,7 +55,7 @@ pub(crate) struct Outputs {
 
 /// The condition that must hold, and the numbers in the message.
 #[derive(Debug, Clone)]
-pub(crate) struct Notice {
+pub(crate) struct LogAssertion {
     /// Its number among all assertions, those at events behind the others.
     pub(crate) assertion: u32,
     pub(crate) code: Outputs,

@@ -3,7 +3,7 @@
 //! The order of the parts decides the numbers of registers and auxiliary variables, and with them
 //! the bits of results where sums are formed: it is part of the contract of equal bytes.
 
-use super::code::{CompiledRelation, CompiledSelection, Notice, Outputs, Step};
+use super::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use super::event_code::{compile_events, linear_in_time};
 use super::events::CompiledRounding;
 use super::hoist::Hoisting;
@@ -40,7 +40,7 @@ impl Program {
         let selections = compilation.selections();
         let observe = compilation.observation();
         let assertions = compilation.assertions();
-        let notices = compilation.notices();
+        let log_assertions = compilation.log_assertions();
         let initial_checks = compilation.initial_checks();
         let mut events = compilation.events();
         events.steps = blocks.at_events;
@@ -83,7 +83,7 @@ impl Program {
             selections,
             observe,
             assertions,
-            notices,
+            log_assertions,
             events,
             literal: Literal::default(),
         };
@@ -327,16 +327,16 @@ impl Compilation {
         conditions.into_iter().map(|(at, condition)| (at, self.total(&condition))).collect()
     }
 
-    fn notices(&mut self) -> Vec<Notice> {
+    fn log_assertions(&mut self) -> Vec<LogAssertion> {
         let outputs = self.numbered(
             |assertion| assertion.level != Level::Error,
             |assertion| std::iter::once(assertion.condition).chain(assertion.values()).collect(),
         );
-        let notice = |(at, outputs): (usize, Vec<Expr>)| Notice {
+        let assertion = |(at, outputs): (usize, Vec<Expr>)| LogAssertion {
             assertion: at as u32,
             code: self.total(&outputs),
         };
-        outputs.into_iter().map(notice).collect()
+        outputs.into_iter().map(assertion).collect()
     }
 
     /// What is computed for the assertions of a kind, with their numbers among all.

@@ -1,6 +1,6 @@
 //! What a program does at events, as code.
 
-use super::code::Notice;
+use super::code::LogAssertion;
 use super::registers::Registers;
 use super::sequence::compile_outputs;
 use crate::causalize::{Assignment, CausalizedDae};
@@ -44,7 +44,7 @@ pub(super) fn compile_events(
     };
     Events {
         previous: previous.collect(),
-        lagged: sorted.lagged.clone(),
+        iterated: sorted.iterated.clone(),
         discrete: all
             .filter(|v| dae.variable(*v).kind == Kind::Discrete)
             .filter(|v| sorted.aliases[v.0 as usize].is_none())
@@ -57,11 +57,11 @@ pub(super) fn compile_events(
         reinits: outputs(&pairs(events.reinits.iter().map(|r| (r.condition, r.value)))),
         assertions: outputs(&errors().map(|(_, a)| a.condition).collect::<Vec<_>>()),
         asserted: errors().map(|(at, _)| at as u32).collect(),
-        notices: numbered()
+        log_assertions: numbered()
             .filter(|(_, assertion)| assertion.level != Level::Error)
             .map(|(at, assertion)| {
                 let values = std::iter::once(assertion.condition).chain(assertion.values());
-                Notice { assertion: at as u32, code: outputs(&values.collect::<Vec<_>>()) }
+                LogAssertion { assertion: at as u32, code: outputs(&values.collect::<Vec<_>>()) }
             })
             .collect(),
         terminations: outputs(&events.terminations.iter().map(|t| t.condition).collect::<Vec<_>>()),

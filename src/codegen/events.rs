@@ -1,6 +1,6 @@
 //! What happens at events, compiled. Data only.
 
-use super::code::{Notice, Outputs, Step};
+use super::code::{LogAssertion, Outputs, Step};
 use super::instruction::Register;
 use crate::symbolic::VarId;
 
@@ -12,7 +12,7 @@ pub(crate) struct Events {
     /// Variables with their previous values.
     pub(crate) previous: Vec<Previous>,
     /// Discrete variables that solving reads before it writes them.
-    pub(crate) lagged: Vec<VarId>,
+    pub(crate) iterated: Vec<VarId>,
     /// All discrete variables.
     pub(crate) discrete: Vec<VarId>,
     pub(crate) roundings: Vec<CompiledRounding>,
@@ -34,7 +34,7 @@ pub(crate) struct Events {
     /// Their numbers among all.
     pub(crate) asserted: Vec<u32>,
     /// Warnings and texts that are printed.
-    pub(crate) notices: Vec<Notice>,
+    pub(crate) log_assertions: Vec<LogAssertion>,
     /// Conditions of `terminate`.
     pub(crate) terminations: Outputs,
     pub(crate) delays: Vec<CompiledDelay>,
@@ -85,7 +85,7 @@ impl Events {
             && self.initial.is_none()
             && self.terminal.is_none()
             && self.assertions.outputs.is_empty()
-            && self.notices.is_empty()
+            && self.log_assertions.is_empty()
             && self.terminations.outputs.is_empty()
     }
 

@@ -5,7 +5,7 @@ use super::instruction::Register;
 use super::registers::Registers;
 use super::tape::Tape;
 use crate::causalize::{Assignment, CausalizedDae};
-use crate::codegen::code::{CompiledRelation, CompiledSelection, Notice, Outputs, Step};
+use crate::codegen::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use crate::flatten::{BaseType, Variability};
 use crate::lower::Kind;
 use crate::sim::Pattern;
@@ -157,7 +157,7 @@ pub struct Program {
     pub(crate) observe: Outputs,
     pub(crate) assertions: Vec<(usize, Outputs)>,
     /// Warnings: they do not end a simulation.
-    pub(crate) notices: Vec<Notice>,
+    pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,
     /// What became of its relations inside `noEvent`.
     pub(super) literal: Literal,

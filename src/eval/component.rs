@@ -2,7 +2,7 @@
 
 use super::errors::MISPLACED;
 use super::scope::Owner;
-use super::variable::{Declared, Variable, named, shadow_of};
+use super::variable::{Declared, Storage, Variable, named, shadow_of};
 use super::{Evaluator, FunctionComponent, Given, Scope, ValueType};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
@@ -13,12 +13,6 @@ use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
 use crate::value::{RecordValue, Value};
 use indexmap::IndexMap;
 use std::sync::Arc;
-
-/// A value, and the same shape with `true` where it has one.
-pub(super) struct Storage {
-    pub(super) value: Value,
-    pub(super) shadow: Value,
-}
 
 impl Evaluator<'_> {
     /// Declares the component of this name if the function or record has one that is not declared

@@ -1,8 +1,7 @@
 //! Declarations of variables in scripts, where a record's components may be given one by one.
 
-use super::component::Storage;
 use super::errors::UNKNOWN_VARIABLE;
-use super::variable::{Declared, Variable};
+use super::variable::{Declared, Storage, Variable};
 use super::{Evaluator, FunctionComponent, Host, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic, suggest};
 use crate::fault;

@@ -1,6 +1,5 @@
 //! Where a loop variable without a range is used as a subscript (MLS §11.2.2.1).
 
-use super::iteration::Body;
 use crate::name::Ident;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ReferencePart, Statement, StatementKind,
@@ -11,6 +10,15 @@ use crate::syntax::ast::{
 pub(super) struct SubscriptUse {
     pub(super) array: ComponentReference,
     pub(super) dimension: usize,
+}
+
+/// What a deduced range is looked for in.
+#[derive(Clone, Copy)]
+pub(super) enum Body<'b> {
+    /// Of a loop.
+    Statements(&'b [Statement]),
+    /// Of a comprehension.
+    Expression(&'b Expression),
 }
 
 /// All subscripts that are exactly the variable `name`.

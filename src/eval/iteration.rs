@@ -1,25 +1,17 @@
 //! Iterators: loops' ranges, comprehensions `{e for i in r}` (MLS §10.4.1) and reductions
 //! `sum(e for i in r)` (MLS §10.3.4).
 
+use super::deduction::Body;
 use super::errors::MISPLACED;
 use super::{Evaluator, deduction};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::functions::{self, Meaning};
 use crate::source::Span;
-use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
+use crate::syntax::ast::{Expression, ExpressionKind, ForIndex};
 use crate::value::construct::{self, Range};
 use crate::value::errors::DOMAIN_ERROR;
 use crate::value::{Value, element_count};
-
-/// What a deduced range is looked for in.
-#[derive(Clone, Copy)]
-pub(super) enum Body<'b> {
-    /// Of a loop.
-    Statements(&'b [Statement]),
-    /// Of a comprehension.
-    Expression(&'b Expression),
-}
 
 impl Evaluator<'_> {
     /// The values that a loop variable takes.

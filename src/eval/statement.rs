@@ -1,7 +1,7 @@
 //! Statements (MLS §11.2).
 
+use super::deduction::Body;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
-use super::iteration::Body;
 use super::{Evaluator, Flow};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;

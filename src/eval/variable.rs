@@ -7,6 +7,12 @@ use crate::fault;
 use crate::name::Ident;
 use crate::value::{ArrayValue, Elements, RecordValue, Step, Value};
 
+/// A value, and the same shape with `true` where it has one.
+pub(super) struct Storage {
+    pub(super) value: Value,
+    pub(super) shadow: Value,
+}
+
 /// A variable.
 #[derive(Debug, Clone)]
 pub(super) struct Variable {

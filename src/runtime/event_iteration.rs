@@ -37,7 +37,7 @@ enum Moved {
     /// Relations, or what is rounded.
     Relation,
     /// Variables of discrete loops alone.
-    Lagged,
+    Iterated,
 }
 
 impl System {
@@ -254,7 +254,7 @@ impl System {
         self.unstable = lag.unwrap_or(self.unstable);
         Ok(match (self.update_relations(t, change), lag) {
             (true, _) => Some(Moved::Relation),
-            (false, Some(_)) => Some(Moved::Lagged),
+            (false, Some(_)) => Some(Moved::Iterated),
             (false, None) => None,
         })
     }
@@ -305,14 +305,15 @@ impl System {
 
     /// Keeps the values of the variables of discrete loops.
     pub(super) fn note_lagged(&mut self) {
-        for (slot, variable) in self.previous_iterate.iter_mut().zip(&self.program.events.lagged) {
+        for (slot, variable) in self.previous_iterate.iter_mut().zip(&self.program.events.iterated)
+        {
             *slot = self.registers[variable.0 as usize];
         }
     }
 
     /// One of them that has another value now.
     pub(super) fn moved_lagged(&self) -> Option<u32> {
-        let mut previous = self.previous_iterate.iter().zip(&self.program.events.lagged);
+        let mut previous = self.previous_iterate.iter().zip(&self.program.events.iterated);
         let moved = previous.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
         moved.map(|(_, variable)| variable.0)
     }
@@ -322,7 +323,7 @@ impl System {
         let program = self.program.clone();
         let ends = &program.events.terminations;
         self.assert_at_event()?;
-        self.notice_at_event(t)?;
+        self.log_assertions_at_event(t)?;
         run(&ends.tape, &mut self.registers)?;
         Ok(ends.outputs.iter().any(|end| self.registers[*end as usize] != 0.0))
     }

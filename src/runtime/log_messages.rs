@@ -6,7 +6,7 @@ use super::simulation_log::{LogMessage, Recorded, SimulationLog};
 use super::system::System;
 use crate::bytecode::Journal;
 use crate::codegen::Program;
-use crate::codegen::code::Notice;
+use crate::codegen::code::LogAssertion;
 use crate::lower::{Assertion, Level, Part};
 use crate::sim::Failure;
 use crate::value::Value;
@@ -32,20 +32,20 @@ impl System {
 
     pub(super) fn forget_notices(&mut self) {
         if let Some(log) = &mut self.log {
-            let active = vec![false; self.program.notices.len()];
+            let active = vec![false; self.program.log_assertions.len()];
             *log = SimulationLog { active, ..SimulationLog::default() };
         }
     }
 
     /// The warnings that begin to hold now.
-    pub(super) fn notice(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn log_assertions(&mut self, t: f64) -> Result<(), Failure> {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
-        let done = program.notices.iter().enumerate().try_for_each(|(at, notice)| {
-            let values = self.noticed(notice)?;
+        let done = program.log_assertions.iter().enumerate().try_for_each(|(at, assertion)| {
+            let values = self.message_numbers(assertion)?;
             let holds = values.is_some();
             if let Some(values) = values.filter(|_| !log.active.get(at).is_some_and(|a| *a)) {
-                log.record(t, notice.assertion, values);
+                log.record(t, assertion.assertion, values);
             }
             if let Some(active) = log.active.get_mut(at) {
                 *active = holds;
@@ -57,12 +57,12 @@ impl System {
     }
 
     /// What is told at an event.
-    pub(super) fn notice_at_event(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn log_assertions_at_event(&mut self, t: f64) -> Result<(), Failure> {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
-        let done = program.events.notices.iter().try_for_each(|notice| {
-            if let Some(values) = self.noticed(notice)? {
-                log.record(t, notice.assertion, values);
+        let done = program.events.log_assertions.iter().try_for_each(|assertion| {
+            if let Some(values) = self.message_numbers(assertion)? {
+                log.record(t, assertion.assertion, values);
             }
             Ok(())
         });
@@ -71,9 +71,9 @@ impl System {
     }
 
     /// The numbers of a text whose condition does not hold.
-    fn noticed(&mut self, notice: &Notice) -> Result<Option<Vec<f64>>, Failure> {
-        run(&notice.code.tape, &mut self.registers)?;
-        let mut values = notice.code.outputs.iter().map(|at| self.registers[*at as usize]);
+    fn message_numbers(&mut self, assertion: &LogAssertion) -> Result<Option<Vec<f64>>, Failure> {
+        run(&assertion.code.tape, &mut self.registers)?;
+        let mut values = assertion.code.outputs.iter().map(|at| self.registers[*at as usize]);
         let holds = values.next() != Some(0.0);
         Ok((!holds).then(|| values.collect()))
     }

@@ -133,7 +133,7 @@ impl System {
             solves_loops: false,
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
-            previous_iterate: vec![0.0; program.events.lagged.len()],
+            previous_iterate: vec![0.0; program.events.iterated.len()],
             histories: vec![History::default(); program.events.delays.len()],
             delay_times: vec![0.0; program.events.delays.len()],
             sampled: false,
@@ -543,7 +543,7 @@ impl DaeSystem for System {
         self.note_open_at_start(t);
         self.check_initial_values()?;
         self.assert_at_event()?;
-        self.notice_at_event(t)?;
+        self.log_assertions_at_event(t)?;
         self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
@@ -552,7 +552,7 @@ impl DaeSystem for System {
         self.improve_choices()?;
         self.unload(y);
         self.assert_all()?;
-        self.notice(t)
+        self.log_assertions(t)
     }
 
     fn n_crossings(&self) -> usize {
@@ -628,13 +628,13 @@ impl DaeSystem for System {
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let tells = self.log.is_some() && !self.program.notices.is_empty();
+        let tells = self.log.is_some() && !self.program.log_assertions.is_empty();
         if self.program.assertions.is_empty() && !tells {
             return Ok(());
         }
         self.load_solved(t, y)?;
         self.assert_all()?;
-        self.notice(t)
+        self.log_assertions(t)
     }
 
     fn set_uncertainty(&mut self, crossings: &[f64]) {

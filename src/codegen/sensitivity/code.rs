@@ -123,7 +123,7 @@ fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
         }
     }
     let real = |v: &&VarId| dae.variable(**v).base == BaseType::Real;
-    match program.events.lagged.iter().find(real) {
+    match program.events.iterated.iter().find(real) {
         Some(v) => Err(format!("`{}` depends on itself at events", dae.variable(*v).name)),
         None => Ok(()),
     }

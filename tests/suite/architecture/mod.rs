@@ -171,7 +171,10 @@ const OUTSIDE: &[&str] = &[
 
 /// Lines of a function that reads at a glance.
 const LONGEST: usize = 60;
-/// Files of a cycle that are one concept.
+/// A file that treats so many functions of the language itself may name them.
+const MOST_NAMED: usize = 6;
+/// Files of a cycle that are one concept, and files in all cycles.
+const MOST_IN_CYCLES: usize = 14;
 const LARGEST_CYCLE: usize = 3;
 
 fn all() -> &'static [Source] {
@@ -252,8 +255,40 @@ fn files_of_a_cycle_are_one_concept() {
             ));
         }
     }
+    let in_cycles: usize = strongly_connected(all().len(), |at| &edges[at])
+        .iter()
+        .map(Vec::len)
+        .filter(|size| *size > 1)
+        .sum();
+    if in_cycles > MOST_IN_CYCLES {
+        wrong.push(format!("{in_cycles} files are in cycles, {MOST_IN_CYCLES} are known"));
+    }
     let gone = CYCLES.iter().filter(|known| !found.contains_key(known.0));
     wrong.extend(gone.map(|known| format!("`{}` has no large cycle any more", known.0)));
+    passes(&wrong);
+}
+
+/// The functions and operators of the language have one home, `functions`: a file of another folder
+/// that names many of them is a second list.
+#[test]
+fn functions_of_the_language_are_listed_once() {
+    let known: Vec<String> = gapilib::functions::names()
+        .chain(["der", "pre", "edge", "change", "initial", "terminal", "sample", "delay"])
+        .map(|name| format!("\"{name}\""))
+        .collect();
+    let mut wrong = Vec::new();
+    for source in all() {
+        let folder = source.module.first().map_or("", String::as_str);
+        let is_test = source.module.iter().any(|part| part == "tests");
+        if !["eval", "flatten", "lower", "causalize", "codegen"].contains(&folder) || is_test {
+            continue;
+        }
+        let code = source.text.split("#[cfg(test)]").next().unwrap_or_default();
+        let named: Vec<&String> = known.iter().filter(|name| code.contains(*name)).collect();
+        if named.len() > MOST_NAMED {
+            wrong.push(format!("{}: names {named:?}", source.path.display()));
+        }
+    }
     passes(&wrong);
 }
 
