@@ -36,8 +36,10 @@ pub(crate) struct CompiledRelation {
 /// States chosen at run time, as registers.
 #[derive(Debug, Clone)]
 pub(crate) struct CompiledSelection {
-    /// By rows.
+    /// The entries that are not always zero.
     pub(crate) jacobian: Outputs,
+    /// Their rows and columns, by rows.
+    pub(crate) places: Vec<(usize, usize)>,
     pub(crate) candidates: Vec<Register>,
     pub(crate) states: Vec<Register>,
     pub(crate) weights: Vec<Vec<Register>>,

@@ -296,9 +296,16 @@ impl Compilation {
         let Compilation { causalized, pool, registers, sequence, .. } = self;
         let registers_of = |variables: &[VarId]| variables.iter().map(|v| v.0).collect::<Vec<_>>();
         let selections = causalized.selections.iter().map(|selection| {
-            let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
+            let rows = selection.jacobian.iter().enumerate();
+            let entries = rows.flat_map(|(row, of_row)| {
+                of_row.iter().enumerate().map(move |(column, entry)| ((row, column), *entry))
+            });
+            let is_zero = |entry: &Expr| pool.as_constant(*entry) == Some(0.0);
+            let (places, entries): (Vec<(usize, usize)>, Vec<Expr>) =
+                entries.filter(|(_, entry)| !is_zero(entry)).unzip();
             CompiledSelection {
                 jacobian: compile_outputs(pool, registers, sequence, &entries),
+                places,
                 candidates: registers_of(&selection.candidates),
                 states: registers_of(&selection.states),
                 weights: selection.weights.iter().map(|row| registers_of(row)).collect(),
