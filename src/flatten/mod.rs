@@ -14,7 +14,6 @@
 //! function that is itself an input (§12.4.2) end as names that nothing declares.
 //!
 //! The modules are private: what they declare `pub` is seen in this folder alone.
-#![allow(unreachable_pub, reason = "privacy by module")]
 
 mod balance;
 mod checks;
