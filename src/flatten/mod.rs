@@ -39,7 +39,7 @@ pub use balance::LocalBalance;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::fault;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -124,10 +124,13 @@ fn flattened(
     };
     let text = instantiation.classes.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
-    let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
+    let found = text.id.map_or(Vec::new(), |class| checks::check(library, class));
+    let (tolerated, wrong): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|one| one.severity == Severity::Warning);
     if !wrong.is_empty() {
         return Err(distinct(wrong));
     }
+    instantiation.warnings.extend(tolerated);
     instantiation.classes.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
     instantiation.classes.tree.model_name =

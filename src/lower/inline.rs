@@ -93,7 +93,7 @@ impl Call<'_, '_> {
             check_rank(function, input, &argument, span)?;
             self.locals.push((input.name, argument));
         }
-        for component in function.outputs.iter().chain(&function.locals) {
+        for component in function.variables_in_order() {
             let mut undeclared = |_: &mut Self, _: &[Ident]| Ok(None);
             let Declared { shape, scalars } =
                 declared(&mut Lowering::new(self), component, &mut undeclared)?;
