@@ -128,6 +128,7 @@ fn known(argument: &Argument) -> Lowered<Option<f64>> {
         Argument::Shape(shape) => unknown(shape),
         Argument::Known(bits) => Lowered::scalar(Some(f64::from_bits(*bits))),
         Argument::Text(text) => Lowered::Text(text.clone()),
+        Argument::Texts(texts) => Lowered::Texts(texts.clone()),
     }
 }
 

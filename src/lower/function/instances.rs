@@ -12,6 +12,7 @@ use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
 use crate::lower::shape::Shape;
 use crate::lower::shape::UNKNOWN_TEXT;
+use crate::lower::text_array::Texts;
 use crate::name::Name;
 use crate::source::Span;
 use indexmap::IndexMap;
@@ -46,6 +47,8 @@ pub(super) enum Argument {
     Known(u64),
     /// A text.
     Text(Arc<str>),
+    /// An array of texts.
+    Texts(Texts),
 }
 
 /// A compiled function.
@@ -315,6 +318,7 @@ fn signature(
                 .at(span));
             }
             Lowered::Text(text) => Argument::Text(text.clone()),
+            Lowered::Texts(texts) => Argument::Texts(texts.clone()),
             Lowered::Array(array) => match array.elements.as_slice() {
                 [Some(value)] if array.dims.is_empty() && whole && with_values => {
                     Argument::Known(value.to_bits())

@@ -102,6 +102,7 @@ impl<'a, 'f> Body<'a, 'f> {
         let value = match argument {
             Argument::Known(bits) => Lowered::scalar(Operand::Constant(f64::from_bits(*bits))),
             Argument::Text(text) => Lowered::Text(text.clone()),
+            Argument::Texts(texts) => Lowered::Texts(texts.clone()),
             Argument::Shape(shape) => {
                 let first = self.emitter.permanent(shape.len() as u32);
                 self.n_inputs += shape.len() as u32;
