@@ -377,7 +377,9 @@ impl Call<'_, '_> {
         for size in dims {
             let chosen: Vec<usize> = match choices.next() {
                 Some(Choice::Known { positions, .. }) => positions,
-                Some(Choice::Computed(_) | Choice::ComputedVector(_)) => return Err(subscript_unknown(span)),
+                Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
+                    return Err(subscript_unknown(span));
+                }
                 None => (0..*size).collect(),
             };
             let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();

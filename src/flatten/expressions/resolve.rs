@@ -199,8 +199,7 @@ impl Instantiation<'_> {
         span: Span,
         local: &Local,
     ) -> Option<Expression> {
-        let is_taken =
-            |(condition, _): &_| self.known_condition(condition, local) == Some(true);
+        let is_taken = |(condition, _): &_| self.known_condition(condition, local) == Some(true);
         let taken = branches.iter().position(is_taken)?;
         branches.truncate(taken + 1);
         let (_, otherwise) = branches.pop()?;

@@ -188,9 +188,9 @@ impl<T: Target> Lowering<'_, T> {
         }
         let Array { dims, elements } = make(self, arrays)?;
         let text = |number| self.target.as_constant(number).and_then(|at| table.get(at as usize));
-        let texts = elements.into_iter().map(|number| {
-            text(number).cloned().unwrap_or_else(|| UNKNOWN_TEXT.into())
-        });
+        let texts = elements
+            .into_iter()
+            .map(|number| text(number).cloned().unwrap_or_else(|| UNKNOWN_TEXT.into()));
         Ok(of_texts(Texts { dims, texts: texts.collect() }))
     }
 
