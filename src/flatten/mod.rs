@@ -110,6 +110,17 @@ pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
     library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
 }
 
+/// What checks found, if these are only warnings; else the errors, and then the warnings.
+fn tolerated(found: Vec<Diagnostic>) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    let (mut wrong, tolerated): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|one| one.severity != Severity::Warning);
+    if wrong.is_empty() {
+        return Ok(tolerated);
+    }
+    wrong.extend(tolerated);
+    Err(distinct(wrong))
+}
+
 fn flattened(
     library: &Library,
     class: &Name,
@@ -125,12 +136,7 @@ fn flattened(
     let text = instantiation.classes.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
     let found = text.id.map_or(Vec::new(), |class| checks::check(library, class));
-    let (tolerated, wrong): (Vec<_>, Vec<_>) =
-        found.into_iter().partition(|one| one.severity == Severity::Warning);
-    if !wrong.is_empty() {
-        return Err(distinct(wrong));
-    }
-    instantiation.warnings.extend(tolerated);
+    instantiation.warnings.extend(tolerated(found)?);
     instantiation.classes.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
     instantiation.classes.tree.model_name =
