@@ -21,7 +21,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("codegen/translation.rs", "instruction", PER_CASE),
     ("eval/external.rs", "external", ONE_TABLE),
     ("flatten/expressions/resolve.rs", "resolve_kind", PER_CASE),
-    ("lower/build.rs", "build", IN_ORDER),
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
     ("lower/inline.rs", "statement", PER_CASE),
     ("syntax/failure.rs", "described", PER_CASE),
