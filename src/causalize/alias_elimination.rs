@@ -63,6 +63,25 @@ pub(super) fn alias(pool: &Pool, equation: Equation) -> Option<(VarId, VarId, bo
     (a != b).then_some((a, b, minus_a ^ minus_b ^ opposite))
 }
 
+/// What `pre` of a discrete variable is at the start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Memory {
+    start: Option<Expr>,
+    fixed: bool,
+}
+
+/// Start values of `pre` of discrete variables.
+fn memories(dae: &Dae) -> Vec<Option<Memory>> {
+    let mut memory = vec![None; dae.variables.len()];
+    for variable in &dae.variables {
+        if let Kind::Previous(of) = variable.kind {
+            let &Variable { start, fixed, kind, .. } = dae.variable(of);
+            memory[of.0 as usize] = (kind == Kind::Discrete).then_some(Memory { start, fixed });
+        }
+    }
+    memory
+}
+
 /// Disjoint sets with signs.
 struct Sets {
     parent: Vec<(u32, bool)>,
@@ -72,6 +91,8 @@ struct Sets {
     discrete: Vec<bool>,
     /// Whether an equation of the events determines it.
     assigned: Vec<bool>,
+    /// Start value of `pre` of a discrete variable, and whether it is fixed; `None` without `pre`.
+    memory: Vec<Option<Memory>>,
     /// Variables found to be equal to their opposites, and the equation that says so.
     zeros: Vec<(u32, Span)>,
 }
@@ -90,7 +111,8 @@ impl Sets {
         for variable in dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)) {
             assigned[variable.0 as usize] = true;
         }
-        Sets { parent, derivative, discrete, assigned, zeros: Vec::new() }
+        let memory = memories(dae);
+        Sets { parent, derivative, discrete, assigned, memory, zeros: Vec::new() }
     }
 
     fn root(&mut self, v: u32) -> (u32, bool) {
@@ -108,8 +130,15 @@ impl Sets {
         (current, sign)
     }
 
-    /// A discrete variable is no state, and two equations at events determine two variables.
-    fn must_stay_apart(&self, a: usize, b: usize) -> bool {
+    /// A discrete variable is no state, and two equations at events determine two variables. The
+    /// fixed start of one is the value of its own `pre` (MLS §8.6), not of that of another.
+    fn must_stay_apart(&self, a: usize, b: usize, negated: bool) -> bool {
+        if let (Some(one), Some(other)) = (self.memory[a], self.memory[b])
+            && (one.fixed || other.fixed)
+            && (one != other || negated)
+        {
+            return true;
+        }
         (self.discrete[a] && self.derivative[b].is_some())
             || (self.discrete[b] && self.derivative[a].is_some())
             || (self.assigned[a] && self.assigned[b])
@@ -120,7 +149,7 @@ impl Sets {
     /// then one with a derivative, then the one declared first.
     fn join(&mut self, a: u32, b: u32, negated: bool, span: Span) -> bool {
         let (root_a, root_b) = (self.root(a).0, self.root(b).0);
-        if root_a == root_b || self.must_stay_apart(root_a as usize, root_b as usize) {
+        if root_a == root_b || self.must_stay_apart(root_a as usize, root_b as usize, negated) {
             return false;
         }
         let mut pending = vec![(a, b, negated)];
@@ -139,6 +168,7 @@ impl Sets {
             };
             let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
             self.parent[drop as usize] = (keep, negated);
+            self.memory[keep as usize] = self.memory[keep as usize].or(self.memory[drop as usize]);
             if let (Some(x), Some(y)) =
                 (self.derivative[keep as usize], self.derivative[drop as usize])
             {
@@ -152,9 +182,13 @@ impl Sets {
 /// Attributes of a dropped name hold for the variable that stays where it has none; a start value
 /// that is fixed goes before one that is not, and a second fixed one becomes an initial equation.
 fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
+    let memory = memories(dae);
     for (position, alias) in aliases.iter().enumerate() {
         let Some(alias) = alias else { continue };
-        let &Variable { start, fixed, nominal, state_select, span, .. } = &dae.variables[position];
+        let &Variable { start, mut fixed, nominal, state_select, span, .. } =
+            &dae.variables[position];
+        // Without a `pre` of its own, nothing has this value.
+        fixed &= memory[alias.of.0 as usize].is_none() || memory[position].is_some();
         let start = start.map(|e| if alias.negated { dae.pool.neg(e) } else { e });
         let kept = &mut dae.variables[alias.of.0 as usize];
         kept.nominal = kept.nominal.or(nominal);

@@ -5,6 +5,7 @@ use crate::functions::Builtin;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
+use crate::syntax::visit::{Visit, walk_reference};
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
 use std::sync::Arc;
@@ -38,6 +39,20 @@ pub struct Function {
 }
 
 impl Function {
+    /// Outputs and protected variables, each after those that its declaration names (MLS §12.4.4): a
+    /// protected constant may stand in the default of an output. Those that need each other keep their
+    /// order.
+    pub fn variables_in_order(&self) -> Vec<&FunctionComponent> {
+        let mut waiting: Vec<_> = self.outputs.iter().chain(&self.locals).collect();
+        let mut ordered = Vec::with_capacity(waiting.len());
+        while !waiting.is_empty() {
+            let names: Vec<Ident> = waiting.iter().map(|component| component.name).collect();
+            let next = waiting.iter().position(|component| !component.needs_any_of(&names));
+            ordered.push(waiting.remove(next.unwrap_or(0)));
+        }
+        ordered
+    }
+
     /// Whether a call may give any arguments, which are not looked at: a built-in
     /// marked `annotation(variadic = true)`.
     pub(super) fn is_variadic(&self) -> bool {
@@ -76,6 +91,35 @@ pub struct FunctionComponent {
     pub description: Option<Arc<str>>,
     /// Where it is declared.
     pub span: Span,
+}
+
+impl FunctionComponent {
+    /// Whether its size or its value names one of these, itself aside.
+    fn needs_any_of(&self, names: &[Ident]) -> bool {
+        let mut search = Search { own: self.name, names, found: false };
+        for subscript in &self.dims {
+            if let ast::Subscript::Index(size) = subscript {
+                search.expression(size);
+            }
+        }
+        self.binding.iter().for_each(|binding| search.expression(binding));
+        search.found
+    }
+}
+
+/// Looks for names of variables.
+struct Search<'a> {
+    own: Ident,
+    names: &'a [Ident],
+    found: bool,
+}
+
+impl Visit for Search<'_> {
+    fn reference(&mut self, reference: &ast::ComponentReference) {
+        walk_reference(self, reference);
+        let first = reference.parts.first().map(|part| part.name);
+        self.found |= first.is_some_and(|name| name != self.own && self.names.contains(&name));
+    }
 }
 
 /// The type of a component of a function.

@@ -38,7 +38,7 @@ pub use balance::LocalBalance;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::fault;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -109,6 +109,17 @@ pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
     library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
 }
 
+/// What checks found, if these are only warnings; else the errors, and then the warnings.
+fn tolerated(found: Vec<Diagnostic>) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    let (mut wrong, tolerated): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|one| one.severity != Severity::Warning);
+    if wrong.is_empty() {
+        return Ok(tolerated);
+    }
+    wrong.extend(tolerated);
+    Err(distinct(wrong))
+}
+
 fn flattened(
     library: &Library,
     class: &Name,
@@ -123,10 +134,8 @@ fn flattened(
     };
     let text = instantiation.classes.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
-    let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
-    if !wrong.is_empty() {
-        return Err(distinct(wrong));
-    }
+    let found = text.id.map_or(Vec::new(), |class| checks::check(library, class));
+    instantiation.warnings.extend(tolerated(found)?);
     instantiation.classes.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
     instantiation.classes.tree.model_name =

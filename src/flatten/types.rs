@@ -315,7 +315,10 @@ fn fits(found: &BaseType, wanted: &BaseType, e: &Expression) -> bool {
     match (found, wanted) {
         (BaseType::Integer, BaseType::Real) => true,
         (BaseType::Integer, BaseType::Enumeration(_)) => may_be_literal(e),
-        (BaseType::Enumeration(one), BaseType::Enumeration(other)) => one.name == other.name,
+        // The same literals in the same order are the same type (MLS §6.4).
+        (BaseType::Enumeration(one), BaseType::Enumeration(other)) => {
+            one.literals == other.literals
+        }
         _ => found == wanted,
     }
 }

@@ -110,6 +110,13 @@ impl Builder<'_> {
                 Some(Choice::Computed(subscript)) => {
                     self.one_of(&places, *size, *subscript, target.span)?
                 }
+                Some(Choice::ComputedVector(_)) => {
+                    return Err(fault!(
+                        NO_CONSTANT_VALUE,
+                        "the subscripts of an assignment must be known at translation";
+                        help: "write a loop")
+                    .at(target.span));
+                }
             };
         }
         let first = self.scalars.first[position].0;

@@ -7,6 +7,7 @@ use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::expressions::{Lowered, Lowering, Target};
 use super::shape::Shape;
 use super::shape::UNKNOWN_TEXT;
+use super::text_array::Texts;
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -85,7 +86,7 @@ impl<T: Target> Declaration<'_, '_, T> {
         let dims = self.sizes(component, value.as_ref(), around)?;
         let declared = match &component.value_type {
             ValueType::Record(_, fields) => self.record(fields, value, &dims),
-            ValueType::String => Ok(text(value)),
+            ValueType::String => Ok(text(value, dims)),
             ValueType::Function => Err(fault!(
                 NOT_SUPPORTED,
                 "`{}` has a type that is not supported in functions used in equations",
@@ -256,12 +257,14 @@ fn elements<S: Copy>(
     Ok(Declared { shape, scalars })
 }
 
-fn text<S: Copy>(value: Option<Lowered<S>>) -> Declared<S> {
-    let text = match value {
-        Some(Lowered::Text(text)) => text,
-        _ => UNKNOWN_TEXT.into(),
+fn text<S: Copy>(value: Option<Lowered<S>>, dims: Vec<usize>) -> Declared<S> {
+    let shape = match value {
+        Some(Lowered::Text(text)) if dims.is_empty() => Shape::Text(text),
+        Some(Lowered::Texts(texts)) if texts.dims == dims => Shape::Texts(texts),
+        _ if dims.is_empty() => Shape::Text(UNKNOWN_TEXT.into()),
+        _ => Shape::Texts(Texts::unknown(dims)),
     };
-    Declared { shape: Shape::Text(text), scalars: Vec::new() }
+    Declared { shape, scalars: Vec::new() }
 }
 
 /// The sizes of an array; those of an array of records and then some of a component.
@@ -271,6 +274,7 @@ fn leading_sizes(shape: &Shape) -> Vec<usize> {
         match shape {
             Shape::Array(dims) => return dims.clone(),
             Shape::Text(_) => return Vec::new(),
+            Shape::Texts(texts) => return texts.dims.clone(),
             Shape::Record(fields) => match fields.first() {
                 Some((_, first)) => shape = first,
                 None => return Vec::new(),

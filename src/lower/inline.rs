@@ -93,7 +93,7 @@ impl Call<'_, '_> {
             check_rank(function, input, &argument, span)?;
             self.locals.push((input.name, argument));
         }
-        for component in function.outputs.iter().chain(&function.locals) {
+        for component in function.variables_in_order() {
             let mut undeclared = |_: &mut Self, _: &[Ident]| Ok(None);
             let Declared { shape, scalars } =
                 declared(&mut Lowering::new(self), component, &mut undeclared)?;
@@ -377,7 +377,9 @@ impl Call<'_, '_> {
         for size in dims {
             let chosen: Vec<usize> = match choices.next() {
                 Some(Choice::Known { positions, .. }) => positions,
-                Some(Choice::Computed(_)) => return Err(subscript_unknown(span)),
+                Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
+                    return Err(subscript_unknown(span));
+                }
                 None => (0..*size).collect(),
             };
             let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();
@@ -420,6 +422,12 @@ fn merge(
             }
         }
         (Lowered::Text(a), Lowered::Text(b)) if a != b => *b = UNKNOWN_TEXT.into(),
+        (Lowered::Texts(a), Lowered::Texts(b)) => match a.joined(b) {
+            Some(joined) => *b = joined,
+            None => b.forget(),
+        },
+        (Lowered::Text(_), Lowered::Texts(b)) => b.forget(),
+        (Lowered::Texts(_), b @ Lowered::Text(_)) => *b = Lowered::Text(UNKNOWN_TEXT.into()),
         _ => {}
     }
 }
@@ -440,7 +448,7 @@ fn check_rank(
             input.dims.len()
         )
         .at(span)),
-        Lowered::Text(_) | Lowered::Numbered(_) => Err(fault!(
+        Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => Err(fault!(
             NOT_SUPPORTED,
             "the String argument `{}` of `{}`",
             input.name,

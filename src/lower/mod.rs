@@ -31,6 +31,7 @@ mod shape;
 mod statement_function;
 mod symbolic_target;
 mod temporal;
+mod text_array;
 mod varying_strings;
 mod when;
 
@@ -40,6 +41,7 @@ pub(crate) use default_values::fold_parameters;
 pub use equation::*;
 pub use events::*;
 pub use shape::Shape;
+pub use text_array::Texts;
 
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;

@@ -1,5 +1,6 @@
 //! Sizes and components of values, known when a model is compiled.
 
+use super::text_array::Texts;
 use std::sync::Arc;
 
 /// Stands for a text, or a part of one, that is not known when compiling; messages show it.
@@ -14,6 +15,8 @@ pub enum Shape {
     Record(Vec<(crate::name::Ident, Shape)>),
     /// A text, no scalar; `…` stands for what is not known when compiling.
     Text(Arc<str>),
+    /// An array of texts, no scalars.
+    Texts(Texts),
 }
 
 impl Shape {
@@ -22,7 +25,7 @@ impl Shape {
         match self {
             Shape::Array(dims) => dims.iter().product(),
             Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
-            Shape::Text(_) => 0,
+            Shape::Text(_) | Shape::Texts(_) => 0,
         }
     }
 
@@ -39,7 +42,7 @@ impl Shape {
                 let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
                 Shape::Record(fields.into_iter().map(field).collect())
             }
-            Shape::Text(text) => Shape::Text(text),
+            Shape::Text(_) | Shape::Texts(_) => self,
         }
     }
 
@@ -48,7 +51,7 @@ impl Shape {
         match self {
             Shape::Array(_) => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
-            Shape::Text(_) => true,
+            Shape::Text(_) | Shape::Texts(_) => true,
         }
     }
 
@@ -58,6 +61,7 @@ impl Shape {
             Shape::Array(_) => {}
             Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
             Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
+            Shape::Texts(texts) => texts.forget(),
         }
     }
 
@@ -68,6 +72,11 @@ impl Shape {
             (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
             (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
             (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
+            (Shape::Texts(a), Shape::Texts(b)) => a.joined(b).map(Shape::Texts),
+            // Arrays whose sizes are not looked at are one text, which is not known.
+            (Shape::Texts(a), Shape::Text(_)) | (Shape::Text(_), Shape::Texts(a)) => {
+                Some(Shape::Texts(Texts::unknown(a.dims.clone())))
+            }
             (Shape::Record(a), Shape::Record(b)) if a.len() == b.len() => {
                 let fields = a.iter().zip(b);
                 let joined = |((name, a), (other, b)): (&(_, Shape), &(_, Shape))| {

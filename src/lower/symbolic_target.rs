@@ -8,6 +8,7 @@ use super::equation::{Assertion, Level, Part};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Target, Unary};
 use super::shape::UNKNOWN_TEXT;
+use super::text_array::Texts;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -154,6 +155,9 @@ impl Target for Builder<'_> {
         let Some((position, _, variable)) = flat.variables.get_full(path) else {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
+        if variable.base == BaseType::String && !variable.dims.is_empty() {
+            return Ok(Lowered::Texts(self.text_array(position)));
+        }
         if variable.base == BaseType::String {
             let first = self.scalars.first[position];
             return Ok(match self.dae.variable(first).kind {
@@ -286,19 +290,34 @@ impl Builder<'_> {
 
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
     pub(super) fn text(&mut self, position: usize) -> Arc<str> {
+        match self.text_binding(position) {
+            Some(Lowered::Text(text)) => text,
+            _ => UNKNOWN_TEXT.into(),
+        }
+    }
+
+    /// The texts that an array is bound to, as far as they are known.
+    fn text_array(&mut self, position: usize) -> Texts {
+        let dims = self.flat.variables[position].dims.clone();
+        match self.text_binding(position) {
+            Some(Lowered::Texts(texts)) if texts.dims == dims => texts,
+            Some(Lowered::Text(text)) => Texts::filled(dims, text),
+            _ => Texts::unknown(dims),
+        }
+    }
+
+    /// The value that a variable of texts is bound to; `None` if it depends on itself or is not to
+    /// be had.
+    fn text_binding(&mut self, position: usize) -> Option<Lowered<Expr>> {
         let flat = self.flat;
-        let unknown = || Arc::from(UNKNOWN_TEXT);
-        let Some(binding) = &flat.variables[position].binding else { return unknown() };
+        let binding = flat.variables[position].binding.as_ref()?;
         if self.scalars.folding[position] == Folding::InProgress {
-            return unknown();
+            return None;
         }
         let before = std::mem::replace(&mut self.scalars.folding[position], Folding::InProgress);
         let lowered = Lowering::new(self).lower(binding);
         self.scalars.folding[position] = before;
-        match lowered {
-            Ok(Lowered::Text(text)) => text,
-            _ => unknown(),
-        }
+        lowered.ok()
     }
 
     /// One of the elements, the first of which has the position `first`: by halves.

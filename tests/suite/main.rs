@@ -43,6 +43,7 @@ mod lapack_accuracy;
 mod lazy_reading;
 mod lessons;
 mod libraries;
+mod library_forms;
 mod limits;
 mod linear_algebra;
 mod linear_loops;

@@ -90,7 +90,8 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
                     package",
                     inside.name();
                     help: "declare `{part}` encapsulated, or move it into a package")
-                .at(span),
+                .at(span)
+                .warning(),
             );
         }
         inside = next?;

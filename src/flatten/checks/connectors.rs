@@ -52,7 +52,10 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
                 count.flow, count.potential;
                 help: "declare equal numbers of both, or give the remaining variables the prefix \
                        `input` or `output`")
-            .at(span),
+            .at(span)
+            // Libraries before Modelica 3 have such connectors; the model that uses one may still
+            // have as many equations as variables.
+            .warning(),
         );
     }
 }

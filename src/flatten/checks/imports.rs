@@ -93,7 +93,8 @@ fn from_other_than_package(class: Scope<'_>, import: &Import) -> Option<Diagnost
         return None;
     }
     let found = class.class_named(&global(&package))?;
-    (!is_package(found)).then(|| {
+    // Literals are imported from their enumeration; the specification speaks of packages alone.
+    (!is_package(found) && !found.is_enumeration()).then(|| {
         fault!(ILLEGAL_IMPORT, "cannot import from `{}`: it is a {}, not a package",
             found.name(), super::word(found.restriction());
             help: "move the imported element into a package")

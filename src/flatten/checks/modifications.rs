@@ -161,7 +161,9 @@ fn incompatible(
 ) -> Option<Diagnostic> {
     let expected = expected?;
     let own = constraint(element).and_then(|one| writer.class_named(&one.target.name));
-    let candidates = [replacement(writer, element), own];
+    // What is replaceable itself is judged where it is used, by the class that it stands for then.
+    let given = replacement(writer, element).filter(|class| !class.is_replaceable());
+    let candidates = [given, own];
     candidates.into_iter().flatten().find_map(|candidate| {
         let Lack(reason) = lack(candidate, expected)?;
         Some(unfit(name, expected, &reason, span))

@@ -69,13 +69,15 @@ fn wrong(record: Scope<'_>, operator: Ident, function: Scope<'_>) -> Option<Diag
     }
 }
 
-/// Two constructors that one call fits.
+/// Two constructors that the same calls fit: an input with a default tells them apart where a call
+/// gives it, and what a call gives decides then (MLS §14.3).
 fn ambiguous(functions: &[Scope<'_>]) -> Option<Diagnostic> {
     for (at, function) in functions.iter().enumerate() {
         let signature = signature(*function)?;
-        let same = functions[..at]
-            .iter()
-            .find(|other| self::signature(**other).as_ref() == Some(&signature));
+        let same = functions[..at].iter().find(|other| {
+            let same_required = self::signature(**other).as_ref() == Some(&signature);
+            same_required && optional(**other) == optional(*function)
+        });
         if let Some(other) = same {
             let message = format!("has the same inputs as `{}`", other.definition().name.node);
             return Some(complaint(*function, &message));
@@ -84,19 +86,30 @@ fn ambiguous(functions: &[Scope<'_>]) -> Option<Diagnostic> {
     None
 }
 
+/// The type and the number of dimensions of an input; no type where it is not known.
+type InputType = (Option<Type>, usize);
+
 /// The types of the inputs that a call must give; `None` where a type is not known.
 fn signature(function: Scope<'_>) -> Option<Vec<(Type, usize)>> {
-    formal(function, CausalityPrefix::Input)
-        .iter()
-        .filter(|input| {
-            let modification = input.declaration.modification.as_ref();
-            modification.is_none_or(|modification| modification.binding.is_none())
-        })
-        .map(|input| {
-            let dimensions = input.clause.subscripts.len() + input.declaration.subscripts.len();
-            Some((input.meaning()?, dimensions))
-        })
-        .collect()
+    let required = |input: &Component<'_>| !has_default(input);
+    let types = formal(function, CausalityPrefix::Input).into_iter().filter(required);
+    types.map(|input| input_type(&input)).map(|(type_, rank)| Some((type_?, rank))).collect()
+}
+
+/// The names and types of the inputs that a call may leave out.
+fn optional(function: Scope<'_>) -> Vec<(Ident, InputType)> {
+    let inputs = formal(function, CausalityPrefix::Input).into_iter();
+    inputs.filter(has_default).map(|input| (input.name(), input_type(&input))).collect()
+}
+
+fn has_default(input: &Component<'_>) -> bool {
+    let modification = input.declaration.modification.as_ref();
+    modification.is_some_and(|modification| modification.binding.is_some())
+}
+
+fn input_type(input: &Component<'_>) -> InputType {
+    let dimensions = input.clause.subscripts.len() + input.declaration.subscripts.len();
+    (input.meaning(), dimensions)
 }
 
 fn complaint(function: Scope<'_>, what: &str) -> Diagnostic {

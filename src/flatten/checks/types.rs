@@ -97,13 +97,24 @@ impl Walk<'_, '_> {
             return;
         }
         for operand in operands {
-            self.numeric(operand, "arithmetic needs numbers");
+            self.term(operand);
         }
     }
 
     fn numeric(&mut self, operand: &Expression, needed: &str) {
         if let Some(kind @ (Kind::Boolean | Kind::Enumeration(_))) = self.kind(operand) {
             self.mismatch(operand, needed, kind);
+        }
+    }
+
+    /// Old libraries compute with enumerations, whose ordinals other programs take.
+    fn term(&mut self, operand: &Expression) {
+        let before = self.errors.len();
+        self.numeric(operand, "arithmetic needs numbers");
+        if let Some(Kind::Enumeration(_)) = self.kind(operand) {
+            for one in self.errors.split_off(before) {
+                self.errors.push(one.warning());
+            }
         }
     }
 

@@ -169,8 +169,14 @@ impl Collector<'_, '_> {
     fn connect(&mut self, connect: &Connect) -> Result<(), Diagnostic> {
         let Connect { left, right, context, local, span } = connect;
         let span = *span;
-        let left_ends = self.instantiation.ends(left, *context, local)?;
-        let right_ends = self.instantiation.ends(right, *context, local)?;
+        let left_ends = self.instantiation.ends(left, *context, local);
+        let right_ends = self.instantiation.ends(right, *context, local);
+        if matches!((&left_ends, &right_ends), (Ok(None), Err(_)) | (Err(_), Ok(None)))
+            && self.instantiation.adds_nothing(connect)?
+        {
+            return Ok(());
+        }
+        let (left_ends, right_ends) = (left_ends?, right_ends?);
         // Connections with a component whose condition is false are removed (MLS §4.4.5).
         let (Some(left_ends), Some(right_ends)) = (left_ends, right_ends) else { return Ok(()) };
         if left_ends.dims != right_ends.dims {

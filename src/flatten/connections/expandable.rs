@@ -65,6 +65,14 @@ impl Instantiation<'_> {
         Ok(())
     }
 
+    /// Whether one side of a connection would be a new component of an expandable connector: where
+    /// the other side is disabled, there is no such component and no connection (MLS §4.4.5).
+    pub fn adds_nothing(&mut self, connect: &Connect) -> Result<bool, Diagnostic> {
+        let left = self.undeclared(&connect.left, connect)?;
+        let right = self.undeclared(&connect.right, connect)?;
+        Ok(left.is_some() || right.is_some())
+    }
+
     /// The component that a reference would add to an expandable connector.
     fn undeclared(
         &mut self,

@@ -37,7 +37,10 @@ impl Instantiation<'_> {
         let name = self.called_name(function, &arguments, span, context, local)?;
         let arguments = self.functions.with_defaults(&name, arguments, span);
         let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
-        if let Some(calls) = self.vectorized(&name, &arguments, span)? {
+        // Variables of a function have no sizes here, though the model may have some of their names.
+        if !has_open_names(&arguments, local)
+            && let Some(calls) = self.vectorized(&name, &arguments, span)?
+        {
             return Ok(calls);
         }
         let function = ComponentReference::from_name(&name, function.span);
@@ -136,6 +139,12 @@ fn is_builtin(name: &Name, local: &Local) -> bool {
     ident.is_some_and(|ident| {
         crate::functions::is_builtin(ident.as_str()) || local.get(ident).is_some()
     })
+}
+
+/// Whether one of the arguments needs a local name that has no value.
+fn has_open_names(arguments: &Arguments, local: &Local) -> bool {
+    let named = arguments.named.iter().map(|argument| &argument.value);
+    arguments.positional.iter().chain(named).any(|argument| local.is_open_in(argument))
 }
 
 impl Classes<'_> {

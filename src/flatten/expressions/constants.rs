@@ -193,6 +193,12 @@ impl Instantiation<'_> {
         let (Some(last), node) = (name.last(), self.classes.node_of(package)) else {
             return Ok(None);
         };
+        if self.classes.enumeration(Type::Class(package), reference.span)?.is_some() {
+            let mut path = reference.parts.clone();
+            path[0].name = last;
+            let enumeration = Some(Type::Class(package));
+            return self.inside_class(enumeration, &path, reference, context, local).map(Some);
+        }
         if !self.classes.has_component(package, last)? || !self.classes.is_constant(node, last) {
             return Ok(None);
         }

@@ -206,6 +206,14 @@ impl Instantiation<'_> {
 }
 
 impl Types<'_> {
+    /// The ordinal of a variable of an enumeration, with which old libraries compute; any other
+    /// expression as it is.
+    pub fn number_of_enumeration(&self, e: Expression, local: &Local) -> Expression {
+        let is_enumeration = matches!(e.kind, ExpressionKind::Reference(_))
+            && matches!(self.value_type_of(&e, local), Some(ValueType::Enumeration(_)));
+        if is_enumeration { ordinal(e) } else { e }
+    }
+
     /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
     pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
         if self.value_type_of(&index, local) != Some(ValueType::Boolean) {

@@ -33,10 +33,16 @@ impl Local {
 
     /// Whether a subscript needs a local name that has no value yet.
     pub fn is_open(&self, subscript: &Subscript) -> bool {
-        let mut names = OpenNames { local: self, found: false };
-        if let Subscript::Index(e) = subscript {
-            names.expression(e);
+        match subscript {
+            Subscript::Index(e) => self.is_open_in(e),
+            Subscript::All(_) => false,
         }
+    }
+
+    /// Whether an expression needs a local name that has no value yet.
+    pub fn is_open_in(&self, e: &Expression) -> bool {
+        let mut names = OpenNames { local: self, found: false };
+        names.expression(e);
         names.found
     }
 

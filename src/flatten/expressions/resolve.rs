@@ -3,7 +3,7 @@
 
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::ScopeId;
@@ -144,6 +144,10 @@ impl Instantiation<'_> {
         if let Some(call) = call {
             return Ok(call);
         }
+        let [left, right] = match is_arithmetic(operator) {
+            true => [left, right].map(|side| self.types().number_of_enumeration(side, local)),
+            false => [left, right],
+        };
         let kind =
             ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
         Ok(Expression::new(kind, span))
@@ -165,15 +169,56 @@ impl Instantiation<'_> {
             match self.literal_condition(&condition) {
                 Some(true) if resolved.is_empty() => return self.resolve(value, context, local),
                 Some(false) => continue,
-                _ => resolved.push((condition, self.resolve(value, context, local)?)),
+                _ => {}
+            }
+            match self.resolve(value, context, local) {
+                Ok(value) => resolved.push((condition, value)),
+                Err(error) if error.code != SIZE_MISMATCH => return Err(error),
+                Err(_) if self.known_condition(&condition, local) == Some(false) => {}
+                Err(error) => return self.up_to_taken(resolved, span, local).ok_or(error),
             }
         }
-        let otherwise = self.resolve(otherwise, context, local)?;
+        let otherwise = match self.resolve(otherwise, context, local) {
+            Ok(otherwise) => otherwise,
+            Err(error) if error.code != SIZE_MISMATCH => return Err(error),
+            Err(error) => return self.up_to_taken(resolved, span, local).ok_or(error),
+        };
         if resolved.is_empty() {
             return Ok(otherwise);
         }
         let kind = ExpressionKind::If { branches: resolved, otherwise: Box::new(otherwise) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// An if-expression whose later branches name what does not exist, up to the branch whose
+    /// condition parameters make true: the element of an empty array is no error where nothing
+    /// reads it. `None` if parameters do not choose a branch. The parameters cannot be set any more.
+    fn up_to_taken(
+        &mut self,
+        mut branches: Vec<(Expression, Expression)>,
+        span: Span,
+        local: &Local,
+    ) -> Option<Expression> {
+        let is_taken = |(condition, _): &_| self.known_condition(condition, local) == Some(true);
+        let taken = branches.iter().position(is_taken)?;
+        branches.truncate(taken + 1);
+        let (_, otherwise) = branches.pop()?;
+        if branches.is_empty() {
+            return Some(otherwise);
+        }
+        let kind = ExpressionKind::If { branches, otherwise: Box::new(otherwise) };
+        Some(Expression::new(kind, span))
+    }
+
+    /// The value that constants and parameters give a resolved condition.
+    fn known_condition(&mut self, condition: &Expression, local: &Local) -> Option<bool> {
+        if local.is_open_in(condition) {
+            return None;
+        }
+        match self.flat_value(condition) {
+            Ok(Value::Boolean(truth)) => Some(truth),
+            _ => None,
+        }
     }
 
     /// The value of a resolved condition without references.
@@ -294,6 +339,12 @@ impl Classes<'_> {
             .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))
             .at(reference.span)
     }
+}
+
+/// Whether an operator takes numbers; the sum of strings aside.
+fn is_arithmetic(operator: BinaryOperator) -> bool {
+    use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
+    matches!(operator, Add | Subtract | Multiply | Divide | Power)
 }
 
 fn is_boolean(e: &Expression) -> bool {

@@ -28,7 +28,8 @@ impl FunctionTable {
                 continue;
             }
             let mut value = default.clone();
-            Substitution { function, arguments: &arguments }.expression(&mut value);
+            let within = vec![input.name];
+            Substitution { function, arguments: &arguments, within }.expression(&mut value);
             let name = Spanned { node: input.name, span };
             arguments.named.push(NamedArgument { name, value });
         }
@@ -58,10 +59,33 @@ fn has_references(default: &Expression) -> bool {
     search.0
 }
 
-/// Puts the arguments of a call in place of the inputs.
+/// Puts the arguments of a call in place of the inputs; an input that the call leaves out as well
+/// stands for its default, in which the same is done.
 struct Substitution<'f> {
     function: &'f Function,
     arguments: &'f Arguments,
+    /// The inputs whose defaults led here: one that needs itself stays.
+    within: Vec<Ident>,
+}
+
+impl Substitution<'_> {
+    /// What an input stands for in this call.
+    fn meaning(&self, name: Ident) -> Option<Expression> {
+        if let Some(argument) = given(self.function, self.arguments, name) {
+            return Some(argument.clone());
+        }
+        let input = self.function.inputs.iter().find(|input| input.name == name)?;
+        let mut default = input.binding.clone()?;
+        if has_references(&default) {
+            if self.within.contains(&name) {
+                return None;
+            }
+            let within = self.within.iter().copied().chain([name]).collect();
+            let Substitution { function, arguments, .. } = *self;
+            Substitution { function, arguments, within }.expression(&mut default);
+        }
+        Some(default)
+    }
 }
 
 impl Rewrite for Substitution<'_> {
@@ -69,13 +93,8 @@ impl Rewrite for Substitution<'_> {
         rewrite_expression(self, e);
         let ExpressionKind::Reference(reference) = &e.kind else { return };
         let Some((first, rest)) = reference.parts.split_first() else { return };
-        let default = || {
-            let input = self.function.inputs.iter().find(|input| input.name == first.name)?;
-            input.binding.as_ref().filter(|default| !has_references(default))
-        };
-        let argument = given(self.function, self.arguments, first.name).or_else(default);
-        let Some(argument) = argument else { return };
-        let mut value = subscripted(argument.clone(), first.subscripts.clone(), e.span);
+        let Some(meaning) = self.meaning(first.name) else { return };
+        let mut value = subscripted(meaning, first.subscripts.clone(), e.span);
         for part in rest {
             let kind = ExpressionKind::Field { base: Box::new(value), name: part.name };
             value = subscripted(Expression::new(kind, e.span), part.subscripts.clone(), e.span);

@@ -21,8 +21,18 @@ const MAX_SCALARS: usize = 2_000_000;
 pub const MAX_INSTANCES: usize = 1_000_000;
 
 /// The attributes of the predefined types (MLS §4.9).
-pub const ATTRIBUTES: [&str; 9] =
-    ["quantity", "unit", "displayUnit", "min", "max", "start", "fixed", "nominal", "stateSelect"];
+pub const ATTRIBUTES: [&str; 10] = [
+    "quantity",
+    "unit",
+    "displayUnit",
+    "min",
+    "max",
+    "start",
+    "fixed",
+    "nominal",
+    "unbounded",
+    "stateSelect",
+];
 
 /// Begins the path of a package's instance; no component can be named so.
 const PACKAGE_MARK: char = '.';

@@ -156,15 +156,17 @@ impl Classes<'_> {
 
     /// A component inherited twice is one if both are the same declaration (MLS §7.1).
     fn add_component(
-        &self,
+        &mut self,
         id: ScopeId,
         declaration: Arc<Declaration>,
         found: &mut Elements,
     ) -> Result<(), Diagnostic> {
         let name = declaration.name;
-        if let Some(known) = found.get(name) {
+        if let Some(known) = found.get(name).cloned() {
             if known.span == declaration.span
-                || (known.scope != declaration.scope && known.is_same(&declaration))
+                || (known.scope != declaration.scope
+                    && known.is_same(&declaration)
+                    && self.have_same_type(&known, &declaration))
             {
                 return Ok(());
             }
@@ -178,6 +180,18 @@ impl Classes<'_> {
         }
         found.add(declaration);
         Ok(())
+    }
+
+    /// Whether two declarations have one type, however its name is spelled; of names that mean
+    /// nothing, those spelled alike.
+    fn have_same_type(&mut self, one: &Declaration, other: &Declaration) -> bool {
+        let mut meaning = |declared: &Declaration| {
+            self.lookup(declared.scope, &declared.type_specifier.name).ok().flatten()
+        };
+        match (meaning(one), meaning(other)) {
+            (None, None) => one.type_specifier.name == other.type_specifier.name,
+            (one, other) => one == other,
+        }
     }
 
     fn declaration(
@@ -235,11 +249,10 @@ impl Classes<'_> {
 }
 
 impl Declaration {
-    /// Whether both declare the same, as two base classes may (MLS §7.1).
+    /// Whether both declare the same, their types aside, as two base classes may (MLS §7.1).
     fn is_same(&self, other: &Declaration) -> bool {
         let plain = |one: &Declaration| one.dims.is_empty() && one.condition.is_none();
-        self.type_specifier.name == other.type_specifier.name
-            && self.prefixes == other.prefixes
+        self.prefixes == other.prefixes
             && self.type_prefixes == other.type_prefixes
             && self.modifier.is_same(&other.modifier)
             && plain(self)

@@ -15,6 +15,8 @@ pub(crate) enum Choice<S> {
     Known { positions: Vec<usize>, keeps: bool },
     /// One position (from 1) that is computed.
     Computed(S),
+    /// Positions (from 1) of which some are computed; the dimension stays.
+    ComputedVector(Vec<S>),
 }
 
 impl<T: Target> Lowering<'_, T> {
@@ -35,7 +37,12 @@ impl<T: Target> Lowering<'_, T> {
         choices: Vec<Choice<T::Scalar>>,
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
-        if self.target.chooses() && choices.iter().any(|c| matches!(c, Choice::Computed(_))) {
+        let is_computed = |choice: &Choice<_>| matches!(choice, Choice::Computed(_));
+        let is_vector = |choice: &Choice<_>| matches!(choice, Choice::ComputedVector(_));
+        if self.target.chooses()
+            && choices.iter().any(is_computed)
+            && !choices.iter().any(is_vector)
+        {
             return self.target.subscripted(&a, choices, span);
         }
         let mut current = a;
@@ -111,7 +118,9 @@ impl<T: Target> Lowering<'_, T> {
         let keeps = !values.dims.is_empty();
         let mut positions = Vec::with_capacity(values.elements.len());
         for value in &values.elements {
-            match self.target.as_constant(*value) {
+            let known = self.target.as_constant(*value);
+            let known = known.or_else(|| if keeps { self.target.settle(*value) } else { None });
+            match known {
                 Some(known) if known >= 1.0 && known <= size as f64 && known.fract() == 0.0 => {
                     positions.push(known as usize - 1);
                 }
@@ -122,15 +131,7 @@ impl<T: Target> Lowering<'_, T> {
                         .at(index.span));
                 }
                 None if !keeps => return Ok(Choice::Computed(*value)),
-                None => {
-                    return Err(self.known(index).err().unwrap_or_else(|| {
-                        fault!(
-                            ARRAY_MISMATCH,
-                            "a vector of subscripts must be known at translation"
-                        )
-                        .at(index.span)
-                    }));
-                }
+                None => return Ok(Choice::ComputedVector(values.elements)),
             }
         }
         Ok(Choice::Known { positions, keeps })
@@ -172,6 +173,23 @@ impl<T: Target> Lowering<'_, T> {
                     }
                 }
                 dims.remove(dimension);
+            }
+            Choice::ComputedVector(indices) => {
+                let one = self.target.constant(1.0);
+                let positions: Vec<T::Scalar> = indices
+                    .into_iter()
+                    .map(|index| self.target.binary(Binary::Sub, index, one))
+                    .collect();
+                for o in 0..outer {
+                    for position in &positions {
+                        for i in 0..inner {
+                            let candidates: Vec<T::Scalar> =
+                                (0..size).map(|p| a.elements[at(o, p, i)]).collect();
+                            elements.push(self.target.element(&candidates, *position, span)?);
+                        }
+                    }
+                }
+                dims[dimension] = positions.len();
             }
         }
         Ok(Array { dims, elements })

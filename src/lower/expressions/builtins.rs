@@ -1,7 +1,7 @@
 //! Calls of the functions and operators of the language, each by its entry in
 //! [`functions`](crate::functions).
 
-use super::records::{arrays, common_text, field};
+use super::records::{arrays, field, of_texts, text_arrays};
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, placed, size_fault};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
@@ -9,6 +9,8 @@ use crate::functions::{
     self, Argument, Builtin, Element, Known, Meaning, Operator, Plan, PlanOf, Reduction, Temporal,
 };
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use crate::lower::shape::UNKNOWN_TEXT;
+use crate::lower::text_array::Texts;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{self, FunctionId};
@@ -69,7 +71,11 @@ impl<T: Target> Lowering<'_, T> {
         match (operator, arguments) {
             (Operator::Size, _) => self.size(arguments, span).map(Lowered::Array),
             (Operator::NumberOfDimensions, [array]) => {
-                let rank = self.array(array)?.dims.len();
+                let rank = match self.lower(array)? {
+                    Lowered::Texts(texts) => texts.dims.len(),
+                    Lowered::Text(_) => 0,
+                    _ => self.array(array)?.dims.len(),
+                };
                 Ok(Lowered::scalar(self.target.constant(rank as f64)))
             }
             (Operator::Ordinal, [value]) => self.array(value).map(Lowered::Array),
@@ -159,11 +165,33 @@ impl<T: Target> Lowering<'_, T> {
             }
             return Ok(Lowered::Record(fields));
         }
-        if let Some(text) = common_text(values) {
-            return Ok(Lowered::Text(text));
+        if let Some(texts) = text_arrays(values) {
+            return self.arranged_texts(&texts, make);
         }
         let arrays = arrays(values.to_vec(), span)?;
         make(self, arrays).map(Lowered::Array)
+    }
+
+    /// Texts in the places that a plan gives to the numbers that stand for them.
+    fn arranged_texts(
+        &mut self,
+        values: &[Texts],
+        make: &mut Make<'_, Self, T::Scalar>,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let mut table = Vec::new();
+        let mut arrays = Vec::with_capacity(values.len());
+        for value in values {
+            let first = table.len();
+            table.extend(value.texts.iter().cloned());
+            let elements = (first..table.len()).map(|at| self.target.constant(at as f64)).collect();
+            arrays.push(Array { dims: value.dims.clone(), elements });
+        }
+        let Array { dims, elements } = make(self, arrays)?;
+        let text = |number| self.target.as_constant(number).and_then(|at| table.get(at as usize));
+        let texts = elements
+            .into_iter()
+            .map(|number| text(number).cloned().unwrap_or_else(|| UNKNOWN_TEXT.into()));
+        Ok(of_texts(Texts { dims, texts: texts.collect() }))
     }
 
     /// The array of a plan; `numbers` are the arguments that it depends on, `arrays` the others.
@@ -269,7 +297,10 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         match arguments {
             [a] => {
-                let dims = self.array(a)?.dims;
+                let dims = match self.lower(a)? {
+                    Lowered::Texts(texts) => texts.dims,
+                    _ => self.array(a)?.dims,
+                };
                 let sizes = dims.iter().map(|n| self.target.constant(*n as f64)).collect();
                 Ok(Array::vector(sizes))
             }
@@ -296,6 +327,7 @@ impl<T: Target> Lowering<'_, T> {
         }
         match value {
             Lowered::Array(array) => Ok(array.dims.clone()),
+            Lowered::Texts(texts) => Ok(texts.dims.clone()),
             _ => self.array(e).map(|array| array.dims),
         }
     }

@@ -21,6 +21,7 @@ pub(crate) use strings::message_text;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::shape::Shape;
+use super::text_array::Texts;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
 use crate::fault;
@@ -234,6 +235,8 @@ pub(crate) enum Lowered<S> {
     Record(Vec<(Ident, Lowered<S>)>),
     /// A text known when compiling, but for the parts of messages that are not.
     Text(Arc<str>),
+    /// An array of such texts.
+    Texts(Texts),
     /// The number of a text that changes at events.
     Numbered(S),
 }
@@ -271,6 +274,7 @@ impl<S: Copy> Lowered<S> {
                 Some(Shape::Record(fields.iter().map(shape).collect::<Option<_>>()?))
             }
             Lowered::Text(text) => Some(Shape::Text(text.clone())),
+            Lowered::Texts(texts) => Some(Shape::Texts(texts.clone())),
             Lowered::Numbered(_) => None,
         }
     }
@@ -291,6 +295,7 @@ impl<S: Copy> Lowered<S> {
                 Lowered::Record(fields.iter().map(|(n, f)| (*n, f.map(replace))).collect())
             }
             Lowered::Text(text) => Lowered::Text(text.clone()),
+            Lowered::Texts(texts) => Lowered::Texts(texts.clone()),
             Lowered::Numbered(number) => Lowered::Numbered(replace(*number)),
         }
     }
@@ -301,7 +306,7 @@ impl<S: Copy> Lowered<S> {
             Lowered::Array(array) => out.extend(&array.elements),
             Lowered::Record(fields) => fields.iter().for_each(|(_, f)| f.append_scalars(out)),
             Lowered::Numbered(number) => out.push(*number),
-            Lowered::Text(_) => {}
+            Lowered::Text(_) | Lowered::Texts(_) => {}
         }
     }
 
@@ -316,6 +321,7 @@ impl<S: Copy> Lowered<S> {
                 fields.iter().map(|(n, s)| (*n, Lowered::from_scalars(s, scalars))).collect(),
             ),
             Shape::Text(text) => Lowered::Text(text.clone()),
+            Shape::Texts(texts) => Lowered::Texts(texts.clone()),
         }
     }
 }
@@ -360,7 +366,7 @@ impl<'a, T: Target> Lowering<'a, T> {
             Lowered::Record(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(e.span))
             }
-            Lowered::Text(_) | Lowered::Numbered(_) => {
+            Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(e.span))
             }
         }

@@ -33,7 +33,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Text(a) => return self.texts(operator, a, right, span),
             Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
             Lowered::Array(a) => a,
-            Lowered::Record(_) => self.array(left)?,
+            Lowered::Record(_) | Lowered::Texts(_) => self.array(left)?,
         };
         if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
             && a.dims.is_empty()

@@ -5,10 +5,9 @@ use super::{Array, Lowered, Lowering, MAX_SCALARS, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::errors::ARRAY_MISMATCH;
-use crate::lower::shape::Shape;
+use crate::lower::text_array::Texts;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Subscript};
-use std::sync::Arc;
 
 impl<T: Target> Lowering<'_, T> {
     /// What subscripts choose of an array, or of an array of records.
@@ -25,6 +24,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Array(array) => self.subscripted(array, subscripts, span).map(Lowered::Array),
             // All elements have the same text, or it is not known.
             Lowered::Text(text) => Ok(Lowered::Text(text)),
+            Lowered::Texts(texts) => self.text_elements(texts, subscripts, span),
             Lowered::Record(fields) => {
                 let mut chosen = Vec::with_capacity(fields.len());
                 for (name, value) in fields {
@@ -66,8 +66,11 @@ pub(super) fn stacked<S: Copy>(
     values: Vec<Lowered<S>>,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
-    if let Some(text) = common_text(&values) {
-        return Ok(Lowered::Text(text));
+    if let Some(texts) = text_arrays(&values) {
+        return match Texts::stacked(&texts) {
+            Some(texts) => Ok(Lowered::Texts(texts)),
+            None => Err(fault!(ARRAY_MISMATCH, "the elements have different sizes").at(span)),
+        };
     }
     let Some(Lowered::Record(first)) = values.first() else {
         return stack(arrays(values, span)?, span).map(Lowered::Array);
@@ -82,15 +85,22 @@ pub(super) fn stacked<S: Copy>(
     Ok(Lowered::Record(fields))
 }
 
-/// The text of all elements, not known where theirs differ; `None` for numbers.
-pub(super) fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
-    let mut common = column.first()?.shape()?;
-    for value in column {
-        common = common.joined(&value.shape()?)?;
-    }
-    match common {
-        Shape::Text(text) => Some(text),
+/// Values that are all texts or arrays of texts, one at least; `None` for numbers.
+pub(super) fn text_arrays<S: Copy>(values: &[Lowered<S>]) -> Option<Vec<Texts>> {
+    let texts = |value: &Lowered<S>| match value {
+        Lowered::Text(text) => Some(Texts::filled(Vec::new(), text.clone())),
+        Lowered::Texts(texts) => Some(texts.clone()),
         _ => None,
+    };
+    let all: Vec<Texts> = values.iter().map(texts).collect::<Option<_>>()?;
+    (!all.is_empty()).then_some(all)
+}
+
+/// An array of texts as a value: one without dimensions is a text.
+pub(super) fn of_texts<S>(texts: Texts) -> Lowered<S> {
+    match texts.texts.first() {
+        Some(text) if texts.dims.is_empty() => Lowered::Text(text.clone()),
+        _ => Lowered::Texts(texts),
     }
 }
 
@@ -104,7 +114,7 @@ pub(super) fn arrays<S: Copy>(
         Lowered::Record(_) => {
             Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(span))
         }
-        Lowered::Text(_) | Lowered::Numbered(_) => {
+        Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
             Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(span))
         }
     };

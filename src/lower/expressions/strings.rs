@@ -1,17 +1,19 @@
 //! Functions of texts: called while the model is compiled, by the interpreter.
 
-use super::{Array, Lowered, Lowering, Target};
+use super::records::of_texts;
+use super::{Array, Choice, Lowered, Lowering, Target};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
 use crate::external::{Outside, Resources};
 use crate::fault;
-use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
+use crate::lower::text_array::Texts;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind,
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
 };
 use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
 use std::cell::Cell;
@@ -113,6 +115,36 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
+    /// The texts that subscripts choose; positions must be known.
+    pub(super) fn text_elements(
+        &mut self,
+        texts: Texts,
+        subscripts: &[Subscript],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let mut dims = Vec::new();
+        let mut positions = vec![0];
+        let mut choices = self.choices(&texts.dims, subscripts, span)?.into_iter();
+        for size in &texts.dims {
+            let (chosen, keeps) = match choices.next() {
+                Some(Choice::Known { positions, keeps }) => (positions, keeps),
+                Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
+                    return Err(fault!(
+                        NO_CONSTANT_VALUE,
+                        "a subscript of an array of Strings must be known at translation"
+                    )
+                    .at(span));
+                }
+                None => ((0..*size).collect(), true),
+            };
+            let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();
+            positions = positions.iter().flat_map(step).collect();
+            dims.extend(keeps.then_some(chosen.len()));
+        }
+        let chosen = positions.into_iter().map(|at| texts.texts[at].clone()).collect();
+        Ok(of_texts(Texts { dims, texts: chosen }))
+    }
+
     /// What a reference stands for, if that is known.
     fn known_reference(&mut self, reference: &ComponentReference) -> Option<Value> {
         let is_index = |name| self.loops.iter().any(|(index, _)| *index == name);
@@ -151,6 +183,11 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Text(text) => {
                 (!text.contains(UNKNOWN_TEXT)).then(|| Value::String(text.clone()))
             }
+            Lowered::Texts(texts) => {
+                let is_known = texts.texts.iter().all(|text| !text.contains(UNKNOWN_TEXT));
+                let elements = Elements::String(texts.texts.to_vec());
+                is_known.then(|| Value::Array(ArrayValue { dims: texts.dims.clone(), elements }))
+            }
             Lowered::Record(_) | Lowered::Numbered(_) => None,
             Lowered::Array(array) => {
                 let mut values = Vec::with_capacity(array.elements.len());
@@ -174,6 +211,10 @@ impl<T: Target> Lowering<'_, T> {
     fn lowered_value(&mut self, value: &Value) -> Option<Lowered<T::Scalar>> {
         if let Value::String(text) = value {
             return Some(Lowered::Text(text.clone()));
+        }
+        if let Value::Array(ArrayValue { dims, elements: Elements::String(texts) }) = value {
+            let texts = texts.as_slice().into();
+            return Some(Lowered::Texts(Texts { dims: dims.clone(), texts }));
         }
         let (dims, numbers) = match value {
             Value::Array(array) => {

@@ -27,8 +27,8 @@ impl<T: Target> Lowering<'_, T> {
                 .target
                 .text_number(&text)
                 .ok_or_else(|| fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span)),
-            Lowered::Array(_) | Lowered::Record(_) => {
-                Err(fault!(ARRAY_MISMATCH, "expected a String, got a number").at(span))
+            Lowered::Array(_) | Lowered::Record(_) | Lowered::Texts(_) => {
+                Err(fault!(ARRAY_MISMATCH, "expected a scalar String").at(span))
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Functions applied to arrays element by element (MLS §12.4.6).
 
-use super::records::{arrays, common_text, field};
+use super::records::{arrays, field, of_texts, text_arrays};
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::lower::text_array::Texts;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -56,8 +57,9 @@ fn gathered<S: Copy>(
         });
         return whole.collect::<Result<_, _>>().map(Lowered::Record);
     }
-    if let Some(text) = common_text(ones) {
-        return Ok(Lowered::Text(text));
+    if let Some(texts) = text_arrays(ones).as_deref().and_then(Texts::stacked) {
+        let dims = [sizes, &texts.dims[1..]].concat();
+        return Ok(Lowered::Texts(Texts { dims, ..texts }));
     }
     let ones = arrays(ones.to_vec(), span)?;
     let inner = ones.first().map_or(&[][..], |one| &one.dims);
@@ -74,6 +76,10 @@ fn surplus<'a, S>(input: &FunctionComponent, argument: &'a Lowered<S>) -> Option
         (Lowered::Array(array), _) => {
             let n = array.dims.len().checked_sub(input.dims.len())?;
             (n > 0).then(|| &array.dims[..n])
+        }
+        (Lowered::Texts(texts), _) => {
+            let n = texts.dims.len().checked_sub(input.dims.len())?;
+            (n > 0).then(|| &texts.dims[..n])
         }
         // Arrays of records are records of arrays.
         (Lowered::Record(values), ValueType::Record(_, fields)) => {
@@ -106,6 +112,7 @@ fn element<S: Copy>(array: &Lowered<S>, rank: usize, at: usize) -> Lowered<S> {
             let fields = fields.iter().map(|(name, field)| (*name, element(field, rank, at)));
             Lowered::Record(fields.collect())
         }
+        Lowered::Texts(texts) => of_texts(texts.part(rank, at)),
         other => other.clone(),
     }
 }

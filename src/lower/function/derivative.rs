@@ -6,7 +6,7 @@
 //! the function is differentiated itself. A derivative function may have a derivative of its own,
 //! `derivative(order = 2)`, whose inputs are its inputs, followed by second derivatives.
 
-use super::instances::{Argument, Instance, Instances};
+use super::instances::{Argument, Instance, Instances, passed};
 use crate::bytecode::Derivative;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::flatten::FlatModel;
@@ -50,6 +50,9 @@ impl Instances {
         let bare = Name { global: false, parts: wanted.name.parts.clone() };
         let of = flat.functions.get(&bare)?.clone();
         let mut given: Vec<Lowered<Option<f64>>> = arguments.iter().map(known).collect();
+        if arguments.iter().any(|argument| matches!(argument, Argument::Record(_))) {
+            return None;
+        }
         let (mut tangents, mut zero, mut next) = (Vec::new(), Vec::new(), 0u32);
         let mut second = Vec::new();
         for (input, argument) in function.inputs.iter().zip(arguments) {
@@ -68,8 +71,7 @@ impl Instances {
             return None;
         }
         let instance = self.instance(flat, &of, &given, span).ok()?;
-        let all = arguments.iter().map(|a| matches!(a, Argument::Shape(_)));
-        let all = all.chain(std::iter::repeat(true));
+        let all = passed(arguments).into_iter().chain(std::iter::repeat(true));
         if instance.passed.iter().zip(all).any(|(passed, own)| *passed != own) {
             return None;
         }
@@ -128,6 +130,10 @@ fn known(argument: &Argument) -> Lowered<Option<f64>> {
         Argument::Shape(shape) => unknown(shape),
         Argument::Known(bits) => Lowered::scalar(Some(f64::from_bits(*bits))),
         Argument::Text(text) => Lowered::Text(text.clone()),
+        Argument::Texts(texts) => Lowered::Texts(texts.clone()),
+        Argument::Record(fields) => {
+            Lowered::Record(fields.iter().map(|(name, field)| (*name, known(field))).collect())
+        }
     }
 }
 

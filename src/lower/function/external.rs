@@ -86,6 +86,11 @@ impl Body<'_, '_> {
             Lowered::Record(_) => {
                 Err(fault!(NOT_SUPPORTED, "a record as argument of an external function").at(span))
             }
+            Lowered::Texts(_) => Err(fault!(
+                NOT_SUPPORTED,
+                "an array of Strings as argument of an external function"
+            )
+            .at(span)),
             Lowered::Numbered(_) => Err(fault!(
                 NOT_SUPPORTED,
                 "a String that changes during the simulation, as argument of an external function"

@@ -12,7 +12,8 @@ use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
 use crate::lower::shape::Shape;
 use crate::lower::shape::UNKNOWN_TEXT;
-use crate::name::Name;
+use crate::lower::text_array::Texts;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
@@ -46,6 +47,40 @@ pub(super) enum Argument {
     Known(u64),
     /// A text.
     Text(Arc<str>),
+    /// An array of texts.
+    Texts(Texts),
+    /// A record of which some components are known, on which sizes may depend.
+    Record(Vec<(Ident, Argument)>),
+}
+
+impl Argument {
+    /// Whether each of its scalars is passed.
+    fn append_passed(&self, passed: &mut Vec<bool>) {
+        match self {
+            Argument::Shape(shape) => passed.extend(std::iter::repeat_n(true, shape.len())),
+            Argument::Known(_) => passed.push(false),
+            Argument::Text(_) | Argument::Texts(_) => {}
+            Argument::Record(fields) => {
+                fields.iter().for_each(|(_, field)| field.append_passed(passed));
+            }
+        }
+    }
+
+    /// Whether a value is known, itself or one of its components.
+    fn has_known(&self) -> bool {
+        match self {
+            Argument::Known(_) => true,
+            Argument::Record(fields) => fields.iter().any(|(_, field)| field.has_known()),
+            Argument::Shape(_) | Argument::Text(_) | Argument::Texts(_) => false,
+        }
+    }
+}
+
+/// Whether each scalar of all arguments is passed.
+pub(super) fn passed(arguments: &[Argument]) -> Vec<bool> {
+    let mut passed = Vec::new();
+    arguments.iter().for_each(|argument| argument.append_passed(&mut passed));
+    passed
 }
 
 /// A compiled function.
@@ -61,7 +96,7 @@ pub(crate) struct Instance {
     pub(super) impure: bool,
     /// Whether calls write files or print.
     pub(super) writes: bool,
-    /// Which arguments are passed; the others are known.
+    /// Which scalars of the arguments are passed; the others are known.
     pub(super) passed: Vec<bool>,
 }
 
@@ -103,7 +138,7 @@ impl Instances {
         let found = match self.compiled(flat, function, general, span) {
             Err(e) if e.code == NO_CONSTANT_VALUE => {
                 let special = signature(function, arguments, true, span)?;
-                if special.arguments.iter().any(|a| matches!(a, Argument::Known(_))) {
+                if special.arguments.iter().any(Argument::has_known) {
                     self.compiled(flat, function, special, span)
                 } else {
                     Err(e)
@@ -173,14 +208,13 @@ impl Instances {
     ) -> Result<Instance, Diagnostic> {
         let mut body = Body::new(flat, self, function);
         let outputs = body.declare(&signature.arguments, statements, span)?;
-        let passed = |a: &Argument| matches!(a, Argument::Shape(_));
         let mut instance = Instance {
             code: body.instances.finished.len() as u32,
             outputs,
             folds: !function.impure && !super::external_kinds::handles_objects(function),
             impure: function.impure,
             writes: false,
-            passed: signature.arguments.iter().map(passed).collect(),
+            passed: passed(&signature.arguments),
         };
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
@@ -280,6 +314,16 @@ impl Instances {
     }
 }
 
+impl Instance {
+    /// The scalars of arguments that a call passes.
+    pub(super) fn passed_of<S: Copy>(&self, arguments: &[Lowered<S>]) -> Vec<S> {
+        let mut scalars = Vec::with_capacity(self.passed.len());
+        arguments.iter().for_each(|argument| argument.append_scalars(&mut scalars));
+        let both = scalars.into_iter().zip(&self.passed);
+        both.filter(|(_, passed)| **passed).map(|(scalar, _)| scalar).collect()
+    }
+}
+
 fn signature(
     function: &Function,
     arguments: &[Lowered<Option<f64>>],
@@ -288,53 +332,63 @@ fn signature(
 ) -> Result<Signature, Diagnostic> {
     let mut list = Vec::with_capacity(arguments.len());
     for (input, argument) in function.inputs.iter().zip(arguments) {
-        let whole = matches!(
-            input.value_type,
-            ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
-        );
-        list.push(match argument {
-            // Algorithms refuse to decide by it themselves.
-            Lowered::Text(text)
-                if text.contains(UNKNOWN_TEXT) && super::external_kinds::reads_texts(function) =>
-            {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "the String for `{}` of `{}` must be known at translation",
-                    input.name,
-                    function.name
-                )
-                .at(span));
-            }
-            Lowered::Numbered(_) => {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "a String that changes during the simulation, for \
-                        `{}`",
-                    input.name
-                )
-                .at(span));
-            }
-            Lowered::Text(text) => Argument::Text(text.clone()),
-            Lowered::Array(array) => match array.elements.as_slice() {
-                [Some(value)] if array.dims.is_empty() && whole && with_values => {
-                    Argument::Known(value.to_bits())
-                }
-                _ => Argument::Shape(Shape::Array(array.dims.clone())),
-            },
-            Lowered::Record(_) => match argument.shape() {
-                Some(shape) => Argument::Shape(shape),
-                None => {
-                    return Err(fault!(
-                        NOT_SUPPORTED,
-                        "the record `{}` of `{}` contains Strings that change during the \
-                         simulation",
-                        input.name,
-                        function.name
-                    )
-                    .at(span));
-                }
-            },
-        });
+        // Algorithms refuse to decide by it themselves.
+        if let Lowered::Text(text) = argument
+            && text.contains(UNKNOWN_TEXT)
+            && super::external_kinds::reads_texts(function)
+        {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the String for `{}` of `{}` must be known at translation",
+                input.name,
+                function.name
+            )
+            .at(span));
+        }
+        let known = known_of(&input.value_type, argument, with_values).ok_or_else(|| {
+            fault!(
+                NOT_SUPPORTED,
+                "a String that changes during the simulation, for `{}` of `{}`",
+                input.name,
+                function.name
+            )
+            .at(span)
+        })?;
+        list.push(known);
     }
     Ok(Signature { name: function.name.clone(), arguments: list })
+}
+
+/// What is known of an argument; `None` if it is or holds a text that changes.
+fn known_of(
+    wanted: &ValueType,
+    argument: &Lowered<Option<f64>>,
+    with_values: bool,
+) -> Option<Argument> {
+    let is_whole =
+        matches!(wanted, ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_));
+    Some(match argument {
+        Lowered::Numbered(_) => return None,
+        Lowered::Text(text) => Argument::Text(text.clone()),
+        Lowered::Texts(texts) => Argument::Texts(texts.clone()),
+        Lowered::Array(array) => match array.elements.as_slice() {
+            [Some(value)] if array.dims.is_empty() && is_whole && with_values => {
+                Argument::Known(value.to_bits())
+            }
+            _ => Argument::Shape(Shape::Array(array.dims.clone())),
+        },
+        Lowered::Record(fields) => {
+            if let (ValueType::Record(_, types), true) = (wanted, with_values) {
+                let field = |(name, field): &(Ident, Lowered<_>)| {
+                    let known = known_of(&types.get(name)?.value_type, field, with_values)?;
+                    Some((*name, known))
+                };
+                let known = fields.iter().map(field).collect::<Option<_>>().map(Argument::Record);
+                if let Some(known) = known.filter(Argument::has_known) {
+                    return Some(known);
+                }
+            }
+            Argument::Shape(argument.shape()?)
+        }
+    })
 }

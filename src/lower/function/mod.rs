@@ -103,18 +103,33 @@ fn settle_whole_numbers(
 ) -> bool {
     let mut any = false;
     for (input, argument) in function.inputs.iter().zip(arguments) {
-        let is_whole = matches!(input.value_type, ValueType::Integer | ValueType::Boolean);
-        let Lowered::Array(array) = &*argument else { continue };
-        let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
-            continue;
-        };
-        if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
-            continue;
+        any |= settle_whole(builder, &input.value_type, argument);
+    }
+    any
+}
+
+/// As [`settle_whole_numbers`], of one argument and the components of a record.
+fn settle_whole(builder: &mut Builder<'_>, wanted: &ValueType, value: &mut Lowered<Expr>) -> bool {
+    let mut any = false;
+    if let (Lowered::Record(fields), ValueType::Record(_, types)) = (&mut *value, wanted) {
+        for (name, field) in fields {
+            if let Some(component) = types.get(name) {
+                any |= settle_whole(builder, &component.value_type, field);
+            }
         }
-        if let Ok(Some(value)) = builder.settled(*element) {
-            *argument = Lowered::scalar(builder.dae.pool.constant(value));
-            any = true;
-        }
+        return any;
+    }
+    let is_whole = matches!(wanted, ValueType::Integer | ValueType::Boolean);
+    let Lowered::Array(array) = &*value else { return false };
+    let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
+        return false;
+    };
+    if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
+        return false;
+    }
+    if let Ok(Some(known)) = builder.settled(*element) {
+        *value = Lowered::scalar(builder.dae.pool.constant(known));
+        any = true;
     }
     any
 }
@@ -130,12 +145,7 @@ pub(super) fn compiled_call(
     let known: Vec<Lowered<Option<f64>>> =
         arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
     let instance = builder.calls.functions.instance(builder.flat, function, &known, span)?;
-    let mut scalars = Vec::new();
-    for (argument, passed) in arguments.iter().zip(&instance.passed) {
-        if *passed {
-            argument.append_scalars(&mut scalars);
-        }
-    }
+    let mut scalars = instance.passed_of(&arguments);
     if instance.impure {
         // Calls in different places are different calls, though their arguments are the same.
         let site = builder.calls.impure;

@@ -285,6 +285,13 @@ impl Body<'_, '_> {
                     offset = Some(d);
                     vec![0]
                 }
+                Some(Choice::ComputedVector(_)) => {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "an assignment to elements that a computed vector of subscripts chooses";
+                        help: "write a loop")
+                    .at(span));
+                }
                 None => {
                     kept.push(*size);
                     (0..*size).collect()

@@ -99,16 +99,25 @@ impl<'a, 'f> Body<'a, 'f> {
 
     /// An input: a number, or registers that the caller fills.
     pub(super) fn input(&mut self, name: Ident, argument: &Argument) {
-        let value = match argument {
+        let value = self.of_argument(argument);
+        self.locals.push((name, value));
+    }
+
+    fn of_argument(&mut self, argument: &Argument) -> Lowered<Operand> {
+        match argument {
             Argument::Known(bits) => Lowered::scalar(Operand::Constant(f64::from_bits(*bits))),
             Argument::Text(text) => Lowered::Text(text.clone()),
+            Argument::Texts(texts) => Lowered::Texts(texts.clone()),
             Argument::Shape(shape) => {
                 let first = self.emitter.permanent(shape.len() as u32);
                 self.n_inputs += shape.len() as u32;
                 Lowered::from_scalars(shape, &mut (first..).map(Operand::Register))
             }
-        };
-        self.locals.push((name, value));
+            Argument::Record(fields) => {
+                let field = |(name, field): &(Ident, Argument)| (*name, self.of_argument(field));
+                Lowered::Record(fields.iter().map(field).collect())
+            }
+        }
     }
 
     pub(super) fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {

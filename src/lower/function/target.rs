@@ -209,12 +209,7 @@ impl Target for Body<'_, '_> {
         let known: Vec<Lowered<Option<f64>>> =
             arguments.iter().map(|a| a.map(&mut |operand| self.as_constant(operand))).collect();
         let instance = self.instances.instance(self.flat, function, &known, span)?;
-        let mut scalars = Vec::new();
-        for (argument, passed) in arguments.iter().zip(&instance.passed) {
-            if *passed {
-                argument.append_scalars(&mut scalars);
-            }
-        }
+        let scalars = instance.passed_of(&arguments);
         let numbers: Option<Vec<f64>> = match instance.folds {
             true => scalars.iter().map(|s| self.as_constant(*s)).collect(),
             false => None,

@@ -1,0 +1,253 @@
+//! What libraries write that the specification allows, or that other programs accept: every case is
+//! simulated, and `x` at the end is the value that follows from the specification.
+
+use gapilib::causalize::causalize;
+use gapilib::codegen::{Access, Program};
+use gapilib::flatten::{Flattened, Library, flatten};
+use gapilib::name::Name;
+use gapilib::sim::{Settings, simulate};
+use gapilib::source::SourceId;
+use gapilib::syntax::parse_stored_definition;
+
+/// The model `P.M` of a package whose contents these are.
+fn flattened(contents: &str) -> Flattened {
+    let text = format!("package P {contents} end P;");
+    let file = parse_stored_definition(SourceId::NONE, &text).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    flatten(&library, &Name::parse("P.M"), &[]).expect("a model")
+}
+
+/// Values of `x` at the start and at t = 1.
+fn both_ends(contents: &str) -> [f64; 2] {
+    let flat = flattened(contents).model;
+    let program = Program::compile(causalize(&flat).expect("it can be sorted"));
+    let program = program.expect("it compiles");
+    let mut system = program.system();
+    let to_one = Settings { stop: 1.0, ..Settings::default() };
+    let trajectory = simulate(&mut system, &to_one).expect("a simulation").0;
+    let at = program.find_variable("x").expect("there is an x");
+    match program.variables()[at].access {
+        Access::Observed { column, negated } => {
+            let column = trajectory.column(column);
+            let sign = if negated { -1.0 } else { 1.0 };
+            [sign * column[0], sign * column[trajectory.len() - 1]]
+        }
+        _ => [system.value(at).expect("x has a value"); 2],
+    }
+}
+
+fn at_end(contents: &str) -> f64 {
+    both_ends(contents)[1]
+}
+
+/// The codes of the warnings.
+fn warnings(contents: &str) -> Vec<&'static str> {
+    flattened(contents).warnings.iter().map(|one| one.code.slug).collect()
+}
+
+/// A position in an array of Strings, by a loop whose subscript is computed.
+const POSITION: &str = "function position input String names[:]; input String name; \
+    output Integer k; algorithm k := 0; for i in 1:size(names, 1) loop \
+    if names[i] == name then k := i; end if; end for; end position;";
+
+#[test]
+fn elements_and_sizes_of_constant_strings_are_known() {
+    let comprehension = "package Air constant String names[3] = {\"a\", \"b\", \"c\"}; end Air; \
+        model M replaceable package Medium = Air; \
+        Real y[3] = {if Medium.names[i] == \"b\" then i else 0 for i in 1:3}; \
+        Real x = sum(y); end M;";
+    assert_eq!(at_end(comprehension), 2.0);
+    let size = "model A parameter String names[:] = {\"a\", \"b\"}; Real y[size(names, 1)] = \
+        fill(2, size(names, 1)); end A; model M A a(names = {\"p\", \"q\", \"r\"}); \
+        Real x = sum(a.y); end M;";
+    assert_eq!(at_end(size), 6.0);
+    let arranged = "model M parameter String n[2, 2] = {{\"a\", \"b\"}, {\"c\", \"d\"}}; \
+        parameter String row[:] = cat(1, n[2, :], fill(\"e\", 2)); \
+        Real x = (if row[2] == \"d\" then 1 else 0) + (if row[4] == \"e\" then 2 else 0) \
+        + 10*size(row, 1); end M;";
+    assert_eq!(at_end(arranged), 43.0);
+}
+
+#[test]
+fn functions_take_arrays_of_strings() {
+    let of_constants = format!(
+        "{POSITION} model M Real x = position({{\"a\", \"b\", \"c\"}}, \"b\")*time; end M;"
+    );
+    assert_eq!(at_end(&of_constants), 2.0);
+    // What depends on time too is compiled: the loop is unrolled.
+    let compiled = "function weight input String names[:]; input Real t; output Real w; \
+        algorithm w := 0; for i in 1:size(names, 1) loop \
+        if names[i] == \"b\" and t > 0.5 then w := w + i*t; end if; end for; end weight; \
+        model M Real x = weight({\"a\", \"b\", \"b\"}, time); end M;";
+    assert_eq!(at_end(compiled), 5.0);
+    let initial = "package Air constant String names[2] = {\"a\", \"b\"}; end Air; \
+        model M parameter Integer k(fixed = false); Real x = k; initial algorithm k := 0; \
+        for i in 1:size(Air.names, 1) loop if Air.names[i] == \"b\" then k := i; end if; end for; \
+        end M;";
+    assert_eq!(at_end(initial), 2.0);
+}
+
+#[test]
+fn a_replaceable_class_is_judged_where_it_is_used() {
+    let text = "partial package One constant Integer n = 1; end One; \
+        partial package Two extends One; constant Integer k = 3; end Two; \
+        package Medium extends Two; end Medium; \
+        model Part replaceable package Used = Two; Real y = Used.k; end Part; \
+        model Whole replaceable package Used = One; Part part(redeclare package Used = Used); \
+        end Whole; model M Whole w(redeclare package Used = Medium); Real x = w.part.y; end M;";
+    assert_eq!(at_end(text), 3.0);
+}
+
+#[test]
+fn a_protected_constant_may_stand_in_the_default_of_an_output() {
+    let text = "record R Real y[:]; Real z[size(y, 1)]; end R; \
+        function f input Real p; output R r(y = {0, 1, 2}, z = fill(p, n)); \
+        protected constant Integer n = 3; algorithm r.y := {0, p, 2}; end f; \
+        function g input Real t; output Real s; protected R r = f(t); \
+        algorithm s := r.z[2] + r.y[2]; end g; \
+        model M parameter R r = f(2); Real x = r.z[2] + r.y[2] + g(time); end M;";
+    assert_eq!(at_end(text), 6.0);
+}
+
+#[test]
+fn old_forms_are_warnings() {
+    let bound = "model M Real x(start = 2, fixed = true, unbounded = true); equation der(x) = 0; \
+        end M;";
+    assert_eq!(at_end(bound), 2.0);
+    assert!(warnings(bound).is_empty());
+
+    let from_outside = "model M model Part Real y = 3; end Part; M.Part part; Real x = part.y; \
+        end M;";
+    assert_eq!(at_end(from_outside), 3.0);
+    assert_eq!(warnings(from_outside), ["illegal-access"]);
+
+    let unbalanced = "connector W flow Real q; Real a; Real b; end W; \
+        model S W w; equation w.a = 1; w.b = 2; end S; \
+        model T W w; Real x; equation w.q = 1; x = w.a + w.b; end T; \
+        model M S s; T t; Real x = t.x; equation connect(s.w, t.w); end M;";
+    assert_eq!(at_end(unbalanced), 3.0);
+    assert!(warnings(unbalanced).contains(&"class-restriction"));
+
+    let ordinal = "type Side = enumeration(n, p); function f input Side side; output Integer s; \
+        algorithm s := 7 - 2*side; end f; model M Real x = f(Side.p); end M;";
+    assert_eq!(at_end(ordinal), 3.0);
+    assert_eq!(warnings(ordinal), ["type-mismatch"]);
+}
+
+#[test]
+fn enumerations_with_the_same_literals_are_one_type() {
+    let text = "type A = enumeration(a, b); type B = enumeration(a, b); \
+        model I parameter A a = A.a; Real y = if a == A.b then 2 else 1; end I; \
+        model M import P.B.b; parameter B given = b; I i(a = given); Real x = i.y; end M;";
+    assert_eq!(at_end(text), 2.0);
+    let other = "package P type A = enumeration(a, b); type B = enumeration(b, a); \
+        model M parameter B b = B.b; parameter A a = b; end M; end P;";
+    let file = parse_stored_definition(SourceId::NONE, other).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let errors = flatten(&library, &Name::parse("P.M"), &[]).expect_err("other literals");
+    assert_eq!(errors[0].code.slug, "type-mismatch");
+}
+
+#[test]
+fn constructors_are_told_apart_by_what_calls_give() {
+    let text = "operator record Z Real k; encapsulated operator 'constructor' \
+        function a import P.Z; input Boolean z[:] = fill(false, 0); input Real k = 1; \
+        output Z r(k = k); algorithm end a; \
+        function b import P.Z; input Real n[:] = fill(0, 0); input Real k = 1; \
+        output Z r(k = 2*k); algorithm end b; end 'constructor'; end Z; \
+        model M Z z = Z({1.0, 2.0}, time); Real x = z.k; end M;";
+    assert_eq!(at_end(text), 2.0);
+}
+
+#[test]
+fn components_declared_alike_are_one_however_their_type_is_spelled() {
+    let text = "package Units type Frequency = Real(unit = \"1/s\"); end Units; \
+        model B import P.Units; parameter Units.Frequency f = 50 \"one\"; end B; \
+        model M extends B; parameter P.Units.Frequency f = 50 \"another\"; Real x = f; end M;";
+    assert_eq!(at_end(text), 50.0);
+    let other = "package P type F = Real; type G = Real(unit = \"m\"); \
+        model B parameter F f = 50; end B; model M extends B; parameter G f = 50; end M; end P;";
+    let file = parse_stored_definition(SourceId::NONE, other).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let errors = flatten(&library, &Name::parse("P.M"), &[]).expect_err("other types");
+    assert_eq!(errors[0].code.slug, "duplicate-element");
+}
+
+#[test]
+fn elements_of_empty_arrays_are_no_errors_where_parameters_switch_them_off() {
+    let part = "connector C Real p; flow Real m; end C;";
+    let first = format!(
+        "{part} model M parameter Integer n = 0; C c[n]; Real x = if n > 0 then c[1].p else 4; \
+         end M;"
+    );
+    assert_eq!(at_end(&first), 4.0);
+    let last = format!(
+        "{part} model M parameter Integer n = 0; C c[n]; \
+         Real x = if n == 0 then 5 elseif time > 2 then 1 else c[1].p; end M;"
+    );
+    assert_eq!(at_end(&last), 5.0);
+}
+
+#[test]
+fn sizes_follow_from_records_within_records() {
+    let text = "record T parameter Real m = 1; parameter Real tot = m*n; \
+        parameter Integer n = size(coo, 1); parameter Real coo[:, 2]; end T; \
+        record E extends T(coo = {{0, 0}, {1, 1}, {2, 2}}); end E; \
+        record C parameter T con; end C; record D extends C(con = E()); end D; \
+        model B parameter C d; Real y = d.con.tot; end B; \
+        model M parameter D c; B b(d = c); Real x = b.y; end M;";
+    assert_eq!(at_end(text), 3.0);
+    let field = "record W parameter Integer m = 2; parameter Real a = 1; end W; \
+        function f input W w; input Real t; output Real y[w.m]; \
+        protected Real z[w.m]; algorithm z := fill(w.a, w.m); y := t*z; end f; \
+        model M parameter W w(m = 3, a = 2); Real y[3] = f(w, time); Real x = sum(y); end M;";
+    assert_eq!(at_end(field), 6.0);
+}
+
+#[test]
+fn vectors_of_subscripts_may_be_parameters() {
+    let known = "model M parameter Integer id[2] = {3, 1}; Real u[3] = {1, 2, 3}*time; \
+        Real y[2] = u[id]; Real x = 10*y[1] + y[2]; end M;";
+    assert_eq!(at_end(known), 31.0);
+    let booleans = "model M parameter Integer id[2] = {3, 1}; \
+        Boolean u[3] = {time > 0.5, true, false}; Boolean y[2]; Real x; \
+        equation y = u[id]; x = (if y[1] then 1 else 0) + (if y[2] then 2 else 0); end M;";
+    assert_eq!(at_end(booleans), 2.0);
+    // Here the positions change during the simulation.
+    let discrete = "model M Integer k = if time > 0.5 then 3 else 2; Real u[3] = {1, 2, 3}*time; \
+        Real y[2] = u[{k, k - 1}]; Real x = 10*y[1] + y[2]; end M;";
+    assert_eq!(at_end(discrete), 32.0);
+}
+
+#[test]
+fn a_function_s_variable_has_not_the_sizes_of_a_model_s_array() {
+    let text = "function g input Real u; output Real y; end g; \
+        function h extends g; input Real p; algorithm y := p*u; end h; \
+        function apply input g f; input Real u; output Real y; algorithm y := f(u); end apply; \
+        function q input Real len; output Real y; algorithm y := apply(function h(p = len), 2); \
+        end q; model M parameter Real len[2] = {10, 20}; Real y[2]; Real x = y[1] + y[2]; \
+        equation for j in 1:2 loop y[j] = q(len = len[j]); end for; end M;";
+    assert_eq!(at_end(text), 60.0);
+}
+
+#[test]
+fn a_connection_of_a_disabled_component_adds_nothing_to_a_bus() {
+    let text = "expandable connector Bus end Bus; connector In = input Real; \
+        model Part parameter Boolean use = false; In t if use; Bus bus; \
+        equation connect(t, bus.temperature); end Part; \
+        model M Part part; Real x = 7; end M;";
+    assert_eq!(at_end(text), 7.0);
+}
+
+#[test]
+fn a_fixed_start_is_the_value_of_one_s_own_pre() {
+    let text = "model M Boolean y; Boolean u(start = false, fixed = true); Real x; \
+        initial algorithm y := true; \
+        equation when sample(0.7, 1) then y = not pre(y); end when; \
+        u = y; x = (if change(u) then 1 else 0) + (if y then 2 else 0); end M;";
+    // At the start `u` has changed; the iteration of events ends with `pre(u) = u`.
+    assert_eq!(both_ends(text), [2.0, 0.0]);
+}
