@@ -105,8 +105,11 @@ impl RunExternal for f64 {
             },
         };
         let done = match call.entry.makes_object() {
-            true => functions.objects.remember(&mut arguments, call.entry.run),
-            false => (call.entry.run)(&mut arguments),
+            // Objects of C may change: everyone has its own.
+            true if call.entry.c.is_none() => {
+                functions.objects.remember(&mut arguments, call.entry.run)
+            }
+            _ => call.entry.call(&mut arguments),
         };
         done.map_err(|fault| {
             externals.message = fault.message;
