@@ -17,7 +17,9 @@ pub trait Provide: fmt::Debug + Send + Sync {
     /// The content of a file.
     fn read(&self, name: &str) -> Result<Vec<u8>, Fault>;
     /// A function in C that a library brings along, compiled and loaded.
-    fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault>;
+    fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault> {
+        ().c_function(request)
+    }
     /// Whether there is a file (`Some(false)`) or a folder (`Some(true)`) of this name.
     fn is_folder(&self, name: &str) -> Option<bool>;
 }

@@ -95,11 +95,13 @@ fn compiler() -> Result<Compiler, Fault> {
     for candidate in &candidates {
         let command: Vec<String> = candidate.split_whitespace().map(str::to_owned).collect();
         let Some(program) = command.first() else { continue };
-        let version = Command::new(program).args(&command[1..]).args(["-v", "--version"]).output();
-        if let Ok(output) = version
-            && output.status.success()
-        {
-            let version = [output.stdout, output.stderr].concat();
+        let answer =
+            |question| match Command::new(program).args(&command[1..]).arg(question).output() {
+                Ok(output) if output.status.success() => Some(output.stdout),
+                _ => None,
+            };
+        if let Some(mut version) = answer("--version") {
+            version.extend(answer("-dumpmachine").unwrap_or_default());
             return Ok(Compiler { command, version });
         }
     }

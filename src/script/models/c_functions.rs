@@ -100,16 +100,22 @@ impl Session {
         &mut self,
         function: &Function,
     ) -> Vec<Arc<Function>> {
-        let mut names = vec![destructor(function)];
-        for input in function.inputs.iter().chain(&function.outputs) {
-            if let ValueType::ExternalObject(class) = &input.value_type {
-                let part = |name| class.child(Ident::new(name));
-                names.extend(["constructor", "destructor"].map(part));
+        let mut packages = BTreeSet::from([function.name.parent()]);
+        for component in function.inputs.iter().chain(&function.outputs) {
+            if let ValueType::ExternalObject(class) = &component.value_type {
+                packages.insert(class.parent());
             }
         }
-        let package = function.name.parent();
-        let children = self.library().children(&package).into_iter();
-        names.extend(children.map(|child| package.child(child)));
+        let mut names = vec![destructor(function)];
+        for package in packages {
+            for child in self.library().children(&package) {
+                let child = package.child(child);
+                // The two parts of a class of external objects.
+                let part = |name| child.child(Ident::new(name));
+                names.extend(["constructor", "destructor"].map(part));
+                names.push(child);
+            }
+        }
         names.retain(|name| self.is_in_c(name));
         let loaded = names.iter().filter_map(|name| match self.callee(name) {
             Ok(Some(Callee::Function(function))) => Some(function),
