@@ -43,8 +43,11 @@ pub(super) fn of_the_system() -> Arc<dyn CCompiler> {
 #[derive(Default)]
 struct SystemCompiler {
     /// What was loaded for a unit, and the files that it was made of.
-    known: Mutex<HashMap<String, (Vec<FileState>, Arc<Loaded>)>>,
+    known: Mutex<HashMap<String, Known>>,
 }
+
+/// What was loaded, and the files that it was made of.
+type Known = (Vec<FileState>, Arc<Loaded>);
 
 impl std::fmt::Debug for SystemCompiler {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -78,7 +78,7 @@ pub fn entry(request: &Request, library: &Arc<dyn CLibrary>) -> &'static Entry {
     let known = KNOWN.get_or_init(Known::default);
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (library.key().to_owned(), request.wanted);
-    *known.entry(key).or_insert_with(|| {
+    known.entry(key).or_insert_with(|| {
         let declaration = request.wanted().clone();
         let freed_by = declaration.destructor.as_ref();
         let position = |class: &String| request.declarations.iter().position(|d| d.class == *class);
