@@ -1,6 +1,7 @@
 //! Instructions and the functions made of them. Data only.
 
 use super::elementary::Elementary;
+use super::external::said;
 use super::failure::{Failure, Reason};
 use crate::external::{Contents, Entry, Objects, Slot};
 use crate::source::Span;
@@ -195,8 +196,11 @@ impl Functions {
                 "a division by zero or an overflow of a division".to_owned()
             }
             (Reason::External, Some(Instruction::External { external })) => {
-                let name = code.externals[*external as usize].entry.name;
-                format!("the external function `{name}` has no result")
+                let entry = code.externals[*external as usize].entry;
+                if let Some(message) = entry.c.and_then(|_| said(entry.name)) {
+                    return (message, span);
+                }
+                format!("the external function `{}` has no result", entry.name)
             }
             (Reason::Budget, _) => {
                 let words = crate::budget::exceeded();

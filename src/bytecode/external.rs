@@ -6,6 +6,18 @@ use super::number::{Dual, Number};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random};
+use std::cell::RefCell;
+
+thread_local! {
+    /// The function in C that failed last in this thread, and what it said: what it says depends on
+    /// values that are gone when the failure is explained.
+    static SAID: RefCell<(&'static str, String)> = const { RefCell::new(("", String::new())) };
+}
+
+/// What the function in C of this name said when it failed last in this thread.
+pub(super) fn said(name: &str) -> Option<String> {
+    SAID.with_borrow(|(known, message)| (*known == name).then(|| message.clone()))
+}
 
 /// Runs an external function on numbers with derivatives, or without.
 pub trait RunExternal: Number {
@@ -105,10 +117,16 @@ impl RunExternal for f64 {
             },
         };
         let done = match call.entry.makes_object() {
-            true => functions.objects.remember(&mut arguments, call.entry.run),
-            false => (call.entry.run)(&mut arguments),
+            // Objects of C may change: everyone has its own.
+            true if call.entry.c.is_none() => {
+                functions.objects.remember(&mut arguments, call.entry.run)
+            }
+            _ => call.entry.call(&mut arguments),
         };
         done.map_err(|fault| {
+            if call.entry.c.is_some() {
+                SAID.set((call.entry.name, fault.message.clone()));
+            }
             externals.message = fault.message;
             Reason::External
         })

@@ -2,6 +2,7 @@
 //! the clock, the environment and the terminal.
 
 mod args;
+mod c_compiler;
 mod check;
 mod compare;
 mod comparison;

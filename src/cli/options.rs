@@ -21,6 +21,10 @@ pub(super) struct Global {
     /// not create
     #[arg(long, global = true, help_heading = ALLOWED)]
     pub allow_write: bool,
+    /// Allow libraries to bring functions in C: they are compiled with the system's C compiler and
+    /// can do whatever you can do
+    #[arg(long, global = true, help_heading = ALLOWED)]
+    pub allow_external: bool,
 }
 
 /// `--allow-read` without a folder.

@@ -26,7 +26,7 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     session
 }
 
-/// What `--allow-read` and `--allow-write` allow.
+/// What `--allow-read`, `--allow-write` and `--allow-external` allow.
 fn grant_asked(session: &mut Session, global: &Global) {
     for folder in &global.allow_read {
         match folder == Path::new(EVERYWHERE) {
@@ -36,6 +36,9 @@ fn grant_asked(session: &mut Session, global: &Global) {
     }
     if global.allow_write {
         session.world.grant(Grant::WriteAll);
+    }
+    if global.allow_external {
+        session.world.grant(Grant::ExternalCode);
     }
 }
 

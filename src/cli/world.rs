@@ -1,5 +1,6 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
+use super::c_compiler;
 use super::disk::Disk;
 use super::limits::Stopping;
 use super::lock::Lock;
@@ -7,6 +8,7 @@ use super::output::Output;
 #[cfg(unix)]
 use super::signals;
 use super::terminal::Terminal;
+use crate::external::c::CCompiler;
 use crate::models;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::runs::view::Progress;
@@ -268,6 +270,13 @@ impl Environment for SystemWorld {
 
     fn stop_reason(&self) -> Option<String> {
         self.stopping.reason.lock().ok()?.clone()
+    }
+
+    fn c_compiler(&self) -> Option<Arc<dyn CCompiler>> {
+        match self.disk.calls_external_code() {
+            true => Some(c_compiler::of_the_system()),
+            false => None,
+        }
     }
 
     fn run_command(

@@ -2,9 +2,9 @@
 //! (MLS §12.9).
 
 use super::errors::{EXTERNAL_FUNCTION, WRONG_ARGUMENTS};
-use super::{Evaluator, Function, FunctionComponent, ValueType};
+use super::{Evaluator, Function, FunctionComponent, ValueType, c_function};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::external::{self, Call, Kind, Object, Slot};
+use crate::external::{Call, Entry, Kind, Object, Slot};
 use crate::fault;
 use crate::name::Ident;
 use crate::syntax::ast;
@@ -21,11 +21,36 @@ impl Evaluator<'_> {
         for component in function.outputs.iter().chain(&function.locals) {
             self.prepare(component.name)?;
         }
-        let own = || function.name.last().map_or("", |name| name.as_str());
-        let name = clause.function.as_ref().map_or_else(own, |name| name.node.as_str());
-        let Some(entry) = external::find(name) else {
-            return self.external_intrinsic(function, clause, name);
+        let entry = match c_function::in_rust(function, clause) {
+            Some(entry) => entry,
+            None if c_function::brings_code(clause) => self.in_c(function, clause)?,
+            None => {
+                let name = c_function::external_name(function, clause);
+                return self.external_intrinsic(function, clause, name.as_str());
+            }
         };
+        self.external_call(function, &c_function::call_of(function, clause), entry)
+    }
+
+    /// A function in C that a library brings along.
+    fn in_c(
+        &mut self,
+        function: &Arc<Function>,
+        clause: &ast::External,
+    ) -> Result<&'static Entry, Diagnostic> {
+        let others = self.host.c_companions(function);
+        match self.host.outside() {
+            Some(outside) => c_function::in_c(function, clause, others.iter(), outside),
+            None => c_function::in_c(function, clause, others.iter(), &mut ()),
+        }
+    }
+
+    fn external_call(
+        &mut self,
+        function: &Arc<Function>,
+        clause: &ast::External,
+        entry: &'static Entry,
+    ) -> Result<(), Diagnostic> {
         let mut memory = Memory::default();
         let mut slots = Vec::with_capacity(clause.arguments.len());
         for argument in &clause.arguments {
@@ -65,9 +90,9 @@ impl Evaluator<'_> {
         };
         if let Some(outside) = self.host.outside() {
             call.outside = outside;
-            (entry.run)(&mut call).at(clause.span)?;
+            entry.call(&mut call).at(clause.span)?;
         } else {
-            (entry.run)(&mut call).at(clause.span)?;
+            entry.call(&mut call).at(clause.span)?;
         }
         for (position, text) in texts {
             memory.texts[position as usize] = text;
@@ -166,9 +191,12 @@ impl Memory {
                     Elements::Enumeration(values) => {
                         self.numbers.extend(values.iter().map(|value| value.ordinal as f64));
                     }
-                    Elements::String(_) | Elements::Record(_) => {
-                        return Err(refused("an array of Strings or records"));
+                    Elements::String(values) => {
+                        let first = self.texts.len() as u32;
+                        self.texts.extend(values);
+                        return Ok(Slot { kind: Kind::Text, first, dims });
                     }
+                    Elements::Record(_) => return Err(refused("an array of records")),
                 }
                 Slot { kind: Kind::Number, first, dims }
             }
@@ -200,6 +228,9 @@ impl Memory {
     /// What stands in a slot, as the component's type has it.
     fn value(&self, component: &FunctionComponent, slot: &Slot) -> Result<Value, Fault> {
         let first = slot.first as usize;
+        if slot.kind == Kind::Text && !slot.dims.is_empty() {
+            return Err(refused("an array of Strings to be written"));
+        }
         if slot.kind == Kind::Text {
             return Ok(Value::String(self.texts[first].clone()));
         }

@@ -97,6 +97,15 @@ pub trait Host {
         None
     }
 
+    /// External functions that are compiled together with this one, which is in C: all that share
+    /// variables with it. Its object's destructor at least.
+    fn c_companions(&mut self, function: &Function) -> Vec<Arc<Function>> {
+        match self.callee(&super::c_function::destructor(function)) {
+            Ok(Some(Callee::Function(destructor))) => vec![destructor],
+            _ => Vec::new(),
+        }
+    }
+
     /// Told before each turn of an outermost loop of a script, not of a function: `turn` counts
     /// from 0, `turns` is `None` in a `while` loop.
     fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {

@@ -6,6 +6,7 @@
 //! element or an output without a value is a fault, never a zero.
 
 mod argument;
+pub mod c_function;
 mod call;
 mod component;
 mod declaration;

@@ -1,5 +1,7 @@
 //! The arguments of one call.
 
+use super::Entry;
+use super::c::Request;
 use super::errors::{EXTERNAL_FAILED, EXTERNAL_OUTSIDE};
 use super::xorshift::Random;
 use crate::diag::Fault;
@@ -15,7 +17,7 @@ pub type Object = Arc<dyn Any + Send + Sync>;
 pub enum Kind {
     /// Numbers at a position of [`Call::numbers`].
     Number,
-    /// The text at a position of [`Call::strings`].
+    /// The text at a position of [`Call::strings`], or the texts from there on.
     Text,
     /// The object whose handle stands at a position of [`Call::numbers`].
     Object,
@@ -38,7 +40,8 @@ impl Slot {
         match letter {
             'n' | 'N' => self.kind == Kind::Number && self.dims.is_empty(),
             'a' | 'A' => self.kind == Kind::Number && !self.dims.is_empty(),
-            't' | 'T' | 'f' => self.kind == Kind::Text && self.dims.is_empty(),
+            't' | 'T' | 'f' | 'g' => self.kind == Kind::Text && self.dims.is_empty(),
+            's' => self.kind == Kind::Text && !self.dims.is_empty(),
             'o' => self.kind == Kind::Object,
             _ => false,
         }
@@ -93,6 +96,11 @@ pub trait Outside {
     /// Seconds since 1970-01-01 00:00 UTC.
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
         Err(refused("to read the clock"))
+    }
+
+    /// A function in C that a library brings along, compiled and loaded.
+    fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
+        Err(refused(&format!("to compile the C function `{}`", request.wanted().function)))
     }
 
     /// The hidden state of the random numbers.

@@ -17,4 +17,19 @@ crate::codes! {
          ## Example\nA table is read from a file whose name is known only when the simulation \
          starts.\n\n\
          ## What to do\nGive the values as parameters, or read the file in a script.",
+    /// A C function of a library that the user has not allowed.
+    EXTERNAL_REFUSED = "external-refused":
+        "## What it means\nA library brings a function in C along. Compiling and calling it lets the library do anything on this machine that you may do, so it is not done without your permission. The message names the files.\n\n\
+         ## Example\n`external \"C\" y = f(x) annotation(Include = \"#include <f.c>\");`\n\n\
+         ## What to do\nIf you trust the library, allow it with `--allow-external`. A C compiler is needed.",
+    /// C code of a library that cannot be compiled or loaded.
+    EXTERNAL_COMPILER = "external-compiler":
+        "## What it means\nThe C code of a library was not compiled: there is no C compiler, or it refuses the code, or a library that it needs is missing.\n\n\
+         ## Example\n`external \"C\" y = f(x) annotation(Library = \"missing\");`\n\n\
+         ## What to do\nInstall a C compiler (`apt install gcc`, `xcode-select --install`), or name one in the environment variable `CC`. Correct what the compiler complains about: its words are in the message.",
+    /// A declaration that has no equivalent in C.
+    EXTERNAL_DECLARATION = "external-declaration":
+        "## What it means\nAn `external` declaration cannot be called: it is in a language other than C, or has arguments that are not passed to C here: records, expressions other than names, constants and sizes.\n\n\
+         ## Example\n`external \"FORTRAN 77\" f(x, y);`\n\n\
+         ## What to do\nWrite a function in C that calls it, with numbers, strings, arrays and external objects as arguments.",
 }

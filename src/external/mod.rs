@@ -19,6 +19,8 @@
 //! written here; each module says why. `tests/suite/lapack_accuracy.rs` compares all with LAPACK.
 
 mod balancing;
+mod buildings;
+pub mod c;
 mod call;
 mod eigenvalues;
 mod eigenvectors;
@@ -60,19 +62,24 @@ pub struct Entry {
     /// Its external name.
     pub name: &'static str,
     /// One letter an argument: `n` number, `a` array of numbers, `t` text, `f` text that names a
-    /// file to be read, `o` object; capital letters for those that are written to. `->` and a
+    /// file to be read, `g` one that may name one, `s` array of texts, `o` object; capital letters for those that are written to. `->` and a
     /// letter if it has a result.
     pub signature: &'static str,
     /// What it does besides giving results.
     pub effect: Effect,
     /// Whether its results change in steps only, so that derivatives are zero.
     pub in_steps: bool,
+    /// A file that the declaration must include for this function to be meant, where its name alone
+    /// could be anybody's; empty otherwise.
+    pub stands_for: &'static str,
     /// What it does.
     pub run: Native,
+    /// The function in C that is called instead.
+    pub c: Option<&'static c::CFunction>,
 }
 
 /// What calls of a function do besides giving results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Nothing: equal arguments give equal results; files count as unchanged.
     None,
@@ -87,7 +94,8 @@ pub enum Effect {
 impl Entry {
     /// A function without effects.
     const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::None, in_steps: false, run }
+        let effect = Effect::None;
+        Entry { name, signature, effect, in_steps: false, stands_for: "", run, c: None }
     }
 
     /// A function without effects whose results change in steps only.
@@ -97,17 +105,33 @@ impl Entry {
 
     /// A function with a hidden state.
     const fn stateful(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::State, in_steps: false, run }
+        Entry { effect: Effect::State, ..Entry::pure(name, signature, run) }
     }
 
     /// A function that writes.
     pub(crate) const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::Writes, in_steps: false, run }
+        Entry { effect: Effect::Writes, ..Entry::pure(name, signature, run) }
+    }
+
+    /// The same for declarations that include a certain file.
+    const fn for_source(self, stands_for: &'static str) -> Entry {
+        Entry { stands_for, ..self }
+    }
+
+    /// Calls it.
+    ///
+    /// # Errors
+    /// What the function says.
+    pub fn call(&self, call: &mut Call<'_>) -> Result<(), Fault> {
+        match self.c {
+            Some(function) => function.call(call),
+            None => (self.run)(call),
+        }
     }
 
     /// A function that learns from outside.
     const fn impure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::Outside, in_steps: false, run }
+        Entry { effect: Effect::Outside, ..Entry::pure(name, signature, run) }
     }
 
     /// Whether the result is a new object.
@@ -117,7 +141,17 @@ impl Entry {
 
     /// The arguments that name files to be read.
     pub fn files(&self) -> impl Iterator<Item = usize> {
-        self.signature.char_indices().filter(|(_, letter)| *letter == 'f').map(|(at, _)| at)
+        self.places_of('f')
+    }
+
+    /// The arguments that may name files to be read.
+    pub fn possible_files(&self) -> impl Iterator<Item = usize> {
+        self.places_of('g')
+    }
+
+    fn places_of(&self, wanted: char) -> impl Iterator<Item = usize> {
+        let letters = self.signature.char_indices();
+        letters.filter(move |(_, letter)| *letter == wanted).map(|(at, _)| at)
     }
 
     /// Whether the arguments and the result are of the kinds that the function wants.
@@ -173,7 +207,13 @@ const FAMILIES: &[&[Entry]] = &[
     householder::ENTRIES,
     fourier::ENTRIES,
     messages::ENTRIES,
+    buildings::ENTRIES,
 ];
+
+/// The function of this external name, declared with an annotation `Include`.
+pub fn find_declared(name: &str, include: &str) -> Option<&'static Entry> {
+    find(name).filter(|entry| include.contains(entry.stands_for))
+}
 
 /// The function of this external name.
 ///

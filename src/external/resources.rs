@@ -1,5 +1,7 @@
 //! Files that models use, granted while they are compiled.
 
+use super::Entry;
+use super::c::Request;
 use super::call::Outside;
 use super::errors::EXTERNAL_OUTSIDE;
 use crate::diag::Fault;
@@ -14,6 +16,10 @@ pub trait Provide: fmt::Debug + Send + Sync {
     fn path(&self, name: &str) -> Result<String, Fault>;
     /// The content of a file.
     fn read(&self, name: &str) -> Result<Vec<u8>, Fault>;
+    /// A function in C that a library brings along, compiled and loaded.
+    fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault> {
+        ().c_function(request)
+    }
     /// Whether there is a file (`Some(false)`) or a folder (`Some(true)`) of this name.
     fn is_folder(&self, name: &str) -> Option<bool>;
 }
@@ -60,6 +66,13 @@ impl Outside for Resources {
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         Ok(self.provider(path)?.is_folder(path))
+    }
+
+    fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
+        match &self.0 {
+            Some(provider) => provider.c_function(request),
+            None => ().c_function(request),
+        }
     }
 }
 

@@ -79,7 +79,9 @@ impl Instantiation<'_> {
     fn finished(&mut self, leaf: &Leaf) -> Result<Variable, Diagnostic> {
         let mut variable = self.classes.tree.variables[leaf.variable].0.clone();
         if let Some(bound) = &leaf.modifier.binding {
-            let impure = variable.variability <= Variability::Parameter;
+            // External objects are made once, before the simulation (MLS §12.9.7).
+            let impure = variable.variability <= Variability::Parameter
+                || matches!(variable.base, BaseType::ExternalObject(_));
             variable.binding = self.bound(bound, impure)?;
         }
         if let Some(binding) = variable.binding.take() {

@@ -547,6 +547,10 @@ impl Target for Call<'_, '_> {
         self.builder.interpreted()
     }
 
+    fn functions(&self) -> Vec<Arc<Function>> {
+        self.builder.flat.functions.values().cloned().collect()
+    }
+
     fn resources(&self) -> crate::external::Resources {
         self.builder.flat.resources.clone()
     }

@@ -259,6 +259,10 @@ impl Target for Builder<'_> {
         pool.if_then_else(active, between, actual)
     }
 
+    fn functions(&self) -> Vec<Arc<Function>> {
+        self.flat.functions.values().cloned().collect()
+    }
+
     fn resources(&self) -> crate::external::Resources {
         self.flat.resources.clone()
     }

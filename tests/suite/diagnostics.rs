@@ -20,6 +20,8 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "bad-reference",
     // A result table is checked before it is written; only a fault of the program can raise it.
     "bad-result-table",
+    // A world in memory has no compiler: see `c_functions.rs`.
+    "external-compiler",
     // Scripts grant what external functions want; models without files do not: see `external.rs`.
     "external-outside",
     // Scripts meet `bad-parameter-value` first.

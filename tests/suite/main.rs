@@ -8,6 +8,7 @@ mod algorithms;
 mod architecture;
 mod assertions;
 mod bad_input;
+mod c_functions;
 mod chattering;
 mod checks;
 mod cli;

@@ -58,6 +58,11 @@ impl Disk {
         state.policy.grant(grant, real);
     }
 
+    /// Whether functions in C may be compiled and called.
+    pub(super) fn calls_external_code(&self) -> bool {
+        self.state().policy.calls_external_code()
+    }
+
     /// # Errors
     /// The path is refused, or cannot be resolved.
     pub(super) fn permits(&self, path: &Path, access: Access) -> io::Result<()> {

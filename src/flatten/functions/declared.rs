@@ -179,6 +179,12 @@ impl Instantiation<'_> {
         if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
             return Ok(None);
         }
+        // Nobody calls it by name, but it must be there when the object is freed.
+        if let Some(Type::Class(id)) =
+            self.classes.lookup(class, &Name::from(Ident::new("destructor")))?
+        {
+            self.function(id)?;
+        }
         match self.classes.lookup(class, &Name::from(Ident::new("constructor")))? {
             Some(Type::Class(id)) => self.function(id),
             _ => Ok(None),

@@ -146,6 +146,8 @@ pub(crate) trait Target {
     fn function(&self, name: &Name) -> Option<Arc<crate::eval::Function>>;
     /// The type of the scalars of a variable that has this path.
     fn value_type(&self, path: &str) -> Option<crate::eval::ValueType>;
+    /// All user functions.
+    fn functions(&self) -> Vec<Arc<crate::eval::Function>>;
     /// The files that the model may use.
     fn resources(&self) -> Resources;
     /// Whether the call that is being carried out will be given up: what it needs is not computed.

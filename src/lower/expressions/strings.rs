@@ -4,7 +4,7 @@ use super::records::of_texts;
 use super::{Array, Choice, Lowered, Lowering, Target};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
-use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
+use crate::eval::{self, Callee, Function, Host, Scope, ValueType, c_function};
 use crate::external::{Outside, Resources};
 use crate::fault;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
@@ -38,6 +38,9 @@ impl<T: Target> Lowering<'_, T> {
         let is_text = |c: &eval::FunctionComponent| c.value_type == ValueType::String;
         let gives_text = function.outputs.iter().any(is_text);
         if !gives_text && !function.inputs.iter().any(is_text) {
+            return Ok(None);
+        }
+        if !gives_text && function.impure && c_function::is_in_c(function) {
             return Ok(None);
         }
         let mut values = Vec::with_capacity(arguments.len());
@@ -255,6 +258,10 @@ impl<T: Target> Host for Compiling<'_, T> {
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
         Some(&mut self.resources)
+    }
+
+    fn c_companions(&mut self, _: &Function) -> Vec<Arc<Function>> {
+        self.target.functions()
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -1,12 +1,12 @@
 //! External functions of [`external`](crate::external) in functions being compiled (MLS §12.9).
 
 use super::emitter::Operand;
-use super::external_kinds::{external_name, is_object};
+use super::external_kinds::is_object;
 use super::instances::Instances;
 use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::{At, Diagnostic};
-use crate::eval::FunctionComponent;
+use crate::eval::{FunctionComponent, c_function};
 use crate::external::{self, Kind, Slot};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
@@ -17,12 +17,15 @@ impl Body<'_, '_> {
     /// The call that is the body of an external function.
     pub(super) fn external(&mut self, clause: &ast::External) -> Result<(), Diagnostic> {
         let function = self.function.clone();
-        let name = external_name(&function, clause);
-        let Some(entry) = external::find(&name) else {
-            return Err(
-                fault!(NOT_SUPPORTED, "there is no external function `{name}`").at(clause.span)
-            );
+        let entry = match c_function::in_rust(&function, clause) {
+            Some(entry) => entry,
+            None => {
+                let others = self.flat.functions.values();
+                let resources = &mut self.flat.resources.clone();
+                c_function::in_c(&function, clause, others, resources)?
+            }
         };
+        let clause = &*c_function::call_of(&function, clause);
         self.emitter.place(clause.span);
         self.emitter.open();
         let mut arguments = Vec::with_capacity(clause.arguments.len());
@@ -55,6 +58,12 @@ impl Body<'_, '_> {
                 let Instances { functions, .. } = &mut *self.instances;
                 functions.files.keep(&name, &self.flat.resources).at(clause.span)?;
             }
+        }
+        for argument in entry.possible_files() {
+            let name = self.emitter.text_at(arguments[argument].first);
+            let Instances { functions, .. } = &mut *self.instances;
+            // Whoever needs the file says that it is not there.
+            let _ = functions.files.keep(&name, &self.flat.resources);
         }
         let external = self.emitter.external(ExternalCall { entry, arguments, result });
         self.emitter.emit(Instruction::External { external });

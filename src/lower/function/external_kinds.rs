@@ -1,13 +1,12 @@
 //! Which functions are external, and what their calls need (MLS §12.9).
 
-use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use crate::external::{self, Effect};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType, c_function};
+use crate::external::Effect;
 use crate::syntax::ast;
 
 /// The external name of a function.
 pub(super) fn external_name(function: &Function, clause: &ast::External) -> String {
-    let own = || function.name.last().map_or(String::new(), |name| name.to_string());
-    clause.function.as_ref().map_or_else(own, |name| name.node.to_string())
+    c_function::external_name(function, clause).to_string()
 }
 
 /// Why a function that is external cannot be compiled, if it cannot.
@@ -17,7 +16,8 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
     if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
         return Some(format!("is the external function `{name}`, which takes arrays of Strings"));
     }
-    match external::find(&name) {
+    match c_function::in_rust(function, clause) {
+        None if c_function::brings_code(clause) => None,
         None => Some(format!(
             "is the external function `{name}`, which this program does not implement"
         )),

@@ -235,6 +235,10 @@ impl Target for Body<'_, '_> {
         &self.instances.interpreted
     }
 
+    fn functions(&self) -> Vec<Arc<Function>> {
+        self.flat.functions.values().cloned().collect()
+    }
+
     fn resources(&self) -> crate::external::Resources {
         self.flat.resources.clone()
     }

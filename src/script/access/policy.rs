@@ -35,6 +35,8 @@ pub enum Grant<'a> {
     ReadAll,
     /// To write and remove all files.
     WriteAll,
+    /// To compile and call functions in C of libraries.
+    ExternalCode,
 }
 
 impl<'a> Grant<'a> {
@@ -46,7 +48,7 @@ impl<'a> Grant<'a> {
             | Grant::Results(path)
             | Grant::Own(path)
             | Grant::Named(path) => Some(path),
-            Grant::ReadAll | Grant::WriteAll => None,
+            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => None,
         }
     }
 
@@ -59,7 +61,7 @@ impl<'a> Grant<'a> {
             Grant::Results(_) => Grant::Results(path),
             Grant::Own(_) => Grant::Own(path),
             Grant::Named(_) => Grant::Named(path),
-            Grant::ReadAll | Grant::WriteAll => self,
+            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => self,
         }
     }
 }
@@ -151,6 +153,7 @@ pub struct Policy {
     made: BTreeSet<PathBuf>,
     reads_all: bool,
     writes_all: bool,
+    external_code: bool,
 }
 
 impl Policy {
@@ -164,6 +167,7 @@ impl Policy {
             Grant::Named(_) => drop(self.named.insert(real)),
             Grant::ReadAll => self.reads_all = true,
             Grant::WriteAll => self.writes_all = true,
+            Grant::ExternalCode => self.external_code = true,
         }
     }
 
@@ -185,6 +189,11 @@ impl Policy {
     /// Whether all files may be written.
     pub fn writes_all(&self) -> bool {
         self.writes_all
+    }
+
+    /// Whether functions in C may be compiled and called.
+    pub fn calls_external_code(&self) -> bool {
+        self.external_code
     }
 
     /// Whether the user has named this file.

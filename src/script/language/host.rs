@@ -3,7 +3,8 @@
 use super::workspace::check_type;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
-use crate::external::{Outside, Random};
+use crate::external::c::Request;
+use crate::external::{Entry, Outside, Random};
 use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::script::builtins::{BuiltinId, Failure};
@@ -68,6 +69,10 @@ impl Host for Session {
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
         Some(self)
+    }
+
+    fn c_companions(&mut self, function: &Function) -> Vec<Arc<Function>> {
+        self.c_functions_near(function)
     }
 
     /// Commands that run scripts work among the variables of the caller.
@@ -184,6 +189,10 @@ impl Outside for Session {
 
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
         Ok(self.world.unix_seconds())
+    }
+
+    fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
+        self.resources().c_function(request)
     }
 
     fn random(&mut self) -> Result<&mut Random, Fault> {

@@ -1,6 +1,7 @@
 //! The models of a session: classes and libraries, translation, simulation, linearization.
 
 mod along;
+mod c_functions;
 pub mod changes;
 pub mod checking;
 pub mod classes;

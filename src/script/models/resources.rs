@@ -1,7 +1,9 @@
 //! The files that a model may use while it is compiled: tables above all.
 
+use super::c_functions;
 use crate::diag::Fault;
-use crate::external::{Provide, Resources};
+use crate::external::c::{CCompiler, Request};
+use crate::external::{Entry, Provide, Resources};
 use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::faults::{cannot, plain};
@@ -19,6 +21,8 @@ struct ModelFiles {
     folders: Vec<PathBuf>,
     /// The file or folder of each loaded top-level class.
     packages: BTreeMap<Ident, PathBuf>,
+    /// Who compiles C, if that is allowed.
+    compiler: Option<Arc<dyn CCompiler>>,
 }
 
 impl Session {
@@ -44,7 +48,8 @@ impl Session {
         folders.extend(folder.map(Path::to_path_buf));
         let packages = self.classes.packages();
         let files = self.world.reader();
-        Resources::new(Arc::new(ModelFiles { files, folders, packages }))
+        let compiler = self.world.c_compiler();
+        Resources::new(Arc::new(ModelFiles { files, folders, packages, compiler }))
     }
 }
 
@@ -104,6 +109,11 @@ impl Provide for ModelFiles {
             return Err(missing(name).help(format!("relative paths start from {folders}")));
         }
         self.files.read(&path).map_err(|error| cannot("read", &path, &error))
+    }
+
+    fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault> {
+        let path = |name: &str| self.found(name).ok();
+        c_functions::compiled(request, self.compiler.as_deref(), &*self.files, &path)
     }
 
     fn is_folder(&self, name: &str) -> Option<bool> {

@@ -1,5 +1,6 @@
 //! Clocks, the process, its environment variables, and requests to stop.
 
+use crate::external::c::CCompiler;
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;
@@ -34,6 +35,10 @@ pub trait Environment {
     }
     /// Why the run has to stop although nobody asked, such as a limit of time.
     fn stop_reason(&self) -> Option<String> {
+        None
+    }
+    /// Who compiles the C functions of libraries, if the user allows it.
+    fn c_compiler(&self) -> Option<Arc<dyn CCompiler>> {
         None
     }
     /// Runs a command of the operating system with these environment variables besides its own;

@@ -149,8 +149,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "budget", "script", "identify", "teach", "runtime", "codegen", "results", "plot",
-            "sim", "ga", "models", "registry", "name", "source", "diag",
+            "budget", "external", "script", "identify", "teach", "runtime", "codegen", "results",
+            "plot", "sim", "ga", "models", "registry", "name", "source", "diag",
         ],
     ),
 ];

@@ -1,0 +1,90 @@
+//! Shared objects in the user's cache folder, by the digest of what they were made of.
+
+use super::hex;
+use crate::diag::Fault;
+use crate::external::errors::EXTERNAL_COMPILER;
+use crate::fault;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A file could not be made.
+pub(super) fn cannot(error: &io::Error) -> Fault {
+    fault!(EXTERNAL_COMPILER, "C code cannot be compiled: {error}";
+        help: "the cache folder must be writable: `XDG_CACHE_HOME`, or `.cache` in the home folder")
+}
+
+/// The folder of the user for what can be made again.
+fn folder() -> Option<PathBuf> {
+    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
+    let base = match () {
+        () if cfg!(windows) => variable("LOCALAPPDATA"),
+        () => variable("XDG_CACHE_HOME").or_else(|| {
+            let home = variable("HOME")?;
+            Some(home.join(if cfg!(target_os = "macos") { "Library/Caches" } else { ".cache" }))
+        }),
+    };
+    Some(base?.join("gapi").join("external"))
+}
+
+/// The folder, made so that nobody else can put anything there.
+fn made_folder() -> Result<PathBuf, Fault> {
+    let none = || io::Error::new(io::ErrorKind::NotFound, "there is no cache folder");
+    let folder = folder().ok_or_else(|| cannot(&none()))?;
+    let mut builder = fs::DirBuilder::new();
+    builder.recursive(true);
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder.create(&folder).map_err(|error| cannot(&error))?;
+    Ok(folder)
+}
+
+/// A folder to compile in, removed afterwards.
+pub(super) struct Scratch(PathBuf);
+
+impl Scratch {
+    pub(super) fn new() -> Result<Scratch, Fault> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = made_folder()?.join(format!("build-{}-{number}", std::process::id()));
+        // Left by a process of the same number that was killed.
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir(&path).map_err(|error| cannot(&error))?;
+        Ok(Scratch(path))
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn digest(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// The shared object of a key, if it is as it was written.
+pub(super) fn find(key: &str) -> Option<PathBuf> {
+    let object = folder()?.join(format!("{key}.so"));
+    let written = fs::read_to_string(object.with_extension("sha256")).ok()?;
+    let is_whole = digest(&fs::read(&object).ok()?) == written.trim();
+    is_whole.then_some(object)
+}
+
+/// Keeps a shared object under a key.
+pub(super) fn keep(key: &str, made: &Path) -> Result<PathBuf, Fault> {
+    let object = made_folder()?.join(format!("{key}.so"));
+    let bytes = fs::read(made).map_err(|error| cannot(&error))?;
+    let own = made.with_extension("sha256");
+    fs::write(&own, digest(&bytes)).map_err(|error| cannot(&error))?;
+    fs::rename(made, &object).map_err(|error| cannot(&error))?;
+    fs::rename(&own, object.with_extension("sha256")).map_err(|error| cannot(&error))?;
+    Ok(object)
+}

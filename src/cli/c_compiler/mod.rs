@@ -1,0 +1,252 @@
+//! The system's C compiler, for functions that libraries bring along (MLS §12.9).
+//!
+//! `$CC`, else `cc`, `gcc` or `clang`. A unit is preprocessed first: the digest of what comes out,
+//! of the compiler's version and of the libraries that are linked is the name of the shared object
+//! in the user's cache folder, next to which its own digest stands. What is damaged there is
+//! compiled anew.
+
+mod cache;
+mod library;
+
+use crate::diag::Fault;
+use crate::external::c::{CCompiler, CLibrary, HEADER, UTILITIES, Unit};
+use crate::external::errors::EXTERNAL_COMPILER;
+use crate::fault;
+use library::Loaded;
+use sha2::{Digest, Sha256};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::SystemTime;
+
+/// Without contraction a product and a sum are rounded as everywhere else; a function that nobody
+/// declares would be called with wrong types.
+const FLAGS: &[&str] = &[
+    "-O2",
+    "-fPIC",
+    "-ffp-contract=off",
+    "-Werror=implicit-function-declaration",
+    "-Werror=int-conversion",
+    "-Werror=incompatible-pointer-types",
+];
+
+/// Longest part of a compiler's complaints that is shown, in lines.
+const SHOWN: usize = 12;
+
+/// The one compiler of the process: what is loaded stays loaded.
+pub(super) fn of_the_system() -> Arc<dyn CCompiler> {
+    static COMPILER: LazyLock<Arc<SystemCompiler>> = LazyLock::new(Arc::default);
+    COMPILER.clone()
+}
+
+#[derive(Default)]
+struct SystemCompiler {
+    /// What was loaded for a unit, and the files that it was made of.
+    known: Mutex<HashMap<String, Known>>,
+}
+
+/// What was loaded, and the files that it was made of.
+type Known = (Vec<FileState>, Arc<Loaded>);
+
+impl std::fmt::Debug for SystemCompiler {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SystemCompiler").finish_non_exhaustive()
+    }
+}
+
+/// A file as it was.
+type FileState = (PathBuf, Option<(SystemTime, u64)>);
+
+fn state_of(path: PathBuf) -> FileState {
+    let state = std::fs::metadata(&path)
+        .ok()
+        .and_then(|metadata| Some((metadata.modified().ok()?, metadata.len())));
+    (path, state)
+}
+
+impl CCompiler for SystemCompiler {
+    fn load(&self, unit: &Unit) -> Result<Arc<dyn CLibrary>, Fault> {
+        let name = format!("{unit:?}");
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((files, loaded)) = known.get(&name)
+            && files.iter().all(|file| state_of(file.0.clone()) == *file)
+        {
+            return Ok(loaded.clone());
+        }
+        let (files, loaded) = compiled(unit)?;
+        // The same content has the same variables: it is loaded once.
+        let same = known.values().map(|(_, other)| other).find(|other| other.key() == loaded.key());
+        let loaded = same.cloned().unwrap_or_else(|| Arc::new(loaded));
+        known.insert(name, (files, loaded.clone()));
+        Ok(loaded)
+    }
+}
+
+/// A compiler that answers, and what it says of itself.
+struct Compiler {
+    command: Vec<String>,
+    version: Vec<u8>,
+}
+
+fn compiler() -> Result<Compiler, Fault> {
+    let named = std::env::var("CC").ok().filter(|named| !named.trim().is_empty());
+    let candidates = match &named {
+        Some(named) => vec![named.as_str()],
+        None => vec!["cc", "gcc", "clang"],
+    };
+    for candidate in &candidates {
+        let command: Vec<String> = candidate.split_whitespace().map(str::to_owned).collect();
+        let Some(program) = command.first() else { continue };
+        let answer =
+            |question| match Command::new(program).args(&command[1..]).arg(question).output() {
+                Ok(output) if output.status.success() => Some(output.stdout),
+                _ => None,
+            };
+        if let Some(mut version) = answer("--version") {
+            version.extend(answer("-dumpmachine").unwrap_or_default());
+            return Ok(Compiler { command, version });
+        }
+    }
+    let tried = candidates.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    Err(fault!(
+        EXTERNAL_COMPILER,
+        "the library brings functions in C, but there is no C compiler: tried {tried}";
+        help: "install one (`apt install gcc`, `xcode-select --install`), or name it in the \
+               environment variable `CC`"
+    ))
+}
+
+/// Compiles a unit, unless the cache has it, and loads it.
+fn compiled(unit: &Unit) -> Result<(Vec<FileState>, Loaded), Fault> {
+    let compiler = compiler()?;
+    let folder = cache::Scratch::new()?;
+    for (name, text) in [
+        ("unit.c", unit.source.as_str()),
+        ("utilities.c", UTILITIES),
+        ("ModelicaUtilities.h", HEADER),
+    ] {
+        std::fs::write(folder.path().join(name), text).map_err(|error| cache::cannot(&error))?;
+    }
+    let preprocessed = run(&compiler, folder.path(), unit, &["-E", "unit.c"])?.stdout;
+    let linked = linked_files(unit);
+    let key = key(&compiler, unit, &preprocessed, &linked);
+    let object = match cache::find(&key) {
+        Some(object) => object,
+        None => {
+            let linking = linking(unit);
+            let mut arguments = vec!["-shared", "-o", "unit.so", "unit.c", "utilities.c"];
+            arguments.extend(linking.iter().map(String::as_str));
+            run(&compiler, folder.path(), unit, &arguments)?;
+            cache::keep(&key, &folder.path().join("unit.so"))?
+        }
+    };
+    let included = included_files(&preprocessed, folder.path()).into_iter();
+    let files = included.chain(linked).map(state_of).collect();
+    Ok((files, Loaded::open(&object, key)?))
+}
+
+fn run(
+    compiler: &Compiler,
+    folder: &Path,
+    unit: &Unit,
+    arguments: &[&str],
+) -> Result<Output, Fault> {
+    let mut command = Command::new(&compiler.command[0]);
+    command.args(&compiler.command[1..]).args(FLAGS).arg("-I.").current_dir(folder);
+    for directory in &unit.include_directories {
+        command.arg("-I").arg(directory);
+    }
+    let output = command.args(arguments).output().map_err(|error| cache::cannot(&error))?;
+    if output.status.success() {
+        return Ok(output);
+    }
+    let words = String::from_utf8_lossy(&output.stderr);
+    let mut lines: Vec<&str> = words.lines().collect();
+    let more = lines.len().saturating_sub(SHOWN);
+    lines.truncate(SHOWN);
+    let rest = if more > 0 { format!("\n({more} more lines)") } else { String::new() };
+    Err(fault!(
+        EXTERNAL_COMPILER,
+        "the C compiler `{}` does not accept the code of the library:\n{}{rest}",
+        compiler.command.join(" "),
+        lines.join("\n");
+        help: "correct the C code, or the annotations `Include`, `IncludeDirectory`, `Library` and \
+               `LibraryDirectory`"
+    ))
+}
+
+/// What the linker is told, relative paths absolute.
+fn linking(unit: &Unit) -> Vec<String> {
+    let mut arguments = Vec::new();
+    for directory in unit.library_directories.iter().filter(|directory| directory.is_dir()) {
+        let directory = directory.display();
+        arguments.extend([format!("-L{directory}"), format!("-Wl,-rpath,{directory}")]);
+    }
+    for library in &unit.libraries {
+        let is_file = Path::new(library).is_absolute();
+        arguments.push(if is_file { library.clone() } else { format!("-l{library}") });
+    }
+    arguments.push("-lm".to_owned());
+    if !cfg!(target_os = "macos") {
+        // What nobody defines is found now, not when it is called.
+        arguments.push("-Wl,--no-undefined".to_owned());
+    }
+    arguments
+}
+
+/// Files of the library that are linked.
+fn linked_files(unit: &Unit) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for library in &unit.libraries {
+        if Path::new(library).is_absolute() {
+            found.push(PathBuf::from(library));
+        }
+        for directory in &unit.library_directories {
+            let names = ["so", "a", "dylib"].map(|ending| format!("lib{library}.{ending}"));
+            found
+                .extend(names.map(|name| directory.join(name)).into_iter().filter(|p| p.is_file()));
+        }
+    }
+    found
+}
+
+/// The files of the library behind the line markers of the preprocessor.
+fn included_files(preprocessed: &[u8], folder: &Path) -> Vec<PathBuf> {
+    let text = String::from_utf8_lossy(preprocessed);
+    let mut found = std::collections::BTreeSet::new();
+    for line in text.lines() {
+        let Some(rest) = line.strip_prefix("# ") else { continue };
+        let Some(name) = rest.split('"').nth(1) else { continue };
+        let path = folder.join(name);
+        if !path.starts_with(folder) && path.is_file() {
+            found.insert(path);
+        }
+    }
+    found.into_iter().collect()
+}
+
+fn key(compiler: &Compiler, unit: &Unit, preprocessed: &[u8], linked: &[PathBuf]) -> String {
+    let mut digest = Sha256::new();
+    let mut part = |bytes: &[u8]| {
+        digest.update((bytes.len() as u64).to_le_bytes());
+        digest.update(bytes);
+    };
+    part(env!("CARGO_PKG_VERSION").as_bytes());
+    part(std::env::consts::ARCH.as_bytes());
+    part(std::env::consts::OS.as_bytes());
+    part(compiler.command.join(" ").as_bytes());
+    part(&compiler.version);
+    part(FLAGS.join(" ").as_bytes());
+    part(UTILITIES.as_bytes());
+    part(linking(unit).join(" ").as_bytes());
+    part(preprocessed);
+    for file in linked {
+        part(&std::fs::read(file).unwrap_or_default());
+    }
+    hex(&digest.finalize())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,135 @@
+//! Functions in C that libraries bring along (MLS §12.9): which are compiled together, where their
+//! files are, and whether the user allows them.
+
+use crate::diag::Fault;
+use crate::eval::c_function::{brings_code, destructor};
+use crate::eval::{Callee, Function, Host, ValueType};
+use crate::external::Entry;
+use crate::external::c::{CCompiler, Declaration, Request, Unit, entry, source};
+use crate::external::errors::EXTERNAL_REFUSED;
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::script::Session;
+use crate::script::world::FileReader;
+use crate::syntax::ast::{ClassSpecifier, Section};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Folders of a library for the system that this program runs on (MLS §13.5.4), the most special
+/// first.
+const PLATFORM: &str = if cfg!(target_os = "macos") {
+    "darwin64"
+} else if cfg!(windows) {
+    "win64"
+} else if cfg!(target_arch = "aarch64") {
+    "aarch64-linux"
+} else {
+    "linux64"
+};
+
+/// Where a name of a file or folder, a path or a URI, leads.
+type Find<'a> = &'a dyn Fn(&str) -> Option<PathBuf>;
+
+/// The function that is wanted, compiled and loaded.
+///
+/// # Errors
+/// The user has not allowed it, or it cannot be compiled.
+pub(super) fn compiled(
+    request: &Request,
+    compiler: Option<&dyn CCompiler>,
+    files: &dyn FileReader,
+    find: Find<'_>,
+) -> Result<&'static Entry, Fault> {
+    let Some(compiler) = compiler else { return Err(refused(request.wanted(), files, find)) };
+    let library = compiler.load(&unit(&request.declarations, files, find))?;
+    Ok(entry(request, &library))
+}
+
+fn unit(declarations: &[Declaration], files: &dyn FileReader, find: Find<'_>) -> Unit {
+    let mut unit = Unit { source: source(declarations), ..Unit::default() };
+    let mut seen = BTreeSet::new();
+    let mut new = |path: &PathBuf| seen.insert(path.clone());
+    for declaration in declarations {
+        let include = find(&declaration.include_directory).filter(&mut new);
+        unit.include_directories.extend(include);
+        for library in &declaration.libraries {
+            let name = find(library).filter(|path| files.is_file(path));
+            let name = name.map_or(library.clone(), |path| path.display().to_string());
+            if !unit.libraries.contains(&name) {
+                unit.libraries.push(name);
+            }
+        }
+        if let Some(folder) = find(&declaration.library_directory) {
+            let folders = [folder.join(PLATFORM), folder];
+            unit.library_directories.extend(folders.into_iter().filter(&mut new));
+        }
+    }
+    unit
+}
+
+/// Names the function and every file of the library that would be compiled or linked for it.
+fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) -> Fault {
+    let folder = find(&declaration.include_directory);
+    let mut named: Vec<String> = declaration
+        .included()
+        .filter_map(|name| folder.as_ref().map(|folder| folder.join(name)))
+        .filter(|path| files.is_file(path))
+        .map(|path| format!("`{}`", path.display()))
+        .collect();
+    named.extend(declaration.libraries.iter().map(|library| format!("the library `{library}`")));
+    if named.is_empty() {
+        named.push("its annotation `Include`".to_owned());
+    }
+    fault!(
+        EXTERNAL_REFUSED,
+        "`{}` calls the C function `{}` from {}, and C code is not compiled and run without \
+         permission",
+        declaration.class,
+        declaration.function,
+        named.join(", ");
+        help: "if you trust this library, allow it with `--allow-external`: the code can do \
+               whatever you can do on this machine"
+    )
+}
+
+impl Session {
+    /// The functions in C of the package that a function is in, and of the external objects that it
+    /// takes: in a script they share the variables of their sources.
+    pub(in crate::script) fn c_functions_near(
+        &mut self,
+        function: &Function,
+    ) -> Vec<Arc<Function>> {
+        let mut packages = BTreeSet::from([function.name.parent()]);
+        for component in function.inputs.iter().chain(&function.outputs) {
+            if let ValueType::ExternalObject(class) = &component.value_type {
+                packages.insert(class.parent());
+            }
+        }
+        let mut names = vec![destructor(function)];
+        for package in packages {
+            for child in self.library().children(&package) {
+                let child = package.child(child);
+                // The two parts of a class of external objects.
+                let part = |name| child.child(Ident::new(name));
+                names.extend(["constructor", "destructor"].map(part));
+                names.push(child);
+            }
+        }
+        names.retain(|name| self.is_in_c(name));
+        let loaded = names.iter().filter_map(|name| match self.callee(name) {
+            Ok(Some(Callee::Function(function))) => Some(function),
+            _ => None,
+        });
+        loaded.collect()
+    }
+
+    fn is_in_c(&mut self, name: &Name) -> bool {
+        let Some(definition) = self.library().definition(name) else { return false };
+        let ClassSpecifier::Long(class) = &definition.specifier else { return false };
+        class.sections.iter().any(|section| match section {
+            Section::External(clause) => brings_code(clause),
+            _ => false,
+        })
+    }
+}

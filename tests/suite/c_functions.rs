@@ -1,0 +1,240 @@
+//! Functions in C that a library brings along (MLS §12.9), as a user meets them: the library
+//! `tests/external/Foreign`. Without a C compiler the tests that need one say so and pass.
+
+use crate::cli::{folder, gapi};
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+fn library() -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/external").display().to_string()
+}
+
+/// Whether there is a C compiler, said if there is none.
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
+fn is_there_a_compiler() -> bool {
+    let named = std::env::var("CC").ok();
+    let found = named.as_deref().into_iter().chain(["cc", "gcc", "clang"]).any(|name| {
+        Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success())
+    });
+    if !found {
+        eprintln!("skipped: there is no C compiler");
+    }
+    found
+}
+
+fn run(here: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let library = library();
+    gapi(here, &[arguments, &["--library", &library, "--allow-external"]].concat())
+}
+
+/// The output of a script, each value on a line.
+fn script(text: &str) -> (i32, String, String) {
+    run(&folder(&[("a.mos", text)]), &["run", "a.mos"])
+}
+
+/// The last row of the results of a simulation, by column.
+fn last_values(model: &str, more: &[&str]) -> Vec<(String, f64)> {
+    let here = folder(&[]);
+    let model = format!("Foreign.Examples.{model}");
+    let arguments = [&["simulate", "--model", &model, "--output", "r.csv"], more].concat();
+    let (code, _, errors) = run(&here, &arguments);
+    assert_eq!(code, 0, "{errors}");
+    let mut csv = csv::Reader::from_path(here.path().join("r.csv")).expect("results");
+    let names = csv.headers().expect("a header").clone();
+    let last = csv.records().last().expect("a row").expect("readable");
+    let number = |text: &str| text.parse().expect("a number");
+    names.iter().map(str::to_owned).zip(last.iter().map(number)).collect()
+}
+
+fn value(values: &[(String, f64)], name: &str) -> f64 {
+    let found =
+        values.iter().find(|(known, _)| known == name || known.starts_with(&format!("{name} ")));
+    found.unwrap_or_else(|| panic!("no `{name}` in {values:?}")).1
+}
+
+#[test]
+fn nothing_is_compiled_without_permission() {
+    let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);
+    let (code, out, errors) = gapi(&here, &["run", "a.mos", "--library", &library()]);
+    let said = format!("{out}{errors}");
+    assert_eq!(code, 1, "{said}");
+    for word in
+        ["external-refused", "`Foreign.triple`", "`triple`", "scalars.c", "--allow-external"]
+    {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let model = ["simulate", "--model", "Foreign.Examples.Arrays", "--library", &library()];
+    let (code, out, errors) = gapi(&here, &model);
+    assert!(code == 1 && format!("{out}{errors}").contains("external-refused"), "{out}{errors}");
+}
+
+#[test]
+fn a_missing_compiler_is_named() {
+    let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
+    command.args(["run", "a.mos", "--allow-external", "--library", &library()]);
+    let output = command.env("CC", "no-such-compiler").current_dir(here.path()).output();
+    let output = output.expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("external-compiler") && said.contains("`no-such-compiler`"), "{said}");
+    assert!(said.contains("apt install gcc"), "{said}");
+}
+
+#[test]
+fn scripts_call_scalars_arrays_and_strings() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let (code, out, errors) = script(
+        "Foreign.triple(2, 3)\n\
+         (w, r, n, l) := Foreign.parts(-2.75, true, Foreign.Level.low)\n\
+         {w, r}\nn\nl\n\
+         Foreign.transposed([1, 2, 3; 4, 5, 6])\n\
+         Foreign.weighted({1, 2, 3}, {1, 10, 100})\n\
+         Foreign.greeting(\"Anna\")\n\
+         Foreign.longest({\"a\", \"bcd\", \"ef\"})\n",
+    );
+    assert_eq!(code, 0, "{out}{errors}");
+    let expected = [
+        "= 9",
+        "-2",
+        "-0.75",
+        "true",
+        "Level.middle",
+        "1.0, 4.0",
+        "2.0, 5.0",
+        "3.0, 6.0",
+        "= 321",
+        "\"Hello, Anna\"",
+        "\"bcd\"",
+    ];
+    for word in expected {
+        assert!(out.contains(word), "{word}: {out}{errors}");
+    }
+}
+
+#[test]
+fn errors_of_c_have_a_place_and_messages_are_shown() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let (code, out, errors) = script("Foreign.root(4)\nForeign.talk(3)\nForeign.root(-1)\n");
+    let said = format!("{out}{errors}");
+    assert_eq!(code, 1, "{said}");
+    for word in ["= 2", "x is 3", "Warning: this is the end", "-1 has no real root", "a.mos:3"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let here = folder(&[]);
+    let (code, out, errors) = run(&here, &["simulate", "--model", "Foreign.Examples.Fails"]);
+    let said = format!("{out}{errors}");
+    assert!(code == 1 && said.contains("has no real root"), "{said}");
+}
+
+#[test]
+fn objects_have_a_state_and_are_freed() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let (code, out, errors) = script(
+        "c := Foreign.Counter(5);\n\
+         Foreign.next(c)\nForeign.next(c)\n\
+         Foreign.alive()\n\
+         c := Foreign.Counter(50);\n\
+         Foreign.next(c)\nForeign.alive()\n",
+    );
+    assert_eq!(code, 0, "{out}{errors}");
+    let values: Vec<&str> = out.lines().filter_map(|line| line.trim().strip_prefix("= ")).collect();
+    assert_eq!(values, ["6", "7", "1", "51", "1"], "{out}{errors}");
+}
+
+#[test]
+fn models_call_scalars_and_arrays() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    for more in [&[][..], &["--interpret"]] {
+        let values = last_values("Scalars", more);
+        assert_eq!(value(&values, "whole"), -2.0, "of -2.25, at the event");
+        assert!((value(&values, "rest") + 0.25).abs() < 1e-6, "{values:?}");
+        assert_eq!(value(&values, "negative"), 1.0);
+        assert_eq!(value(&values, "level"), 2.0);
+        let x = value(&values, "x");
+        assert!((x - (-3.0f64).exp()).abs() < 1e-4, "{x}");
+        assert_eq!(value(&values, "y"), 3.0 * x + 2.0);
+    }
+    let values = last_values("Arrays", &[]);
+    assert_eq!(value(&values, "b[3,2]"), 6.0);
+    assert_eq!(value(&values, "b[1,1]"), 1.0);
+    assert_eq!(value(&values, "y"), 1.0 + 20.0 + 300.0);
+}
+
+#[test]
+fn the_derivative_annotation_is_used() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let values = last_values("Loop", &[]);
+    let x = 2.0f64.cbrt();
+    assert!((value(&values, "x") - x).abs() < 1e-6, "{values:?}");
+    assert!((value(&values, "v") - 1.0 / (3.0 * x * x)).abs() < 1e-6, "{values:?}");
+}
+
+#[test]
+fn every_object_of_a_model_has_its_own_state() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let values = last_values("Counters", &[]);
+    assert_eq!(value(&values, "i"), 15.0, "five calls from 10 on: {values:?}");
+    assert_eq!(value(&values, "j"), 13.0, "three calls from 10 on: {values:?}");
+}
+
+/// A library that cannot be linked is named with the linker's words, and disturbs no other function.
+#[test]
+fn what_the_compiler_refuses_is_shown() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let (_, out, errors) = script("Foreign.missing(1)\nForeign.triple(0, 7)\n");
+    let said = format!("{out}{errors}");
+    for word in ["external-compiler", "no_such_library", "Foreign/package.mo", "= 7"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let (_, out, errors) = script("Foreign.fortran(1)\n");
+    let said = format!("{out}{errors}");
+    assert!(said.contains("external-declaration") && said.contains("FORTRAN 77"), "{said}");
+}
+
+/// A damaged file in the cache is compiled anew; one that is whole is used without compiling.
+#[test]
+fn the_cache_is_safe_against_damage() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);
+    let cache = here.path().join("cache");
+    let run = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
+        command.args(["run", "a.mos", "--allow-external", "--library", &library()]);
+        let output = command.env("XDG_CACHE_HOME", &cache).current_dir(here.path()).output();
+        String::from_utf8_lossy(&output.expect("it runs").stdout).into_owned()
+    };
+    let objects = || -> Vec<std::path::PathBuf> {
+        let entries = std::fs::read_dir(cache.join("gapi/external")).expect("a cache");
+        let paths = entries.map(|entry| entry.expect("readable").path());
+        paths.filter(|path| path.extension().is_some_and(|e| e == "so")).collect()
+    };
+    let first = run();
+    assert!(first.contains("= 9"), "{first}");
+    let known = objects();
+    assert_eq!(known.len(), 1, "{known:?}");
+    let whole = std::fs::read(&known[0]).expect("an object");
+    let made = std::fs::metadata(&known[0]).and_then(|file| file.modified()).expect("a time");
+    assert_eq!(run(), first);
+    let after = std::fs::metadata(&known[0]).and_then(|file| file.modified()).expect("a time");
+    assert_eq!(made, after, "it was compiled twice");
+    std::fs::write(&known[0], &whole[..whole.len() / 2]).expect("writable");
+    assert_eq!(run(), first);
+    assert_eq!(std::fs::read(&known[0]).expect("an object").len(), whole.len());
+}
