@@ -24,6 +24,9 @@ pub(super) struct CheckArgs {
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
+    /// Reject what the specification forbids even where libraries rely on it
+    #[arg(long)]
+    pub strict: bool,
     /// Limits
     #[command(flatten)]
     pub limits: Limits,
@@ -58,6 +61,7 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
         Ok(session) => session,
         Err(code) => return code,
     };
+    checking::set_strict(&mut session, arguments.strict);
     match &class {
         Some(model) => check_one(&mut session, model),
         None => check_all(&mut session, &loaded),

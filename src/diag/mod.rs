@@ -134,6 +134,13 @@ impl Diagnostic {
         self
     }
 
+    /// The same as an error.
+    #[must_use]
+    pub fn error(mut self) -> Diagnostic {
+        self.0.severity = Severity::Error;
+        self
+    }
+
     /// The same as a note.
     #[must_use]
     pub fn note(mut self) -> Diagnostic {

@@ -52,6 +52,8 @@ pub struct Library {
     broken: Mutex<IndexSet<ClassId>>,
     legacy: LegacyConstructs,
     resources: Resources,
+    /// Whether what the specification forbids but libraries do is an error.
+    strict: bool,
 }
 
 /// A clone shares what was read and what either of them reads later. What was asked for in vain is
@@ -66,6 +68,7 @@ impl Clone for Library {
             broken: Mutex::default(),
             legacy: self.legacy.clone(),
             resources: self.resources.clone(),
+            strict: self.strict,
         }
     }
 }
@@ -116,6 +119,16 @@ impl Library {
     /// A library without classes.
     pub fn new() -> Library {
         Library::default()
+    }
+
+    /// Says whether what the specification forbids but libraries do is an error.
+    pub fn set_strict(&mut self, strict: bool) {
+        self.strict = strict;
+    }
+
+    /// Whether what the specification forbids but libraries do is an error.
+    pub fn is_strict(&self) -> bool {
+        self.strict
     }
 
     /// Says which files models may use.

@@ -37,14 +37,22 @@ pub fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     for class in participants::of(Scope { library, class }) {
         check_one(class, &mut errors);
     }
-    errors
+    judged(library, errors)
 }
 
 /// What is wrong with one class, whatever takes part in it.
 pub fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     check_one(Scope { library, class }, &mut errors);
-    errors
+    judged(library, errors)
+}
+
+/// Warnings are errors for a library that is to conform in all.
+fn judged(library: &Library, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    match library.is_strict() {
+        true => found.into_iter().map(Diagnostic::error).collect(),
+        false => found,
+    }
 }
 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {

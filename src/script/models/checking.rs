@@ -8,6 +8,11 @@ use crate::name::Name;
 use crate::script::Session;
 use crate::syntax::ast::Restriction;
 
+/// Says whether what the specification forbids but libraries do is an error.
+pub fn set_strict(session: &mut Session, strict: bool) {
+    session.classes.library.set_strict(strict);
+}
+
 /// Counts, alias sets and sorted blocks of a translated model.
 pub fn report(session: &mut Session, model: &Translated) -> String {
     let report = causalize::report(model.program.sorted());
