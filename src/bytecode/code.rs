@@ -1,8 +1,7 @@
 //! Instructions and the functions made of them. Data only.
 
 use super::elementary::Elementary;
-use super::external::said;
-use super::failure::{Failure, Reason};
+use super::failure::{Failure, Reason, said};
 use crate::external::{Contents, Entry, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;

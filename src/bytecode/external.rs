@@ -1,23 +1,11 @@
 //! Calls of external functions: values alone, or their differences.
 
 use super::code::{Code, ExternalCall, Functions};
-use super::failure::Reason;
+use super::failure::{Reason, SAID};
 use super::number::{Dual, Number};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random};
-use std::cell::RefCell;
-
-thread_local! {
-    /// The function in C that failed last in this thread, and what it said: what it says depends on
-    /// values that are gone when the failure is explained.
-    static SAID: RefCell<(&'static str, String)> = const { RefCell::new(("", String::new())) };
-}
-
-/// What the function in C of this name said when it failed last in this thread.
-pub(super) fn said(name: &str) -> Option<String> {
-    SAID.with_borrow(|(known, message)| (*known == name).then(|| message.clone()))
-}
 
 /// Runs an external function on numbers with derivatives, or without.
 pub trait RunExternal: Number {

@@ -1,5 +1,18 @@
 //! Why a function failed: numbers, explained by [`Functions::explain`](super::Functions::explain).
 
+use std::cell::RefCell;
+
+thread_local! {
+    /// The function in C that failed last in this thread, and what it said: what it says depends on
+    /// values that are gone when the failure is explained.
+    pub(super) static SAID: RefCell<(&'static str, String)> = const { RefCell::new(("", String::new())) };
+}
+
+/// What the function in C of this name said when it failed last in this thread.
+pub(super) fn said(name: &str) -> Option<String> {
+    SAID.with_borrow(|(known, message)| (*known == name).then(|| message.clone()))
+}
+
 /// Why and where a function failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Failure {

@@ -1,10 +1,8 @@
 //! Sizes and components of values, known when a model is compiled.
 
 use super::text_array::Texts;
+pub(super) use super::text_array::UNKNOWN_TEXT;
 use std::sync::Arc;
-
-/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
-pub(super) const UNKNOWN_TEXT: &str = "…";
 
 /// Sizes of an argument.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

@@ -1,8 +1,10 @@
 //! Arrays of Strings, whose elements are known when a model is compiled or not at all: libraries
 //! choose substances and sensors by name.
 
-use super::shape::UNKNOWN_TEXT;
 use std::sync::Arc;
+
+/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
+pub(super) const UNKNOWN_TEXT: &str = "…";
 
 /// An array of texts; each is [`UNKNOWN_TEXT`] where it is not known.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

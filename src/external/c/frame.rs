@@ -1,10 +1,11 @@
 //! The arguments of a call as C sees them.
 
+use super::CLibrary;
 use super::declaration::{Argument, Declaration, Scalar};
-use super::function::CObject;
 use crate::diag::Fault;
 use crate::external::call::{Call, Slot};
 use std::ffi::CString;
+use std::sync::Arc;
 
 /// What a pointer of the row points to.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,4 +127,28 @@ fn write(cell: Cell, slot: &Slot, call: &mut Call<'_>) -> Result<(), Fault> {
         Cell::Texts(_) | Cell::Size(_) | Cell::Object(_) => {}
     }
     Ok(())
+}
+
+/// An object that C has made; freed by its destructor when nobody holds it any more.
+pub struct CObject {
+    pub(super) library: Arc<dyn CLibrary>,
+    pub(super) address: usize,
+    pub(super) destructor: Option<usize>,
+}
+
+impl CObject {
+    /// Where it is.
+    pub fn address(&self) -> usize {
+        self.address
+    }
+}
+
+impl Drop for CObject {
+    fn drop(&mut self) {
+        if let Some(destructor) = self.destructor {
+            let cells = vec![Cell::Object(self.address)];
+            // Nobody is left to tell that a destructor failed.
+            let _ = self.library.invoke(destructor, &mut Frame { cells, ..Frame::default() });
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! A function of a loaded unit, called as those in Rust are.
 
 use super::declaration::{Declaration, Scalar};
-use super::frame::{Cell, Frame};
+use super::frame::{CObject, Cell, Frame};
 use super::{CLibrary, Request};
 use crate::diag::Fault;
 use crate::external::call::Call;
@@ -18,30 +18,6 @@ pub struct CFunction {
     number: usize,
     /// The wrapper of the destructor.
     destructor: Option<usize>,
-}
-
-/// An object that C has made; freed by its destructor when nobody holds it any more.
-pub struct CObject {
-    library: Arc<dyn CLibrary>,
-    address: usize,
-    destructor: Option<usize>,
-}
-
-impl CObject {
-    /// Where it is.
-    pub fn address(&self) -> usize {
-        self.address
-    }
-}
-
-impl Drop for CObject {
-    fn drop(&mut self) {
-        if let Some(destructor) = self.destructor {
-            let cells = vec![Cell::Object(self.address)];
-            // Nobody is left to tell that a destructor failed.
-            let _ = self.library.invoke(destructor, &mut Frame { cells, ..Frame::default() });
-        }
-    }
 }
 
 impl CFunction {
