@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// Stands for a text, or a part of one, that is not known when compiling; messages show it.
 pub(super) const UNKNOWN_TEXT: &str = "…";
 
-/// An array of texts; each is [`UNKNOWN_TEXT`] where it is not known.
+/// An array of texts; each is `UNKNOWN_TEXT` where it is not known.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Texts {
     /// Its sizes.

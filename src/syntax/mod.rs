@@ -65,7 +65,7 @@ pub fn parse_stored_definition(
 }
 
 /// Reads a `.mo` file lazily: the heads of its classes now, the sections of each when somebody looks
-/// at them. What cannot be read then is reported by [`Sections::error`].
+/// at them. What cannot be read then is reported by `Sections::error`.
 ///
 /// ```
 /// use gapilib::syntax::ast::ClassSpecifier;

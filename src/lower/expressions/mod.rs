@@ -35,7 +35,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 /// Largest number of scalars of one array.
-const MAX_SCALARS: usize = 1_000_000;
+const MAX_SCALARS: usize = 2_000_000;
 /// Deepest nesting of expressions.
 const MAX_DEPTH: usize = 400;
 

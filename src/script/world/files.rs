@@ -32,7 +32,7 @@ pub trait Files {
     /// Whether a path may be read or written.
     ///
     /// # Errors
-    /// What refuses it; see [`refusal_of`](super::access::policy::refusal_of).
+    /// What refuses it; see `refusal_of`.
     fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
     /// The bytes of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
