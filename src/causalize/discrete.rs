@@ -5,13 +5,11 @@ use super::causalized::Alias;
 use super::used_variables::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
 use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Kind};
-use crate::symbolic::function::ResultType;
-use crate::symbolic::{Expr, Node, VarId};
-use rustc_hash::{FxHashMap, FxHashSet};
+use crate::lower::{Dae, Equation, Kind, is_real};
+use crate::symbolic::{Expr, VarId};
+use rustc_hash::FxHashMap;
 
 /// Moves the equations that determine discrete variables to those of events, and drops previous
 /// values that nothing uses.
@@ -92,35 +90,4 @@ fn check_constant_between_events(
             help: "do not use relations inside `noEvent` or inside functions")
         .at(equation.span)),
     }
-}
-
-/// Whether the value of an expression is a Real rather than an Integer, Boolean or enumeration.
-fn is_real(dae: &Dae, e: Expr) -> bool {
-    let (mut open, mut seen) = (vec![e], FxHashSet::default());
-    while let Some(e) = open.pop() {
-        if !seen.insert(e) {
-            continue;
-        }
-        match dae.pool.node(e) {
-            Node::Constant(number) if number.0.fract() != 0.0 => return true,
-            Node::Variable(v) => {
-                let variable = dae.variable(*v);
-                if variable.base == BaseType::Real && variable.kind != Kind::Frozen {
-                    return true;
-                }
-            }
-            Node::Div(..) | Node::Pow(..) => return true,
-            Node::Apply(id, arguments) => match id.get().result {
-                ResultType::Real if id.get().event_generating => {}
-                ResultType::Real => return true,
-                ResultType::Integer => {}
-                ResultType::AsArguments => open.extend(arguments.iter()),
-            },
-            Node::Neg(a) => open.push(*a),
-            Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) => open.extend([*a, *b]),
-            Node::If(_, a, b) => open.extend([*a, *b]),
-            _ => {}
-        }
-    }
-    false
 }

@@ -162,5 +162,6 @@ fn word(kind: Kind) -> &'static str {
         Kind::Delayed => "delayed",
         Kind::Signal => "signal",
         Kind::Text => "text",
+        Kind::Clock => "clock",
     }
 }

@@ -474,9 +474,12 @@ fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             Kind::Constant(value) => Access::Constant(value),
             Kind::Parameter { .. } if matches!(v.base, BaseType::ExternalObject(_)) => continue,
             Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
-            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
-                continue;
-            }
+            Kind::Frozen
+            | Kind::Text
+            | Kind::Clock
+            | Kind::Previous(_)
+            | Kind::Signal
+            | Kind::Delayed => continue,
             // A trajectory has no place for texts.
             Kind::Discrete if v.base == BaseType::String => continue,
             Kind::Discrete if v.name.starts_with('$') => continue,

@@ -51,6 +51,7 @@ pub(super) fn compile_events(
             .collect(),
         rounded: events.roundings.iter().map(|r| outputs(&[r.argument])).collect(),
         samples: events.samples.iter().map(|s| s.variable).collect(),
+        since_start: events.samples.iter().map(|s| s.since_start).collect(),
         shows_samples: shows_samples(pool, sorted),
         clocks: outputs(&pairs(events.samples.iter().map(|s| (s.start, s.interval)))),
         reinitialized: events.reinits.iter().map(|r| resolve(r.state)).collect(),

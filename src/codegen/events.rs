@@ -20,6 +20,8 @@ pub(crate) struct Events {
     pub(crate) rounded: Vec<Outputs>,
     /// The variables that are 1 when a sample is due.
     pub(crate) samples: Vec<VarId>,
+    /// Which of them count from the start of the simulation.
+    pub(crate) since_start: Vec<bool>,
     /// Whether variables of the model show samples that are due, not only conditions of
     /// when-clauses.
     pub(crate) shows_samples: bool,

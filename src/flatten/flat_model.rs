@@ -132,6 +132,8 @@ pub enum BaseType {
     /// A class that extends `ExternalObject` (MLS §12.9.7), by its full name: its value is what
     /// the call of its constructor in the binding returns.
     ExternalObject(Name),
+    /// `Clock` (MLS §16.3): it has no value, it ticks.
+    Clock,
 }
 
 /// When a variable may change (MLS §3.8).

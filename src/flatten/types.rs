@@ -186,6 +186,11 @@ impl Types<'_> {
             TypeRule::Integer => Some(BaseType::Integer),
             TypeRule::Boolean => Some(BaseType::Boolean),
             TypeRule::String => Some(BaseType::String),
+            TypeRule::Clock => Some(BaseType::Clock),
+            TypeRule::Sampled => match self.is_of_clock(arguments) {
+                true => self.type_of(arguments.positional.first()?),
+                false => Some(BaseType::Boolean),
+            },
             TypeRule::As(at) => self.type_of(arguments.positional.get(at)?),
             TypeRule::Joined => {
                 let mut types = arguments.positional.iter().map(|argument| self.type_of(argument));
@@ -193,6 +198,16 @@ impl Types<'_> {
                 types.try_fold(first, |all, one| joined(all, one?))
             }
             TypeRule::Unknown => None,
+        }
+    }
+
+    /// Whether the arguments of `sample` are an expression and a clock, rather than two times
+    /// (MLS §16.5.1).
+    fn is_of_clock(&self, arguments: &Arguments) -> bool {
+        let named = arguments.named.iter().any(|argument| argument.name.node == "clock");
+        match arguments.positional.get(1) {
+            Some(second) => self.type_of(second) == Some(BaseType::Clock),
+            None => named || arguments.named.is_empty(),
         }
     }
 
@@ -363,5 +378,6 @@ pub fn type_name(base: &BaseType) -> String {
         BaseType::String => "String".into(),
         BaseType::Enumeration(definition) => definition.name.to_string(),
         BaseType::ExternalObject(name) => name.to_string(),
+        BaseType::Clock => "Clock".into(),
     }
 }

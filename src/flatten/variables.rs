@@ -173,7 +173,7 @@ fn check_literal(e: &Expression, base: &BaseType, variable: &Variable) -> Result
         BaseType::Integer | BaseType::Enumeration(_) => found == "Integer",
         BaseType::Boolean => found == "Boolean",
         BaseType::String => found == "String",
-        BaseType::ExternalObject(_) => false,
+        BaseType::ExternalObject(_) | BaseType::Clock => false,
     };
     if !fits {
         let wanted = type_name(base);

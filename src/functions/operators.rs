@@ -64,12 +64,35 @@ pub enum Temporal {
     ActualStream,
     /// `getInstanceName()`
     InstanceName,
-    /// `previous(u)` of clocked variables
-    Previous,
-    /// `hold(u)` of clocked variables
+    /// What has a meaning on clocks (MLS ch. 16).
+    Clocked(Clocked),
+}
+
+/// An operator of clocks and clocked variables (MLS ch. 16).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clocked {
+    /// `Clock(…)`
+    Constructor,
+    /// `sample(u)`, `sample(u, clock)`
+    Sample,
+    /// `hold(u)`
     Hold,
-    /// `noClock(u)` of clocked variables
+    /// `previous(u)`
+    Previous,
+    /// `subSample(u, factor)`
+    SubSample,
+    /// `superSample(u, factor)`
+    SuperSample,
+    /// `shiftSample(u, shiftCounter, resolution)`
+    ShiftSample,
+    /// `backSample(u, backCounter, resolution)`
+    BackSample,
+    /// `noClock(u)`
     NoClock,
+    /// `interval(u)`
+    Interval,
+    /// `firstTick(u)`
+    FirstTick,
 }
 
 /// An operator of the values of expressions.
@@ -85,6 +108,17 @@ const fn temporal(name: &'static str, operator: Temporal) -> Builtin {
         section: "MLS §3.7.5",
         ..plain(name, Operator::InTime(operator))
     }
+}
+
+/// An operator of clocks and of what they drive, of these arguments.
+const fn clocked(
+    name: &'static str,
+    operator: Clocked,
+    inputs: &'static [&'static str],
+    least: usize,
+) -> Builtin {
+    let entry = temporal(name, Temporal::Clocked(operator));
+    Builtin { inputs, least, most: inputs.len(), section: "MLS §16.5", ..entry }
 }
 
 /// What has no value, or one that nothing is known of.
@@ -194,7 +228,13 @@ pub(super) const OPERATORS: &[Builtin] = &[
     boolean(temporal("change", Temporal::Change)),
     signal(temporal("initial", Temporal::Initial), 0),
     signal(temporal("terminal", Temporal::Terminal), 0),
-    signal(temporal("sample", Temporal::Sample), 2),
+    Builtin {
+        least: 1,
+        most: 2,
+        value_type: TypeRule::Sampled,
+        section: "MLS §3.7.5, §16.5.1",
+        ..temporal("sample", Temporal::Sample)
+    },
     Builtin {
         least: 2,
         most: 3,
@@ -227,7 +267,32 @@ pub(super) const OPERATORS: &[Builtin] = &[
         section: "MLS §3.7.4.4",
         ..temporal("getInstanceName", Temporal::InstanceName)
     },
-    Builtin { section: "MLS §16.4", ..temporal("previous", Temporal::Previous) },
-    Builtin { section: "MLS §16.5.1", ..temporal("hold", Temporal::Hold) },
-    Builtin { section: "MLS §16.5.1", ..temporal("noClock", Temporal::NoClock) },
+    Builtin {
+        value_type: TypeRule::Clock,
+        shape: ShapeRule::Scalar,
+        unit: UnitRule::Unknown,
+        section: "MLS §16.3",
+        ..clocked("Clock", Clocked::Constructor, &["", ""], 0)
+    },
+    Builtin { section: "MLS §16.4", ..clocked("previous", Clocked::Previous, &["u"], 1) },
+    clocked("hold", Clocked::Hold, &["u"], 1),
+    clocked("subSample", Clocked::SubSample, &["u", "factor"], 1),
+    clocked("superSample", Clocked::SuperSample, &["u", "factor"], 1),
+    clocked("shiftSample", Clocked::ShiftSample, &["u", "shiftCounter", "resolution"], 1),
+    clocked("backSample", Clocked::BackSample, &["u", "backCounter", "resolution"], 1),
+    clocked("noClock", Clocked::NoClock, &["u"], 1),
+    Builtin {
+        value_type: TypeRule::Real,
+        shape: ShapeRule::Scalar,
+        unit: UnitRule::Unknown,
+        section: "MLS §16.10",
+        ..clocked("interval", Clocked::Interval, &["u"], 0)
+    },
+    Builtin {
+        value_type: TypeRule::Boolean,
+        shape: ShapeRule::Scalar,
+        unit: UnitRule::Unknown,
+        section: "MLS §16.10",
+        ..clocked("firstTick", Clocked::FirstTick, &["u"], 0)
+    },
 ];

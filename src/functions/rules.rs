@@ -14,6 +14,10 @@ pub enum TypeRule {
     Boolean,
     /// `String`
     String,
+    /// `Clock`
+    Clock,
+    /// That of the first argument where it is sampled at the ticks of a clock, else Boolean.
+    Sampled,
     /// That of the argument at this position.
     As(usize),
     /// The one that all arguments have: Real where one of them is.

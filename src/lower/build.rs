@@ -55,6 +55,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         builder.algorithm(statements)?;
     }
     builder.move_to_start(asserted);
+    builder.partition_clocks()?;
     builder.dae.functions = Arc::new(builder.calls.functions.finish());
     Ok(builder.dae)
 }
@@ -276,6 +277,9 @@ impl<'a> Builder<'a> {
                 Ok(())
             }
             EquationKind::Call(call) => self.call_equation(call, loops),
+            EquationKind::When { branches } if self.is_clocked(branches) => {
+                self.clocked_when(branches, equation.span, loops)
+            }
             EquationKind::When { branches } => self.when_equation(branches, equation.span, loops),
             EquationKind::Connect { .. } => {
                 Err(fault!(NOT_SUPPORTED, "a connection is left in the flat model")
@@ -433,6 +437,7 @@ impl<'a> Builder<'a> {
             )
             .at(span));
         }
+        let second = in_order_of(&first, second);
         let pool = &mut self.dae.pool;
         let merged = first.into_iter().zip(second).map(|(a, b)| {
             if a.left == b.left {
@@ -455,7 +460,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The equations of a branch, not yet part of the system.
-    fn collect(
+    pub(super) fn collect(
         &mut self,
         body: &[ast::Equation],
         loops: &mut Vec<(crate::name::Ident, Expr)>,
@@ -523,6 +528,21 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// The equations of another branch, those with the same left side at the same place.
+fn in_order_of(first: &[Equation], second: Vec<Equation>) -> Vec<Equation> {
+    let mut places: FxHashMap<Expr, Vec<usize>> = FxHashMap::default();
+    for (at, equation) in second.iter().enumerate().rev() {
+        places.entry(equation.left).or_default().push(at);
+    }
+    let mut same = |equation: &Equation| places.get_mut(&equation.left)?.pop();
+    let found: Vec<Option<usize>> = first.iter().map(&mut same).collect();
+    let mut is_taken = vec![false; second.len()];
+    found.iter().flatten().for_each(|at| is_taken[*at] = true);
+    let mut others = (0..second.len()).filter(|at| !is_taken[*at]);
+    let order = found.into_iter().map(|at| at.or_else(|| others.next()));
+    order.flatten().map(|at| second[at]).collect()
+}
+
 /// Scalar equations of two values of one shape.
 fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equation>, Diagnostic> {
     let (Some(x), Some(y)) = (a.shape(), b.shape()) else {
@@ -568,6 +588,7 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
     };
     let kind = match (&variable.base, variable.variability) {
         (BaseType::String, _) => Kind::Text,
+        (BaseType::Clock, _) => Kind::Clock,
         // Its constructor runs once, before the simulation.
         (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
         (_, Variability::Constant | Variability::Parameter) => {

@@ -1,5 +1,6 @@
 //! What lowering knows while it goes through a flat model.
 
+use super::clocks::Clocks;
 use super::dae::Dae;
 use super::equation::Instance;
 use super::execution::Execution;
@@ -30,6 +31,8 @@ pub(super) struct Builder<'a> {
     pub(super) calls: Calls,
     /// The algorithm in progress.
     pub(super) execution: Execution,
+    /// Clocked operators and equations.
+    pub(super) clocks: Clocks,
     /// The texts that have numbers.
     pub(super) texts: IndexSet<Arc<str>>,
 }
@@ -99,6 +102,7 @@ impl<'a> Builder<'a> {
             place: Place::default(),
             calls: Calls::new(),
             execution: Execution::default(),
+            clocks: Clocks::default(),
             texts: IndexSet::new(),
         }
     }

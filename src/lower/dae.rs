@@ -152,6 +152,8 @@ pub enum Kind {
     Signal,
     /// A `String`, which equations cannot use.
     Text,
+    /// A `Clock`, which has no value.
+    Clock,
 }
 
 /// A relation whose value changes at events only (MLS §8.5).

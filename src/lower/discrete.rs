@@ -11,7 +11,8 @@ impl Builder<'_> {
     pub(super) fn find_discrete(&mut self) {
         let flat = self.flat;
         let mut targets = Vec::new();
-        flat.equations.iter().for_each(|e| equation_targets(e, false, &mut targets));
+        let unclocked = flat.equations.iter().filter(|e| !self.is_clocked_equation(e));
+        unclocked.for_each(|e| equation_targets(e, false, &mut targets));
         for statements in &flat.algorithms {
             statements.iter().for_each(|s| statement_targets(s, false, &mut targets));
         }

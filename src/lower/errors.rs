@@ -16,6 +16,11 @@ crate::codes! {
         "## What it means\nThe model uses a part of the language that this program does not support in equations. It reports an error rather than wrong numbers.\n\n\
          ## Example\n`y = spatialDistribution(…);`\n\n\
          ## What to do\nRewrite the model without it; the message gives the position and the reason.",
+    /// Clocks that do not go together, or one that nothing gives.
+    CLOCK_CONFLICT = "clock-conflict":
+        "## What it means\nThe clocks of a model cannot be inferred, or contradict each other: variables in one equation belong to one clock, and what is clocked meets continuous time only through `sample` and `hold`.\n\n\
+         ## Example\n`y = sample(u, Clock(1, 10)) + sample(v, Clock(1, 3));`\n\n\
+         ## What to do\nUse one clock for both, or `subSample`, `superSample` and `shiftSample` between clocks of one base, and `hold` and `sample` between others.",
     /// A parameter that depends on itself.
     PARAMETER_CYCLE = "parameter-cycle":
         "## What it means\nThe bindings of parameters form a cycle, so none can be computed.\n\n\

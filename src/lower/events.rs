@@ -47,6 +47,8 @@ pub struct Sample {
     pub variable: VarId,
     /// First time, made of parameters.
     pub start: Expr,
+    /// Whether that counts from the start of the simulation, as the ticks of clocks do.
+    pub since_start: bool,
     /// Distance of the times, made of parameters.
     pub interval: Expr,
     /// Where it is written.

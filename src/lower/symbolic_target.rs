@@ -6,19 +6,19 @@ use super::builder::{Builder, Folding};
 use super::dae::{Homotopy, Kind, Relation};
 use super::equation::{Assertion, Level, Part};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Target, Unary};
+use super::expressions::{Array, Binary, Branch, ClockedCall, Lowered, Lowering, Target, Unary};
 use super::shape::UNKNOWN_TEXT;
 use super::text_array::Texts;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
-use crate::functions::{Builtin, Temporal};
+use crate::functions::{Builtin, Clocked, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
-use crate::syntax::ast::ComponentReference;
+use crate::syntax::ast::{ComponentReference, Expression};
 use indexmap::IndexSet;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -209,6 +209,7 @@ impl Target for Builder<'_> {
             BaseType::String => ValueType::String,
             BaseType::Enumeration(definition) => ValueType::Enumeration(definition.clone()),
             BaseType::ExternalObject(class) => ValueType::ExternalObject(class.clone()),
+            BaseType::Clock => ValueType::Any,
         })
     }
 
@@ -219,6 +220,10 @@ impl Target for Builder<'_> {
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
         super::function::call(self, function, arguments, span)
+    }
+
+    fn is_clock(&self, e: &Expression) -> bool {
+        super::clocks::is_clock(self.flat, e)
     }
 
     fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
@@ -237,11 +242,15 @@ impl Target for Builder<'_> {
             | Temporal::Terminal
             | Temporal::Sample
             | Temporal::Delay => Ok(()),
-            Temporal::Pre | Temporal::Edge | Temporal::Change => {
+            Temporal::Pre
+            | Temporal::Edge
+            | Temporal::Change
+            | Temporal::Clocked(Clocked::Previous) => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.execution.raw += 1;
                 Ok(())
             }
+            Temporal::Clocked(_) => Ok(()),
             _ => Err(fault!(NOT_SUPPORTED, "`{}` is not supported yet", entry.name).at(span)),
         }
     }
@@ -265,6 +274,16 @@ impl Target for Builder<'_> {
 
     fn resources(&self) -> crate::external::Resources {
         self.flat.resources.clone()
+    }
+
+    fn clocked(
+        &mut self,
+        entry: &Builtin,
+        operator: Clocked,
+        call: ClockedCall<Expr>,
+        span: Span,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        self.clocked_operator(entry, operator, call, span)
     }
 
     fn temporal(

@@ -27,20 +27,12 @@ impl Builder<'_> {
         if matches!(operator, Temporal::Pre | Temporal::Edge | Temporal::Change) {
             self.execution.raw -= 1;
         }
-        let scalar = |position: usize| match arguments.get(position) {
-            Some(Array { dims, elements }) if dims.is_empty() => Ok(elements[0]),
-            _ => Err(fault!(ARRAY_MISMATCH, "`{}` takes scalars", entry.name).at(span)),
-        };
         match operator {
             Temporal::Initial if self.place.initial => {
                 return Ok(Array::scalar(self.dae.pool.constant(1.0)));
             }
             Temporal::Initial => return Ok(Array::scalar(self.initial_signal())),
             Temporal::Terminal => return Ok(Array::scalar(self.terminal_signal())),
-            Temporal::Sample => {
-                let (start, interval) = (scalar(0)?, scalar(1)?);
-                return self.sample(start, interval, span).map(Array::scalar);
-            }
             _ => {}
         }
         let mut array = arguments.remove(0);
@@ -123,7 +115,7 @@ impl Builder<'_> {
     }
 
     /// A Boolean as a discrete variable, so that it has a previous value.
-    fn condition(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
+    pub(super) fn condition(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
         let known = self.dae.pool.as_variable(b).map(|v| self.dae.variable(v).kind);
         if known == Some(Kind::Discrete) || self.is_parametric(b) {
             return Ok(b);
@@ -173,16 +165,42 @@ impl Builder<'_> {
         self.declare_scalar(variable)
     }
 
-    fn sample(&mut self, start: Expr, interval: Expr, span: Span) -> Result<Expr, Diagnostic> {
+    /// `sample(start, interval)`
+    pub(super) fn sample(
+        &mut self,
+        start: Expr,
+        interval: Expr,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        self.sample_from(start, interval, false, span)
+    }
+
+    /// The same, its first time counted from the start of the simulation.
+    pub(super) fn sample_since_start(
+        &mut self,
+        start: Expr,
+        interval: Expr,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        self.sample_from(start, interval, true, span)
+    }
+
+    fn sample_from(
+        &mut self,
+        start: Expr,
+        interval: Expr,
+        since_start: bool,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
         if !self.is_parametric(start) || !self.is_parametric(interval) {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "`sample` of a variable: clocks are not supported; start and interval must \
-                 depend only on parameters"
+                "start and interval of `sample` must depend only on parameters"
             )
             .at(span));
         }
-        let same = |s: &&Sample| s.start == start && s.interval == interval;
+        let same =
+            |s: &&Sample| (s.start, s.interval, s.since_start) == (start, interval, since_start);
         if let Some(known) = self.dae.events.samples.iter().find(same) {
             return Ok(self.dae.pool.variable(known.variable));
         }
@@ -191,7 +209,7 @@ impl Builder<'_> {
         let parts = vec![Part::Text("the interval of `sample` must be positive".into())];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
-        self.dae.events.samples.push(Sample { variable, start, interval, span });
+        self.dae.events.samples.push(Sample { variable, start, since_start, interval, span });
         Ok(self.dae.pool.variable(variable))
     }
 
@@ -281,7 +299,7 @@ impl Builder<'_> {
     }
 
     /// Adds a variable of the system that the model does not declare.
-    fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
+    pub(super) fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         id

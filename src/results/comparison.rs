@@ -70,7 +70,8 @@ pub fn signals_to_compare(reference: &ResultTable, list: Option<&str>) -> Vec<St
     let all = || reference.series.iter().map(|series| series.name.clone()).collect();
     list.map_or_else(all, |list| {
         let lines = list.lines().map(str::trim);
-        lines.filter(|line| !line.is_empty() && !is_time(line)).map(str::to_owned).collect()
+        let names = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));
+        names.filter(|name| !is_time(name)).map(str::to_owned).collect()
     })
 }
 

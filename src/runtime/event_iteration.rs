@@ -47,9 +47,11 @@ impl System {
         let clocks = &program.events.clocks;
         run(&clocks.tape, &mut self.registers)?;
         self.clocks.clear();
-        for pair in clocks.outputs.chunks_exact(2) {
+        let pairs = clocks.outputs.chunks_exact(2);
+        for (pair, since_start) in pairs.zip(&program.events.since_start) {
             let (start, interval) =
                 (self.registers[pair[0] as usize], self.registers[pair[1] as usize]);
+            let start = if *since_start { start + t } else { start };
             self.clocks.push(Clock::at(start, interval, t));
         }
         Ok(())

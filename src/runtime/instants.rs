@@ -1,14 +1,7 @@
 //! Instants: which blocks are solved, times that are one, the clocks of samples, and what events do.
 
 use crate::sim::EventOutcome;
-
-/// Relative distance of times that are one.
-pub const AT_ONCE: f64 = 1e-12;
-
-/// Whether two times are the same but for rounding.
-pub fn same_time(a: f64, b: f64) -> bool {
-    (a - b).abs() <= AT_ONCE * a.abs().max(b.abs())
-}
+pub use crate::sim::{AT_ONCE, same_time};
 
 /// Which blocks are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

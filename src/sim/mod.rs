@@ -57,6 +57,7 @@ mod chattering;
 mod displacement;
 mod error;
 mod event;
+mod instants;
 mod integrators;
 mod linear;
 mod literal_relations;
@@ -76,6 +77,7 @@ mod tests;
 mod trajectory;
 
 pub use error::{Failure, Offending, SimError, SimErrorKind};
+pub use instants::{AT_ONCE, same_time};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
 pub use newton::{Equations, Newton, NewtonFailure};

@@ -1,6 +1,7 @@
 //! The loop of a simulation.
 
 use super::event::CrossingSearch;
+use super::instants::same_time;
 use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
@@ -294,6 +295,8 @@ impl Run<'_> {
     fn step(&mut self) -> Result<bool, SimErrorKind> {
         let stop = self.problem.settings.stop;
         let event = self.problem.system.next_time_event(self.t);
+        // The hundredth tick of a clock may miss the end by a rounding.
+        let event = event.map(|event| if same_time(event, stop) { stop } else { event });
         let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         limit = limit.min(self.t + self.problem.system.longest_step());

@@ -12,6 +12,7 @@ mod c_functions;
 mod chattering;
 mod checks;
 mod cli;
+mod clocks;
 mod compat;
 mod compliance;
 mod conformance;

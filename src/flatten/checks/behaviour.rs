@@ -21,6 +21,8 @@ struct Around {
     initial: bool,
     /// A when-clause.
     when: bool,
+    /// A clocked when-clause, where equations of any form may stand (MLS §16.6).
+    clocked: bool,
     /// An if- or a for-equation whose choice or range can change during simulation.
     varying: bool,
     /// A for- or while-loop of an algorithm.
@@ -107,8 +109,11 @@ impl Walk<'_, '_> {
             }
             EquationKind::When { branches } => {
                 self.when(equation.span, around);
-                let inside = Around { when: true, ..around.clone() };
-                branches.iter().for_each(|(_, body)| self.equations(body, &inside));
+                for (condition, body) in branches {
+                    let clocked = super::clocks::is_clock(self.class, condition);
+                    let inside = Around { when: true, clocked, ..around.clone() };
+                    self.equations(body, &inside);
+                }
             }
             EquationKind::Connect { left, right } => {
                 self.connection("connect", equation.span, around);
@@ -123,7 +128,7 @@ impl Walk<'_, '_> {
     fn equality(&mut self, left: &Expression, span: Span, around: &Around) {
         let names_result =
             matches!(left.kind, ExpressionKind::Reference(_) | ExpressionKind::Tuple(_));
-        if around.when && !names_result {
+        if around.when && !around.clocked && !names_result {
             let message = "an equation of a when-clause must have a variable on its left side";
             self.wrong(span, message, "solve the equation for the variable that it determines");
         }

@@ -6,6 +6,7 @@
 
 mod access;
 mod behaviour;
+mod clocks;
 mod compatibility;
 mod connections;
 mod connectors;

@@ -121,7 +121,10 @@ impl<'a> Walk<'a, '_> {
         // `sample(u, clock)` is another operator (MLS §16.5.1).
         let is_number = match &interval.kind {
             ExpressionKind::Real(_) | ExpressionKind::Integer(_) => true,
-            _ => self.component(interval).and_then(|c| predefined(&c)).is_some(),
+            _ => {
+                let base = self.component(interval).and_then(|c| predefined(&c));
+                base.is_some_and(|base| base != Predefined::Clock)
+            }
         };
         if !is_number {
             return None;
@@ -286,7 +289,7 @@ fn number(expression: &Expression) -> Option<f64> {
     }
 }
 
-fn predefined(component: &Component<'_>) -> Option<Predefined> {
+pub fn predefined(component: &Component<'_>) -> Option<Predefined> {
     match component.meaning()? {
         Type::Predefined(predefined) => Some(predefined),
         Type::Class(class) => component.owner.of(class).predefined(),

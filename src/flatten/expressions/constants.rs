@@ -328,7 +328,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
         BaseType::Integer => "Integer",
         BaseType::Boolean => "Boolean",
         BaseType::String => "String",
-        BaseType::Enumeration(_) | BaseType::ExternalObject(_) => return Ok(()),
+        BaseType::Enumeration(_) | BaseType::ExternalObject(_) | BaseType::Clock => return Ok(()),
     };
     let empty = matches!(value, Value::Array(array) if array.elements.is_empty());
     if found == wanted || empty {

@@ -360,7 +360,7 @@ fn plain(base: BaseType) -> ValueType {
         BaseType::Boolean => ValueType::Boolean,
         BaseType::String => ValueType::String,
         BaseType::Enumeration(definition) => ValueType::Enumeration(definition),
-        BaseType::ExternalObject(_) => ValueType::Any,
+        BaseType::ExternalObject(_) | BaseType::Clock => ValueType::Any,
     }
 }
 

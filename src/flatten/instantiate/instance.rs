@@ -173,6 +173,7 @@ impl Shape {
             Shape::Predefined(Predefined::Integer) => BaseType::Integer,
             Shape::Predefined(Predefined::Boolean) => BaseType::Boolean,
             Shape::Predefined(Predefined::String) => BaseType::String,
+            Shape::Predefined(Predefined::Clock) => BaseType::Clock,
             Shape::Enumeration(definition) => BaseType::Enumeration(definition.clone()),
             Shape::ExternalObject(name) => BaseType::ExternalObject(name.clone()),
             Shape::Predefined(_) | Shape::Function | Shape::Class(_) => return None,

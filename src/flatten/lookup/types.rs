@@ -25,6 +25,8 @@ pub enum Predefined {
     AssertionLevel,
     /// `ExternalObject` (MLS §12.9.7).
     ExternalObject,
+    /// `Clock` (MLS §16.3).
+    Clock,
 }
 
 impl Predefined {
@@ -37,6 +39,7 @@ impl Predefined {
             "StateSelect" => Some(Predefined::StateSelect),
             "AssertionLevel" => Some(Predefined::AssertionLevel),
             "ExternalObject" => Some(Predefined::ExternalObject),
+            "Clock" => Some(Predefined::Clock),
             _ => None,
         }
     }

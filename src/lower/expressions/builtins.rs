@@ -2,11 +2,12 @@
 //! [`functions`](crate::functions).
 
 use super::records::{arrays, field, of_texts, text_arrays};
-use super::{Array, Binary, Lowered, Lowering, Target, Unary, placed, size_fault};
+use super::{Array, Binary, ClockedCall, Lowered, Lowering, Target, Unary, placed, size_fault};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::functions::{
-    self, Argument, Builtin, Element, Known, Meaning, Operator, Plan, PlanOf, Reduction, Temporal,
+    self, Argument, Builtin, Clocked, Element, Known, Meaning, Operator, Plan, PlanOf, Reduction,
+    Temporal,
 };
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::lower::shape::UNKNOWN_TEXT;
@@ -37,6 +38,19 @@ impl<T: Target> Lowering<'_, T> {
             && (!arguments.iterators.is_empty() || arguments.positional.len() == 1)
         {
             return self.reduction(reduction, arguments, span).map(Lowered::scalar);
+        }
+        if let Meaning::Operator(Operator::InTime(operator)) = entry.meaning
+            && let Some(clocked) = on_clocks(operator)
+        {
+            let count = arguments.positional.len() + arguments.named.len();
+            entry.check_count(count).map_err(|fault| mismatch(fault, span))?;
+            self.target.begin_temporal(entry, operator, span)?;
+            let positional = arguments.positional.iter().map(|argument| self.lower(argument));
+            let positional = positional.collect::<Result<Vec<_>, _>>()?;
+            let named = arguments.named.iter();
+            let named = named.map(|named| Ok((named.name.node, self.lower(&named.value)?)));
+            let named = named.collect::<Result<Vec<_>, Diagnostic>>()?;
+            return self.target.clocked(entry, clocked, ClockedCall { positional, named }, span);
         }
         self.builtin(entry, &placed::of_operator(entry, arguments), span)
     }
@@ -391,6 +405,15 @@ impl<T: Target> Lowering<'_, T> {
             return Err(fault!(NOT_SUPPORTED, "an array of too many elements").at(span));
         }
         Ok(Lowered::Array(Array { dims, elements }))
+    }
+}
+
+/// The operator of clocks that this may be: `sample` has two meanings (MLS §16.5.1).
+fn on_clocks(operator: Temporal) -> Option<Clocked> {
+    match operator {
+        Temporal::Clocked(operator) => Some(operator),
+        Temporal::Sample => Some(Clocked::Sample),
+        _ => None,
     }
 }
 

@@ -166,6 +166,14 @@ impl<T: Target> Lowering<'_, T> {
                 false => self.if_expression(rest, otherwise, span),
             };
         }
+        if self.target.is_clock(otherwise)
+            && let Some(known) = self.target.settle(condition)
+        {
+            return match known != 0.0 {
+                true => self.lower(value),
+                false => self.if_expression(rest, otherwise, span),
+            };
+        }
         let mut branch = self.target.begin_if(condition);
         let first = self.lower(value)?;
         let mut scalars = Vec::new();

@@ -25,7 +25,7 @@ use super::text_array::Texts;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
 use crate::fault;
-use crate::functions::{Builtin, Temporal};
+use crate::functions::{Builtin, Clocked, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
@@ -91,6 +91,11 @@ pub(crate) trait Target {
     fn settle(&mut self, value: Self::Scalar) -> Option<f64> {
         let _ = value;
         None
+    }
+    /// Whether an expression is a clock, which is chosen at translation.
+    fn is_clock(&self, e: &Expression) -> bool {
+        let _ = e;
+        false
     }
     /// The number that stands for a text where texts change at events; `None` where none do.
     fn text_number(&mut self, text: &Arc<str>) -> Option<Self::Scalar> {
@@ -189,6 +194,33 @@ pub(crate) trait Target {
     ) -> Result<Array<Self::Scalar>, Diagnostic> {
         let _ = (operator, arguments, live);
         Err(fault!(NOT_SUPPORTED, "`{}` in a function", entry.name).at(span))
+    }
+    /// The value of a clocked operator that has been announced (MLS §16.5).
+    fn clocked(
+        &mut self,
+        entry: &Builtin,
+        operator: Clocked,
+        call: ClockedCall<Self::Scalar>,
+        span: Span,
+    ) -> Result<Lowered<Self::Scalar>, Diagnostic> {
+        let _ = (operator, call);
+        Err(fault!(NOT_SUPPORTED, "`{}` in a function", entry.name).at(span))
+    }
+}
+
+/// The arguments of a clocked operator.
+pub(crate) struct ClockedCall<S> {
+    /// Those by position.
+    pub(crate) positional: Vec<Lowered<S>>,
+    /// Those by name.
+    pub(crate) named: Vec<(Ident, Lowered<S>)>,
+}
+
+impl<S> ClockedCall<S> {
+    /// The argument at a position or of a name.
+    pub(crate) fn at(&self, position: usize, name: &str) -> Option<&Lowered<S>> {
+        let named = || self.named.iter().find(|(known, _)| *known == name).map(|(_, value)| value);
+        self.positional.get(position).or_else(named)
     }
 }
 

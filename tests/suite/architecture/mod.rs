@@ -56,6 +56,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "lower",
         &[
+            "graph",
             "budget",
             "bytecode",
             "external",

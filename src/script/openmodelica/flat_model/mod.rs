@@ -200,6 +200,7 @@ fn type_name(base: &BaseType) -> String {
             format!("enumeration({})", literals.join(", "))
         }
         BaseType::ExternalObject(name) => name.to_string(),
+        BaseType::Clock => "Clock".into(),
     }
 }
 

@@ -1,0 +1,38 @@
+//! Which expressions have Real values.
+
+use super::dae::{Dae, Kind};
+use crate::flatten::BaseType;
+use crate::symbolic::function::ResultType;
+use crate::symbolic::{Expr, Node};
+use rustc_hash::FxHashSet;
+
+/// Whether the value of an expression is a Real rather than an Integer, Boolean or enumeration.
+pub(crate) fn is_real(dae: &Dae, e: Expr) -> bool {
+    let (mut open, mut seen) = (vec![e], FxHashSet::default());
+    while let Some(e) = open.pop() {
+        if !seen.insert(e) {
+            continue;
+        }
+        match dae.pool.node(e) {
+            Node::Constant(number) if number.0.fract() != 0.0 => return true,
+            Node::Variable(v) => {
+                let variable = dae.variable(*v);
+                if variable.base == BaseType::Real && variable.kind != Kind::Frozen {
+                    return true;
+                }
+            }
+            Node::Div(..) | Node::Pow(..) => return true,
+            Node::Apply(id, arguments) => match id.get().result {
+                ResultType::Real if id.get().event_generating => {}
+                ResultType::Real => return true,
+                ResultType::Integer => {}
+                ResultType::AsArguments => open.extend(arguments.iter()),
+            },
+            Node::Neg(a) => open.push(*a),
+            Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) => open.extend([*a, *b]),
+            Node::If(_, a, b) => open.extend([*a, *b]),
+            _ => {}
+        }
+    }
+    false
+}
