@@ -37,6 +37,10 @@ impl Builder<'_> {
             }
             Temporal::Initial => return Ok(Array::scalar(self.initial_signal())),
             Temporal::Terminal => return Ok(Array::scalar(self.terminal_signal())),
+            Temporal::SpatialDistribution => {
+                let [out0, _] = self.spatial_distribution(&arguments, span)?;
+                return Ok(Array::scalar(out0));
+            }
             Temporal::Sample => {
                 let (start, interval) = (scalar(0)?, scalar(1)?);
                 return self.sample(start, interval, span).map(Array::scalar);
@@ -53,7 +57,9 @@ impl Builder<'_> {
                 Temporal::Derivative => self.derivative(element, span)?,
                 Temporal::Delay => {
                     let time = delay_time(&arguments, at, &array.dims, span)?;
-                    self.delay(element, time, span)?
+                    let longest =
+                        delay_time(arguments.get(1..).unwrap_or_default(), at, &array.dims, span);
+                    self.delay(element, time, longest.ok(), span)?
                 }
                 _ => return Err(fault!(NOT_SUPPORTED, "`{}`", entry.name).at(span)),
             };
@@ -195,11 +201,15 @@ impl Builder<'_> {
         Ok(self.dae.pool.variable(variable))
     }
 
-    fn delay(&mut self, argument: Expr, time: Expr, span: Span) -> Result<Expr, Diagnostic> {
+    fn delay(
+        &mut self,
+        argument: Expr,
+        time: Expr,
+        longest: Option<Expr>,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
         if !self.is_parametric(time) {
-            return Err(
-                fault!(NOT_SUPPORTED, "`delay` by a variable time is not supported").at(span)
-            );
+            return self.variable_delay(argument, time, longest, span);
         }
         if self.is_parametric(argument) {
             return Ok(argument);
@@ -281,7 +291,7 @@ impl Builder<'_> {
     }
 
     /// Adds a variable of the system that the model does not declare.
-    fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
+    pub(super) fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         id
