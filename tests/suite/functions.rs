@@ -695,5 +695,9 @@ fn sizes_of_results_must_not_vary_at_run_time() {
         for i in 1:n loop y[i] := i; end for; end f; \
         Integer n = if time < 0.5 then 2 else 3; Real y[2] = f(n); end M;";
     let error = super::hybrid::compiled(text).map(|_| ()).expect_err("sizes that vary");
-    assert!(error.message.contains("depend") || error.message.contains("known"), "{}", error.message);
+    assert!(
+        error.message.contains("depend") || error.message.contains("known"),
+        "{}",
+        error.message
+    );
 }
