@@ -131,6 +131,12 @@ fn model_equations(dae: &mut Dae) -> Numbered {
         let equation = Equation::new(left, right, delay.span);
         system.push(equation, first + delay.variable.0 as usize);
     }
+    for transport in &dae.events.transports {
+        for (variable, value) in transport.outputs() {
+            let equation = Equation::new(dae.pool.variable(variable), value, transport.span());
+            system.push(equation, first + variable.0 as usize);
+        }
+    }
     for previous in of_kind(dae, |kind| matches!(kind, Kind::Previous(_))) {
         let Kind::Previous(of) = dae.variable(previous).kind else { continue };
         if dae.variable(of).kind != Kind::Discrete {

@@ -4,9 +4,9 @@ use super::code::LogAssertion;
 use super::registers::Registers;
 use super::sequence::compile_outputs;
 use crate::causalize::{Assignment, CausalizedDae};
-use crate::codegen::events::{CompiledDelay, Events, Previous};
+use crate::codegen::events::{CompiledDelay, CompiledTransport, Events, Previous};
 use crate::flatten::BaseType;
-use crate::lower::{Equation, Kind, Level};
+use crate::lower::{Equation, Kind, Level, Transport};
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection, linear_in};
 
 /// Compiles what happens at events, but for [`Events::steps`] and [`Events::roundings`].
@@ -24,6 +24,8 @@ pub(super) fn compile_events(
         time: compile_outputs(pool, registers, &[], &[delay.time]),
     });
     let delays = delays.collect();
+    let transports = events.transports.iter();
+    let transports = transports.map(|t| compile_transport(pool, registers, sequence, t)).collect();
     let first = dae.assertions.len();
     let numbered = || events.assertions.iter().enumerate().map(|(at, a)| (first + at, a));
     let errors = || numbered().filter(|(_, assertion)| assertion.level == Level::Error);
@@ -67,9 +69,33 @@ pub(super) fn compile_events(
             .collect(),
         terminations: outputs(&events.terminations.iter().map(|t| t.condition).collect::<Vec<_>>()),
         delays,
+        transports,
         initial: events.initial,
         terminal: events.terminal,
         ..Events::default()
+    }
+}
+
+fn compile_transport(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    transport: &Transport,
+) -> CompiledTransport {
+    let (outputs, read, inputs, start) = match transport {
+        Transport::Delay { variable, argument, time, longest, .. } => {
+            (vec![*variable], vec![*time], vec![*argument], vec![*longest])
+        }
+        Transport::Pipe { outputs, inputs, position, positive, points, values, .. } => {
+            let start = points.iter().chain(values).copied().collect();
+            (outputs.to_vec(), vec![*position, *positive], inputs.to_vec(), start)
+        }
+    };
+    CompiledTransport {
+        outputs: outputs.iter().map(|v| v.0).collect(),
+        read: compile_outputs(pool, registers, sequence, &read),
+        inputs: compile_outputs(pool, registers, sequence, &inputs),
+        start: compile_outputs(pool, registers, &[], &start),
     }
 }
 

@@ -40,6 +40,7 @@ pub(crate) struct Events {
     /// Conditions of `terminate`.
     pub(crate) terminations: Outputs,
     pub(crate) delays: Vec<CompiledDelay>,
+    pub(crate) transports: Vec<CompiledTransport>,
     /// The variable that is 1 during initialization.
     pub(crate) initial: Option<VarId>,
     /// The variable that is 1 at the end.
@@ -77,6 +78,26 @@ pub(crate) struct CompiledDelay {
     pub(crate) time: Outputs,
 }
 
+/// A variable delay, or the content of a pipe.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledTransport {
+    /// Where the value of a delay, or those at both ends of a pipe, are written.
+    pub(crate) outputs: Vec<Register>,
+    /// The delay time; or the position, and whether the velocity is positive.
+    pub(crate) read: Outputs,
+    /// What goes in.
+    pub(crate) inputs: Outputs,
+    /// From parameters: the longest delay; or points, and values of a first content.
+    pub(crate) start: Outputs,
+}
+
+impl CompiledTransport {
+    /// Whether it is the content of a pipe.
+    pub(crate) fn is_pipe(&self) -> bool {
+        self.outputs.len() == 2
+    }
+}
+
 impl Events {
     /// Whether anything can happen at an event beside relations that switch.
     pub(crate) fn is_empty(&self) -> bool {
@@ -84,6 +105,7 @@ impl Events {
             && self.reinitialized.is_empty()
             && self.samples.is_empty()
             && self.delays.is_empty()
+            && self.transports.is_empty()
             && self.initial.is_none()
             && self.terminal.is_none()
             && self.assertions.outputs.is_empty()

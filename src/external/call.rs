@@ -93,6 +93,11 @@ pub trait Outside {
         Err(refused(&format!("to check whether `{path}` exists")))
     }
 
+    /// The absolute path of a file or folder, or of a `modelica://` URI.
+    fn full_path(&mut self, path: &str) -> Result<String, Fault> {
+        Err(refused(&format!("the absolute path of `{path}`")))
+    }
+
     /// Seconds since 1970-01-01 00:00 UTC.
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
         Err(refused("to read the clock"))

@@ -17,6 +17,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaInternal_readLine", "fnN->t", read_line),
     Entry::pure("ModelicaInternal_countLines", "f->n", count_lines),
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
+    Entry::impure("ModelicaInternal_fullPathName", "t->t", full_path),
     Entry::writing("ModelicaInternal_removeFile", "t", remove),
     Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
@@ -80,6 +81,12 @@ fn stat(call: &mut Call<'_>) -> Result<(), Fault> {
         Some(true) => 3.0,
     };
     call.give(kind)
+}
+
+fn full_path(call: &mut Call<'_>) -> Result<(), Fault> {
+    let path = call.text(0).to_owned();
+    let full = call.outside.full_path(&path)?;
+    call.give_text(&full)
 }
 
 /// `(ms, sec, min, hour, day, mon, year)`

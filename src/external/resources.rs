@@ -68,6 +68,10 @@ impl Outside for Resources {
         Ok(self.provider(path)?.is_folder(path))
     }
 
+    fn full_path(&mut self, path: &str) -> Result<String, Fault> {
+        self.provider(path)?.path(path)
+    }
+
     fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
         match &self.0 {
             Some(provider) => provider.c_function(request),

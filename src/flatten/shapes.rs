@@ -39,7 +39,9 @@ impl Instantiation<'_> {
     pub fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         let value = picked(value.clone(), &bound.indices);
-        let resolved = self.resolve(&value, bound.context, &Local::default())?;
+        // Whether it may call impure functions is looked at with the value.
+        let local = Local { impure: true, ..Local::default() };
+        let resolved = self.resolve(&value, bound.context, &local)?;
         Ok(self.shape_of(&resolved))
     }
 

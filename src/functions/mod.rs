@@ -174,6 +174,11 @@ impl Builtin {
         Builtin { least, most, shape: ShapeRule::Planned, ..entry }
     }
 
+    /// Whether it is the operator with two outputs.
+    pub fn is_spatial_distribution(&self) -> bool {
+        matches!(self.meaning, Meaning::Operator(Operator::InTime(Temporal::SpatialDistribution)))
+    }
+
     /// Whether it has a meaning in models only.
     pub fn is_model_only(&self) -> bool {
         matches!(self.meaning, Meaning::Operator(Operator::InTime(_)))

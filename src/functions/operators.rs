@@ -244,6 +244,7 @@ pub(super) const OPERATORS: &[Builtin] = &[
     },
     of_unknown_value(temporal("reinit", Temporal::Reinit), (2, 2)),
     Builtin {
+        inputs: &["in0", "in1", "x", "positiveVelocity", "initialPoints", "initialValues"],
         section: "MLS §3.7.4.2",
         ..of_unknown_value(temporal("spatialDistribution", Temporal::SpatialDistribution), (4, 6))
     },

@@ -356,11 +356,10 @@ impl<'a> Builder<'a> {
         lowering.loops = loops.to_vec();
         lowering.live = live;
         let name = function.name();
-        let user =
-            super::expressions::Target::function(lowering.target, &name).ok_or_else(|| {
-                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
-            })?;
-        let outputs = lowering.user_call(&user, arguments, right.span)?;
+        let outputs = match super::expressions::Target::function(lowering.target, &name) {
+            Some(user) => lowering.user_call(&user, arguments, right.span)?,
+            None => lowering.builtin_outputs(&name.to_string(), function, arguments, right.span)?,
+        };
         let mut equations = Vec::new();
         for (position, target) in targets.iter().enumerate() {
             let Some(target) = target else { continue };

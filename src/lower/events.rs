@@ -17,6 +17,8 @@ pub struct Events {
     pub samples: Vec<Sample>,
     /// `delay(argument, time)`.
     pub delays: Vec<Delay>,
+    /// `delay` by a time that varies, and `spatialDistribution`.
+    pub transports: Vec<Transport>,
     /// `reinit(x, value)` in when-clauses.
     pub reinits: Vec<Reinit>,
     /// Assertions in when-clauses.
@@ -68,6 +70,75 @@ pub struct Delay {
     pub span: Span,
 }
 
+/// Values that come out of something later than they go in.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Transport {
+    /// `variable = delay(argument, time, longest)` (MLS §3.7.4.1).
+    Delay {
+        /// The variable that holds the value.
+        variable: VarId,
+        /// What is delayed.
+        argument: Expr,
+        /// By how much, seconds.
+        time: Expr,
+        /// By how much at most, made of parameters, seconds.
+        longest: Expr,
+        /// Where it is written.
+        span: Span,
+    },
+    /// `(out0, out1) = spatialDistribution(in0, in1, x, positiveVelocity, initialPoints,
+    /// initialValues)` (MLS §3.7.4.2).
+    Pipe {
+        /// The variables that hold the values at the places 0 and 1.
+        outputs: [VarId; 2],
+        /// What flows in there.
+        inputs: [Expr; 2],
+        /// How far the content has moved, in lengths of the pipe.
+        position: Expr,
+        /// Whether it flows from 0 to 1.
+        positive: Expr,
+        /// Places of the first content, from 0 to 1, made of parameters.
+        points: Vec<Expr>,
+        /// The content there, made of parameters.
+        values: Vec<Expr>,
+        /// Where it is written.
+        span: Span,
+    },
+}
+
+impl Transport {
+    /// The variables that hold its values, and what these are at the start.
+    pub fn outputs(&self) -> Vec<(VarId, Expr)> {
+        match self {
+            Transport::Delay { variable, argument, .. } => vec![(*variable, *argument)],
+            Transport::Pipe { outputs, values, .. } => {
+                let ends = values.first().into_iter().chain(values.last());
+                outputs.iter().copied().zip(ends.copied()).collect()
+            }
+        }
+    }
+
+    /// Where it is written.
+    pub fn span(&self) -> Span {
+        match self {
+            Transport::Delay { span, .. } | Transport::Pipe { span, .. } => *span,
+        }
+    }
+
+    fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
+        match self {
+            Transport::Delay { argument, time, longest, .. } => {
+                [argument, time, longest].into_iter().for_each(visit);
+            }
+            Transport::Pipe { inputs, position, positive, points, values, .. } => {
+                inputs.iter_mut().for_each(&mut visit);
+                [position, positive].into_iter().for_each(&mut visit);
+                points.iter_mut().chain(values).for_each(visit);
+            }
+        }
+    }
+}
+
 /// `reinit(state, value)`, carried out when the condition holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reinit {
@@ -101,6 +172,7 @@ impl Events {
         }
         self.roundings.iter_mut().for_each(|r| visit(&mut r.argument));
         self.delays.iter_mut().for_each(|d| visit(&mut d.argument));
+        self.transports.iter_mut().for_each(|transport| transport.for_each_expression(&mut visit));
         for reinit in &mut self.reinits {
             visit(&mut reinit.condition);
             visit(&mut reinit.value);

@@ -4,10 +4,9 @@
 //! Arrays, records and functions are expanded (`expressions`, `function`, `inline`);
 //! algorithm sections and when-clauses become equations (`algorithm`, `when`); every relation
 //! outside `noEvent` becomes a variable that changes at events only (`build`); operators with a
-//! meaning in time become variables too (`temporal`).
+//! meaning in time become variables too (`temporal`, `transport`).
 //!
-//! Not supported yet, and refused with `not-supported`: `delay` by a time that varies,
-//! `spatialDistribution`, statements whose loops depend on variables.
+//! Not supported yet, and refused with `not-supported`: statements whose loops depend on variables.
 
 mod algorithm;
 mod assigned_variables;
@@ -34,6 +33,7 @@ mod statement_function;
 mod symbolic_target;
 mod temporal;
 mod text_array;
+mod transport;
 mod varying_strings;
 mod when;
 

@@ -241,7 +241,8 @@ impl Target for Builder<'_> {
             | Temporal::Initial
             | Temporal::Terminal
             | Temporal::Sample
-            | Temporal::Delay => Ok(()),
+            | Temporal::Delay
+            | Temporal::SpatialDistribution => Ok(()),
             Temporal::Pre
             | Temporal::Edge
             | Temporal::Change
@@ -295,6 +296,14 @@ impl Target for Builder<'_> {
         span: Span,
     ) -> Result<Array<Expr>, Diagnostic> {
         self.temporal_operator(entry, operator, arguments, span)
+    }
+
+    fn spatial_distribution(
+        &mut self,
+        arguments: &[Array<Expr>],
+        span: Span,
+    ) -> Result<[Expr; 2], Diagnostic> {
+        Builder::spatial_distribution(self, arguments, span)
     }
 }
 

@@ -33,6 +33,10 @@ impl Builder<'_> {
             }
             Temporal::Initial => return Ok(Array::scalar(self.initial_signal())),
             Temporal::Terminal => return Ok(Array::scalar(self.terminal_signal())),
+            Temporal::SpatialDistribution => {
+                let [out0, _] = self.spatial_distribution(&arguments, span)?;
+                return Ok(Array::scalar(out0));
+            }
             _ => {}
         }
         let mut array = arguments.remove(0);
@@ -45,7 +49,9 @@ impl Builder<'_> {
                 Temporal::Derivative => self.derivative(element, span)?,
                 Temporal::Delay => {
                     let time = delay_time(&arguments, at, &array.dims, span)?;
-                    self.delay(element, time, span)?
+                    let longest =
+                        delay_time(arguments.get(1..).unwrap_or_default(), at, &array.dims, span);
+                    self.delay(element, time, longest.ok(), span)?
                 }
                 _ => return Err(fault!(NOT_SUPPORTED, "`{}`", entry.name).at(span)),
             };
@@ -213,11 +219,15 @@ impl Builder<'_> {
         Ok(self.dae.pool.variable(variable))
     }
 
-    fn delay(&mut self, argument: Expr, time: Expr, span: Span) -> Result<Expr, Diagnostic> {
+    fn delay(
+        &mut self,
+        argument: Expr,
+        time: Expr,
+        longest: Option<Expr>,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
         if !self.is_parametric(time) {
-            return Err(
-                fault!(NOT_SUPPORTED, "`delay` by a variable time is not supported").at(span)
-            );
+            return self.variable_delay(argument, time, longest, span);
         }
         if self.is_parametric(argument) {
             return Ok(argument);

@@ -42,8 +42,7 @@ impl History {
     /// a jump.
     pub(super) fn push(&mut self, t: f64, value: f64) {
         let (Some(last), Some(old)) = (self.times.back(), self.values.back()) else { return };
-        let same = (value - old).abs() <= SAME * value.abs().max(old.abs());
-        if t < *last || (t == *last && same) {
+        if t < *last || (t == *last && !differ(value, *old)) {
             return;
         }
         if t == *last {
@@ -76,19 +75,7 @@ impl History {
         let n = (end - first).min(POINTS);
         let behind = self.times.partition_point(|time| *time <= t);
         let start = behind.saturating_sub(n / 2).clamp(first, end - n);
-        // Differences to one of the values: a constant stays what it is, to the last bit.
-        let one = self.values[start];
-        let mut value = one;
-        for i in start + 1..start + n {
-            let mut weight = 1.0;
-            for j in start..start + n {
-                if j != i {
-                    weight *= (t - self.times[j]) / (self.times[i] - self.times[j]);
-                }
-            }
-            value += weight * (self.values[i] - one);
-        }
-        value
+        cubic(&self.times, &self.values, start..start + n, t)
     }
 
     /// When the piece that is read ends, if the next one is known.
@@ -119,6 +106,33 @@ impl History {
         self.first = Some(first.saturating_sub(unused));
         self.jumps.iter_mut().for_each(|at| *at -= unused);
     }
+}
+
+/// Whether two values are a jump rather than rounding.
+pub(super) fn differ(a: f64, b: f64) -> bool {
+    (a - b).abs() > SAME * a.abs().max(b.abs())
+}
+
+/// The polynomial through a range of points at `t`, in the form of Lagrange.
+pub(super) fn cubic(
+    at: &VecDeque<f64>,
+    values: &VecDeque<f64>,
+    range: std::ops::Range<usize>,
+    t: f64,
+) -> f64 {
+    // Differences to one of the values: a constant stays what it is, to the last bit.
+    let one = values[range.start];
+    let mut value = one;
+    for i in range.start + 1..range.end {
+        let mut weight = 1.0;
+        for j in range.clone() {
+            if j != i {
+                weight *= (t - at[j]) / (at[i] - at[j]);
+            }
+        }
+        value += weight * (values[i] - one);
+    }
+    value
 }
 
 #[cfg(test)]

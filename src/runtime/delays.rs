@@ -6,6 +6,11 @@ use crate::codegen::events::CompiledDelay;
 use crate::sim::Failure;
 
 impl System {
+    /// Whether values of the past are needed.
+    pub(super) fn has_past(&self) -> bool {
+        !self.histories.is_empty() || !self.program.events.transports.is_empty()
+    }
+
     /// Sets the delayed values at `t`.
     pub(super) fn load_delayed(&mut self, t: f64) {
         let delays = &self.program.events.delays;

@@ -120,7 +120,8 @@ impl System {
         while self.event(t)? == EventOutcome::Again {}
         // What was before the start is what the events of the first instant lead to.
         for _ in 0..MAX_ROUNDS {
-            if !self.start_histories(t)? {
+            let other = self.start_histories(t)?;
+            if !(self.start_transported(t)? | self.load_transported(t, true) | other) {
                 return Ok(());
             }
             self.load_delayed(t);
@@ -147,7 +148,7 @@ impl System {
             self.solve(Stage::Continuous)?;
         }
         self.update_previous();
-        let arrived = self.advance_histories(t);
+        let arrived = self.advance_histories(t) | self.load_transported(t, true);
         let sampled = self.samples_due(t);
         let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
         match (sampled, outcome) {
@@ -220,7 +221,7 @@ impl System {
             terminated |= self.check_at_event(t)?;
             self.carry_through_event()?;
             let set = self.reinitialize()?;
-            let moved = self.update_previous();
+            let moved = self.update_previous() | self.load_transported(t, true);
             changed |= set | moves;
             if !set && !moved && !moves {
                 return Ok(match terminated {

@@ -27,6 +27,7 @@ mod mode_search;
 mod modes;
 mod newton;
 mod noevent_relations;
+mod profile;
 mod relations;
 mod sensitivity;
 mod sensitivity_state;
@@ -35,6 +36,7 @@ mod singular_systems;
 mod sliding;
 mod state_selection;
 mod system;
+mod transports;
 
 pub use modes::Treated;
 pub use simulation_log::LogMessage;

@@ -20,7 +20,7 @@ impl System {
 
     pub(super) fn is_memoryless(&self, crossing: usize) -> bool {
         let relation = self.relation_of(crossing);
-        relation.is_some_and(|at| self.program.memoryless[at]) && self.histories.is_empty()
+        relation.is_some_and(|at| self.program.memoryless[at]) && !self.has_past()
     }
 
     /// Sets the relation of a crossing function to its value on one side.

@@ -8,6 +8,7 @@ use super::newton::LoopSolver;
 use super::sensitivity_state::Sensitivity;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
+use super::transports::Record;
 use crate::codegen::code::{Outputs, Step};
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Program};
@@ -81,6 +82,8 @@ pub struct System {
     /// The past of delayed expressions, and by how much they are delayed.
     pub(super) histories: Vec<History>,
     pub(super) delay_times: Vec<f64>,
+    /// What variable delays and pipes have recorded.
+    pub(super) transported: Vec<Record>,
     /// Whether samples are true that an event at the same time makes false.
     pub(super) sampled: bool,
     /// The variable that changed last in an event iteration.
@@ -136,6 +139,7 @@ impl System {
             previous_iterate: vec![0.0; program.events.iterated.len()],
             histories: vec![History::default(); program.events.delays.len()],
             delay_times: vec![0.0; program.events.delays.len()],
+            transported: Vec::new(),
             sampled: false,
             unstable: 0,
             sensitivity: None,
@@ -226,6 +230,7 @@ impl System {
         if !self.histories.is_empty() {
             self.load_delayed(t);
         }
+        self.load_transported(t, false);
         if self.sensitivity.is_some() {
             self.load_derivatives(y);
         }
@@ -237,7 +242,8 @@ impl System {
         if !self.solves_loops || self.program.iteration.is_empty() {
             return Ok(());
         }
-        self.solve(Stage::Continuous)
+        self.solve(Stage::Continuous)?;
+        self.agree_with_transported(t)
     }
 
     fn unload(&self, y: &mut [f64]) {
@@ -539,6 +545,7 @@ impl DaeSystem for System {
         self.forget_notices();
         self.treated.clear();
         self.kept.clear();
+        self.transported.clear();
         self.solve_initial_system(t)?;
         self.note_open_at_start(t);
         self.check_initial_values()?;
@@ -547,6 +554,7 @@ impl DaeSystem for System {
         self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
+        self.start_transported(t)?;
         self.start_sensitivities()?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
@@ -556,7 +564,7 @@ impl DaeSystem for System {
     }
 
     fn n_crossings(&self) -> usize {
-        self.program.n_crossings() + self.choices.len()
+        self.program.n_crossings() + self.choices.len() + 2 * self.program.events.transports.len()
     }
 
     fn crossings_vary_in_time(&self) -> bool {
@@ -565,8 +573,10 @@ impl DaeSystem for System {
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        let (first, last) = out.split_at_mut(self.program.n_crossings());
+        let (first, others) = out.split_at_mut(self.program.n_crossings());
+        let (last, transported) = others.split_at_mut(self.choices.len());
         self.relation_crossings(first)?;
+        self.transported_crossings(t, transported)?;
         for ((choice, selection), out) in
             self.choices.iter_mut().zip(&self.program.selections).zip(last)
         {
@@ -606,16 +616,17 @@ impl DaeSystem for System {
     }
 
     fn remembers(&self) -> bool {
-        !self.histories.is_empty()
+        self.has_past()
     }
 
     fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        self.load(t, y);
-        self.remember_values(t).map_err(|f| self.refine(f))
+        self.load_solved(t, y)?;
+        self.remember_values(t).map_err(|f| self.refine(f))?;
+        self.record_transported(t).map_err(|f| self.refine(f))
     }
 
     fn longest_step(&self) -> f64 {
-        self.delay_times.iter().copied().fold(f64::INFINITY, f64::min)
+        self.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
     }
 
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {

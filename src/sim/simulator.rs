@@ -449,8 +449,8 @@ impl Run<'_> {
             let begin = self.t;
             match self.first_event(end)? {
                 Some(event) => {
-                    self.record_before(event)?;
                     self.remember(begin, event)?;
+                    self.record_before(event)?;
                     self.problem.statistics.state_events += 1;
                     self.count_switches(begin, event)?;
                     let after = self.handle_event(event, true)?;
@@ -462,14 +462,14 @@ impl Run<'_> {
                     }
                 }
                 None if time_event => {
-                    self.record_before(end)?;
                     self.remember(begin, end)?;
+                    self.record_before(end)?;
                     self.problem.statistics.time_events += 1;
                     return self.handle_event(end, false);
                 }
                 None => {
-                    self.record_before(end)?;
                     self.remember(begin, end)?;
+                    self.record_before(end)?;
                     self.t = end;
                     self.y.copy_from_slice(self.integrator.state());
                     self.look_between_steps()?;

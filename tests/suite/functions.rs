@@ -1,7 +1,7 @@
 //! Functions that run as bytecode in models: their values are those of the interpreter, their
 //! derivatives those of its differences.
 
-use super::hybrid::simulated;
+use super::hybrid::{attempt, simulated};
 use gapilib::causalize::causalize;
 use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
@@ -668,4 +668,36 @@ fn partial_applications_bind_any_inputs() {
     assert_eq!(streams.errors(), "");
     let last = session.variable("last").and_then(|last| last.as_reals().map(|v| v.into_owned()));
     assert_eq!(last, Some(vec![8.0, 10.0]));
+}
+
+#[test]
+fn sizes_that_vary_at_run_time_are_those_of_the_instant() {
+    let functions = "function squares input Integer n; output Real y[n]; algorithm \
+        for i in 1:n loop y[i] := i^2; end for; end squares; \
+        function total input Integer n; input Real w; output Real s; protected Real c[n]; \
+        algorithm c := squares(n); s := w*sum(c); end total;";
+    let model = |n: &str| {
+        format!("model M {functions} Integer n = {n}; Real y = total(n, 1 + time); end M;")
+    };
+    let run = simulated(&model("if time < 0.5 then 2 elseif time < 0.75 then 0 else 4"), 1.0);
+    for (time, sum) in [(0.2, 5.0), (0.6, 0.0), (0.8, 30.0)] {
+        let (value, expected) = (run.at("y", time), (1.0 + time) * sum);
+        assert!((value - expected).abs() < 1e-12, "{value} instead of {expected} at {time}");
+    }
+    let (program, _, _, ended) = attempt(&model("if time < 0.5 then 2 else 40"), 1.0);
+    let message = program.explain(&ended.expect_err("a size out of range")).message.clone();
+    assert!(message.contains("outside 0 to 32"), "{message}");
+}
+
+#[test]
+fn sizes_of_results_must_not_vary_at_run_time() {
+    let text = "model M function f input Integer n; output Real y[n]; algorithm \
+        for i in 1:n loop y[i] := i; end for; end f; \
+        Integer n = if time < 0.5 then 2 else 3; Real y[2] = f(n); end M;";
+    let error = super::hybrid::compiled(text).map(|_| ()).expect_err("sizes that vary");
+    assert!(
+        error.message.contains("depend") || error.message.contains("known"),
+        "{}",
+        error.message
+    );
 }

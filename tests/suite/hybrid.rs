@@ -92,7 +92,7 @@ impl Run {
     }
 
     /// Times at which a variable jumps.
-    fn jumps(&self, name: &str) -> Vec<f64> {
+    pub(super) fn jumps(&self, name: &str) -> Vec<f64> {
         let (values, times) = (self.column(name), self.rows.time());
         let pairs = values.windows(2).zip(times.windows(2));
         pairs.filter(|(v, t)| v[0] != v[1] && t[0] == t[1]).map(|(_, t)| t[1]).collect()
@@ -463,7 +463,7 @@ fn initial_algorithms_set_parameters_and_states() {
 }
 
 /// The fault of a model that cannot be sorted or compiled: code, message, helps.
-fn refused(text: &str) -> String {
+pub(super) fn refused(text: &str) -> String {
     match compiled(text) {
         Ok(_) => panic!("the model is accepted"),
         Err(d) => format!("{}: {}; {}", d.code.slug, d.message, d.helps.join("; ")),

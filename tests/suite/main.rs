@@ -87,6 +87,7 @@ mod teach;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+mod transport;
 mod undetermined;
 mod watching;
 mod words;

@@ -106,6 +106,9 @@ fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
     if !dae.events.delays.is_empty() {
         return Err("the model uses `delay`".to_owned());
     }
+    if !dae.events.transports.is_empty() {
+        return Err("the model uses a variable `delay` or `spatialDistribution`".to_owned());
+    }
     if program.events.need_left_limits() {
         return Err("the model uses `pre` of a variable that is not discrete".to_owned());
     }

@@ -4,6 +4,7 @@
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
+use crate::external::Outside;
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
 use crate::flatten::expressions::local::Local;
@@ -114,7 +115,10 @@ impl Instantiation<'_> {
             );
         };
         let value = picked(value, &bound.indices);
-        let found = self.known_value(&value, bound.context)?;
+        // Parameters may be read from files (MLS §12.3).
+        let local = Local { values: true, impure: true, ..Local::default() };
+        let resolved = self.resolve(&value, bound.context, &local)?;
+        let found = evaluate(&resolved, &mut Scope::script(), &mut Functions(self))?;
         fitting(found, &base, &dims, bound.each).map_err(|fault| fault.at(value.span))
     }
 
@@ -352,6 +356,10 @@ impl Host for Functions<'_, '_> {
         span: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
         Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function", header.name).at(span))
+    }
+
+    fn outside(&mut self) -> Option<&mut dyn Outside> {
+        Some(&mut self.0.values.resources)
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -32,7 +32,7 @@ impl<'a> Instantiation<'a> {
         Instantiation {
             classes: Classes::new(library),
             functions: FunctionTable::default(),
-            values: Values::default(),
+            values: Values { resources: library.resources().clone(), ..Values::default() },
             connections: None,
             warnings: Vec::new(),
             depth: 0,

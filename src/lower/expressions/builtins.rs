@@ -55,6 +55,29 @@ impl<T: Target> Lowering<'_, T> {
         self.builtin(entry, &placed::of_operator(entry, arguments), span)
     }
 
+    /// All outputs of an operator of the language that has several: `spatialDistribution`.
+    pub(in crate::lower) fn builtin_outputs(
+        &mut self,
+        name: &str,
+        callee: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
+        match functions::find(name) {
+            Some(entry) if entry.is_spatial_distribution() => {
+                let placed = placed::of_operator(entry, arguments);
+                entry.check_count(placed.len()).map_err(|fault| mismatch(fault, span))?;
+                let values = placed.iter().map(|a| self.array(a)).collect::<Result<Vec<_>, _>>()?;
+                let outputs = self.target.spatial_distribution(&values, span)?;
+                Ok(outputs.into_iter().map(Lowered::scalar).collect())
+            }
+            Some(_) => self.builtin_call(name, callee, arguments, span).map(|one| vec![one]),
+            None => {
+                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(callee.span))
+            }
+        }
+    }
+
     /// A call with the arguments in their places.
     pub(super) fn builtin(
         &mut self,

@@ -183,6 +183,14 @@ pub(crate) trait Target {
         let _ = operator;
         Err(fault!(NOT_SUPPORTED, "`{}` in a function", entry.name).at(span))
     }
+    /// The outputs of `spatialDistribution`.
+    fn spatial_distribution(
+        &mut self,
+        _arguments: &[Array<Self::Scalar>],
+        span: Span,
+    ) -> Result<[Self::Scalar; 2], Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "`spatialDistribution` in a function").at(span))
+    }
     /// The value of an operator with a meaning in time that has been announced.
     fn temporal(
         &mut self,

@@ -8,6 +8,7 @@
 
 mod assigned_shape;
 mod derivative;
+mod dispatch;
 mod emitter;
 mod external;
 mod external_kinds;
@@ -82,6 +83,11 @@ fn inlined_or_compiled(
         && settle_whole_numbers(builder, function, &mut arguments)
     {
         result = compiled_call(builder, function, arguments.clone(), span);
+    }
+    if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
+        && let Some(dispatched) = dispatch::dispatched(builder, function, &arguments, span)
+    {
+        result = dispatched;
     }
     match result {
         // What does not fit may stand in a branch that is never taken.
