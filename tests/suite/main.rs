@@ -32,6 +32,7 @@ mod grammar;
 mod guide;
 mod hybrid;
 mod hybrid_limits;
+mod ibpsa;
 mod identification;
 mod identification_sets;
 mod identified_models;
