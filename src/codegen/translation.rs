@@ -16,8 +16,8 @@ use crate::symbolic::function::FunctionId;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
-    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot, StackSlotData, StackSlotKind,
-    Type, Value, types,
+    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot, StackSlotData,
+    StackSlotKind, Type, Value, types,
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
@@ -46,22 +46,7 @@ pub(super) fn translate(
     builder.switch_to_block(start);
     let parameters = builder.block_params(start);
     let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
-    let functions = [1, 2].map(|arity| {
-        let mut signature = Signature::new(target.default_call_conv);
-        signature.params.push(AbiParam::new(pointer));
-        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
-        signature.returns.push(AbiParam::new(types::F64));
-        builder.import_signature(signature)
-    });
-    let mut signature = Signature::new(target.default_call_conv);
-    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
-    let elimination = builder.import_signature(signature);
-    let asking = [3, 4].map(|arguments| {
-        let mut signature = Signature::new(target.default_call_conv);
-        signature.params.extend(std::iter::repeat_n(AbiParam::new(pointer), arguments));
-        signature.returns.push(AbiParam::new(types::F64));
-        builder.import_signature(signature)
-    });
+    let (functions, elimination, asking) = signatures(&mut builder, target);
     let array = (upcalls.room() > 0).then(|| {
         let size = (8 * upcalls.room()) as u32;
         let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
@@ -101,6 +86,31 @@ pub(super) fn translate(
     translation.enter(instructions.len());
     translation.finish(target);
     Some(())
+}
+
+/// The signatures of functions with one and two arguments, of [`small_system`], and of the upcalls.
+fn signatures(
+    builder: &mut FunctionBuilder,
+    target: TargetFrontendConfig,
+) -> ([SigRef; 2], SigRef, [SigRef; 2]) {
+    let pointer = target.pointer_type();
+    let functions = [1, 2].map(|arity| {
+        let mut signature = Signature::new(target.default_call_conv);
+        signature.params.push(AbiParam::new(pointer));
+        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
+        signature.returns.push(AbiParam::new(types::F64));
+        builder.import_signature(signature)
+    });
+    let mut signature = Signature::new(target.default_call_conv);
+    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
+    let elimination = builder.import_signature(signature);
+    let asking = [3, 4].map(|arguments| {
+        let mut signature = Signature::new(target.default_call_conv);
+        signature.params.extend(std::iter::repeat_n(AbiParam::new(pointer), arguments));
+        signature.returns.push(AbiParam::new(types::F64));
+        builder.import_signature(signature)
+    });
+    (functions, elimination, asking)
 }
 
 /// Calls a function of the table.

@@ -88,5 +88,6 @@ mod teach;
 mod terminal;
 mod transcripts;
 mod undetermined;
+mod upcalls;
 mod watching;
 mod words;

@@ -6,8 +6,7 @@
 //! - that of BuildingsPy: one file `Library_Examples_Model.txt` a model.
 
 use crate::cli::disk::list_named;
-use crate::flatten::Library;
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -25,6 +24,9 @@ pub(super) struct Case {
     pub signals: Option<PathBuf>,
 }
 
+/// The names of the classes in a class; those at the top level in that without a name.
+pub(super) type Classes<'a> = &'a dyn Fn(&Name) -> Vec<Ident>;
+
 impl Case {
     /// Whether the reference has samples of the trajectories, as BuildingsPy writes them.
     pub(super) fn is_sampled(&self) -> bool {
@@ -32,15 +34,18 @@ impl Case {
     }
 }
 
-/// All cases below a folder whose models' names contain a text, by name. The library has the models
-/// that files with underscores are named after.
-pub(super) fn find(root: &Path, filter: Option<&str>, library: &Library) -> io::Result<Vec<Case>> {
+/// All cases below a folder whose models' names contain a text, by name. The classes are those
+/// that files with underscores may be named after.
+pub(super) fn find(root: &Path, filter: Option<&str>, classes: Classes) -> io::Result<Vec<Case>> {
     let mut cases = Vec::new();
     collect(root, &mut Vec::new(), &mut cases)?;
     for name in list_named(root)? {
         let Some(flat) = name.strip_suffix(".txt") else { continue };
-        if let Some(class) = class_of(library, flat) {
-            let (model, reference) = (class.to_string(), Some(root.join(&name)));
+        let path = root.join(&name);
+        if let Some(class) = class_of(classes, flat)
+            && holds_samples(&path)?
+        {
+            let (model, reference) = (class.to_string(), Some(path));
             cases.push(Case { model, reference, signals: None });
         }
     }
@@ -49,10 +54,16 @@ pub(super) fn find(root: &Path, filter: Option<&str>, library: &Library) -> io::
     Ok(cases)
 }
 
+/// Whether a file of BuildingsPy has trajectories; that of a model which is only exported has none.
+fn holds_samples(path: &Path) -> io::Result<bool> {
+    let text = std::fs::read(path)?;
+    Ok(text.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"time=[")))
+}
+
 /// The class whose name has underscores for points.
-fn class_of(library: &Library, flat: &str) -> Option<Name> {
-    let mut open: Vec<(Name, &str)> =
-        library.roots().map(|root| (Name::from(root), flat)).collect();
+fn class_of(classes: Classes, flat: &str) -> Option<Name> {
+    let roots = classes(&Name::new([])).into_iter();
+    let mut open: Vec<(Name, &str)> = roots.map(|root| (Name::from(root), flat)).collect();
     while let Some((name, rest)) = open.pop() {
         let Some(rest) = name.last().and_then(|last| rest.strip_prefix(last.as_str())) else {
             continue;
@@ -61,7 +72,7 @@ fn class_of(library: &Library, flat: &str) -> Option<Name> {
             return Some(name);
         }
         if let Some(rest) = rest.strip_prefix('_') {
-            open.extend(library.children(&name).into_iter().map(|child| (name.child(child), rest)));
+            open.extend(classes(&name).into_iter().map(|child| (name.child(child), rest)));
         }
     }
     None
@@ -97,6 +108,28 @@ mod tests {
     use std::fs;
 
     #[test]
+    fn files_with_trajectories_are_models() {
+        let root = tempfile::tempdir().unwrap();
+        let classes = |name: &Name| {
+            let inside: &[&str] = match name.to_string().as_str() {
+                "" => &["A"],
+                "A" => &["B", "B_C"],
+                "A.B_C" => &["D", "E"],
+                _ => &[],
+            };
+            inside.iter().map(|name| Ident::new(name)).collect()
+        };
+        let write = |name: &str, text: &str| fs::write(root.path().join(name), text).unwrap();
+        write("A_B_C_D.txt", "x=[1, 2]\ntime=[0, 1]\n");
+        write("A_B_C_E.txt", "statistics-fmu-dependencies=\n{\n}\n");
+        write("A_B_C_F.txt", "time=[0, 1]\n");
+        let found = find(root.path(), None, &classes).unwrap();
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].model, "A.B_C.D");
+        assert!(found[0].is_sampled());
+    }
+
+    #[test]
     fn folders_are_models() {
         let root = tempfile::tempdir().unwrap();
         let folder = root.path().join("Lib/Examples/Decay");
@@ -105,13 +138,13 @@ mod tests {
         fs::write(folder.join("Decay.csv"), "time,x\n0,1\n").unwrap();
         fs::write(folder.join(".git/Hidden/Hidden.csv"), "").unwrap();
         fs::write(root.path().join("Lib/Examples/Growth/comparisonSignals.txt"), "x\n").unwrap();
-        let library = Library::new();
-        let found = find(root.path(), None, &library).unwrap();
+        let none = |_: &Name| Vec::new();
+        let found = find(root.path(), None, &none).unwrap();
         let models: Vec<&str> = found.iter().map(|case| &*case.model).collect();
         assert_eq!(models, ["Lib.Examples.Decay", "Lib.Examples.Growth"]);
         assert_eq!(found[0].reference, Some(folder.join("Decay.csv")));
         assert_eq!((&found[0].signals, &found[1].reference), (&None, &None));
-        assert_eq!(find(root.path(), Some("Grow"), &library).unwrap(), found[1..]);
-        assert!(find(&root.path().join("nowhere"), None, &library).is_err());
+        assert_eq!(find(root.path(), Some("Grow"), &none).unwrap(), found[1..]);
+        assert!(find(&root.path().join("nowhere"), None, &none).is_err());
     }
 }

@@ -70,7 +70,12 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
         Err(code) => return code,
     };
     let (references, filter) = (&arguments.references, arguments.filter.as_deref());
-    let cases = match cases::find(references, filter, session.library()) {
+    let library = session.library();
+    let classes = |name: &Name| match name.first() {
+        Some(_) => library.children(name),
+        None => library.roots().collect(),
+    };
+    let cases = match cases::find(references, filter, &classes) {
         Ok(cases) => cases,
         Err(error) => {
             let folder = arguments.references.display();
@@ -123,9 +128,12 @@ fn run(session: &mut Session, cases: &[Case], arguments: &VerifyArgs, global: &G
                 None => (None, Vec::new()),
             };
             let is_sampled = case.is_sampled();
-            let reference = table
-                .as_ref()
-                .map(|table| Reference { table, signals: &signals, tolerance, is_sampled });
+            let reference = table.as_ref().map(|table| Reference {
+                table,
+                signals: &signals,
+                tolerance,
+                is_sampled,
+            });
             let enter = &mut |stage| watch.enter(stage);
             let class = Name::parse(&case.model);
             let verified = verification::verify(&library, &class, reference, &watch.cancel, enter);
