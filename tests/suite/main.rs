@@ -18,6 +18,7 @@ mod conformance;
 mod diagnostics;
 mod digits;
 mod displacement;
+mod empty_ports;
 mod every_element;
 mod external;
 mod faults;
