@@ -31,7 +31,7 @@ fn parts_of_ports_without_elements_have_no_equations() {
     };
     let done = run(MODEL);
     assert!(done.status.success(), "{done:?}");
-    // With elements the sizes must match.
+    // With elements these are equations, of other sizes and too many.
     let wrong = MODEL.replace("n = 0", "n = 1").replace("fill(v, n)", "fill(1, n)");
     assert!(!run(&wrong).status.success());
 }
