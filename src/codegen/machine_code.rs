@@ -11,8 +11,11 @@
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
 use super::instruction::Register;
+use super::memory::Memory;
 use super::routines::without_routines;
 use super::translation::translate;
+use super::upcalls::{Upcalls, Workspaces};
+use crate::bytecode::Functions;
 use crate::codegen::tape::Tape;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
@@ -48,18 +51,20 @@ impl MachineCode {
         &self,
         tape: &Tape,
         outputs: &[Register],
-        registers: &[f64],
+        memory: &mut Memory,
         out: &mut [f64],
     ) -> bool {
         if let Some(function) = self.function.get() {
             // Who asks for fewer values than there are gets them from the tape.
             let function = function.as_ref().filter(|function| function.n_outputs <= out.len());
-            return function.is_some_and(|function| function.call(registers, out));
+            return function.is_some_and(|function| function.call(memory, out));
         }
         if self.runs.fetch_add(1, Ordering::Relaxed) == OFTEN {
             let interpreted = INTERPRETED.load(Ordering::Relaxed);
-            self.function
-                .get_or_init(|| if interpreted { None } else { Function::new(tape, outputs) });
+            let functions = memory.calls.functions();
+            let translated =
+                || if interpreted { None } else { Function::new(tape, outputs, functions) };
+            self.function.get_or_init(translated);
         }
         false
     }
@@ -77,8 +82,9 @@ impl std::fmt::Debug for MachineCode {
     }
 }
 
-/// What the machine code is called as: registers, outputs; zero if all values are finite.
-type Entry = unsafe extern "C" fn(*const f64, *mut f64) -> f64;
+/// What the machine code is called as: registers, outputs, workspaces of linear systems and
+/// functions; zero if all values are finite.
+type Entry = unsafe extern "C" fn(*const f64, *mut f64, *mut Workspaces) -> f64;
 
 /// A function in memory of its own.
 pub(super) struct Function {
@@ -86,25 +92,28 @@ pub(super) struct Function {
     /// One more than the last register read.
     n_registers: usize,
     n_outputs: usize,
+    /// The machine code has addresses in it.
+    _upcalls: Upcalls,
     module: Mutex<Option<JITModule>>,
 }
 
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
-    fn new(tape: &Tape, outputs: &[Register]) -> Option<Function> {
-        let length = without_routines(tape, LONGEST)?.len();
-        if length <= LONG {
-            Function::translated(tape, outputs, "speed", "backtracking")
-        } else {
+    fn new(tape: &Tape, outputs: &[Register], functions: &Functions) -> Option<Function> {
+        let length =
+            without_routines(tape, LONGEST)?.len() + Upcalls::of(tape, functions)?.length();
+        let code = (tape, outputs, functions);
+        match length {
+            0..=LONG => Function::translated(code, "speed", "backtracking"),
             // Better code would take too long.
-            Function::translated(tape, outputs, "none", "single_pass")
+            _ if length <= LONGEST => Function::translated(code, "none", "single_pass"),
+            _ => None,
         }
     }
 
     /// Translates with options of Cranelift.
     fn translated(
-        tape: &Tape,
-        outputs: &[Register],
+        (tape, outputs, functions): (&Tape, &[Register], &Functions),
         opt_level: &str,
         regalloc_algorithm: &str,
     ) -> Option<Function> {
@@ -119,7 +128,9 @@ impl Function {
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
         let instructions = without_routines(tape, LONGEST)?;
-        translate((tape, outputs), &instructions, module.target_config(), &mut context)?;
+        let upcalls = Upcalls::of(tape, functions)?;
+        let code = (tape, outputs, &upcalls);
+        translate(code, &instructions, module.target_config(), &mut context)?;
         let signature = &context.func.signature;
         let id = module.declare_function("tape", Linkage::Export, signature).ok()?;
         module.define_function(id, &mut context).ok()?;
@@ -133,16 +144,20 @@ impl Function {
             entry,
             n_registers: registers_read(tape, outputs),
             n_outputs: outputs.len(),
+            _upcalls: upcalls,
             module: Mutex::new(Some(module)),
         })
     }
 
     /// Whether all values are finite.
-    fn call(&self, registers: &[f64], out: &mut [f64]) -> bool {
+    fn call(&self, memory: &mut Memory, out: &mut [f64]) -> bool {
+        let (registers, mut workspaces) = Workspaces::of(memory);
         assert!(self.n_registers <= registers.len(), "registers are those the tape was made for");
         assert!(self.n_outputs <= out.len(), "there is room for every output");
-        // SAFETY: the code reads registers below `n_registers` and writes outputs below `n_outputs`.
-        let check = unsafe { (self.entry)(registers.as_ptr(), out.as_mut_ptr()) };
+        // SAFETY: the code reads registers below `n_registers`, writes outputs below `n_outputs`, and
+        // hands the workspaces to its upcalls alone.
+        let check =
+            unsafe { (self.entry)(registers.as_ptr(), out.as_mut_ptr(), &raw mut workspaces) };
         check == 0.0
     }
 }
@@ -167,7 +182,8 @@ fn registers_read(tape: &Tape, outputs: &[Register]) -> usize {
         let entries = solve.entries.iter().flatten().map(|(_, register)| *register);
         last = entries.chain(solve.right.iter().copied()).fold(last, Register::max);
     }
-    outputs.iter().copied().fold(last, Register::max) as usize + 1
+    let arguments = tape.calls.iter().flat_map(|call| call.arguments.iter().copied());
+    arguments.chain(outputs.iter().copied()).fold(last, Register::max) as usize + 1
 }
 
 #[cfg(test)]
@@ -202,7 +218,7 @@ mod tests {
         known.extend([0.0, 1.5, -2.0].map(|value| pool.constant(value)));
         for (kind, operands) in steps {
             let [a, b, c, d] = operands.map(|at| known[at as usize % known.len()]);
-            let new = match kind % 19 {
+            let new = match kind % 20 {
                 0 => pool.add(a, b),
                 1 => pool.sub(a, b),
                 2 => pool.mul(a, b),
@@ -226,6 +242,17 @@ mod tests {
                     let matrix = pool.list(&[a, b, c, d, a, b, c, d, a]);
                     let right = pool.list(&[b, c, d]);
                     pool.solution(matrix, right, u32::from(operands[0] % 3))
+                }
+                18 => {
+                    let zero = pool.constant(0.0);
+                    let mut matrix = vec![zero; 64];
+                    for (row, at) in (0..8).zip([a, b, c, d, c, b, a, d]) {
+                        matrix[9 * row] = at;
+                        matrix[8 * row + (row + 3) % 8] = d;
+                    }
+                    let (matrix, right) =
+                        (pool.list(&matrix), pool.list(&[b, c, d, a, a, b, c, d]));
+                    pool.solution(matrix, right, u32::from(operands[0] % 8))
                 }
                 _ => {
                     let (matrix, right) = (pool.list(&[a, b, c, d]), pool.list(&[b, c]));
@@ -259,17 +286,19 @@ mod tests {
             let mut pool = Pool::new();
             let outputs = expressions(&mut pool, &steps);
             let (code, mut memory) = compiled(&pool, &outputs);
-            let best = Function::translated(&code.tape, &code.outputs, "speed", "backtracking");
-            let quick = Function::translated(&code.tape, &code.outputs, "none", "single_pass");
+            let functions = Functions::default();
+            let code_of = (&code.tape, &*code.outputs, &functions);
+            let best = Function::translated(code_of, "speed", "backtracking");
+            let quick = Function::translated(code_of, "none", "single_pass");
             let functions = [best, quick].map(|f| f.expect("all of it can be translated"));
             let mut out = vec![f64::NAN; outputs.len()];
             for (values, function) in values.iter().flat_map(|v| functions.iter().map(move |f| (v, f))) {
                 memory[..VARIABLES].copy_from_slice(values);
-                let done = function.call(&memory, &mut out);
+                let done = function.call(&mut memory, &mut out);
                 let succeeds = code.tape.run(&mut memory).is_ok();
                 // Machine code may leave to the tape what is nearly singular, but nothing else.
                 prop_assert!(!done || succeeds);
-                let is_system = |(kind, _): &Step| kind % 19 >= 16;
+                let is_system = |(kind, _): &Step| kind % 20 >= 16;
                 prop_assert!(done || !succeeds || steps.iter().any(is_system));
                 for (out, register) in out.iter().zip(&code.outputs).filter(|_| done) {
                     let expected = memory[*register as usize];
@@ -295,12 +324,14 @@ mod tests {
         }
         let outputs = [value];
         let (code, mut memory) = compiled(&pool, &outputs);
-        let function = Function::translated(&code.tape, &code.outputs, "speed", "backtracking");
+        let functions = Functions::default();
+        let code_of = (&code.tape, &*code.outputs, &functions);
+        let function = Function::translated(code_of, "speed", "backtracking");
         let function = function.expect("all of it can be translated");
         for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
             memory[0] = x;
             let mut out = [f64::NAN];
-            assert!(function.call(&memory, &mut out));
+            assert!(function.call(&mut memory, &mut out));
             code.tape.run(&mut memory).expect("all values are finite");
             assert_eq!(out[0].to_bits(), memory[code.outputs[0] as usize].to_bits());
         }
@@ -315,12 +346,12 @@ mod tests {
         let mut out = [0.0];
         memory[0] = 2.0;
         let first = (0..2 * OFTEN)
-            .position(|_| code.machine_code.run(&code.tape, &code.outputs, &memory, &mut out));
+            .position(|_| code.machine_code.run(&code.tape, &code.outputs, &mut memory, &mut out));
         assert_eq!(first, Some(OFTEN as usize + 1));
         assert_eq!(out[0].to_bits(), 2f64.ln().to_bits());
         memory[0] = -1.0;
         assert!(
-            !code.machine_code.run(&code.tape, &code.outputs, &memory, &mut out),
+            !code.machine_code.run(&code.tape, &code.outputs, &mut memory, &mut out),
             "the tape tells what is wrong"
         );
     }

@@ -73,6 +73,11 @@ impl Calls {
         self.next_instant();
     }
 
+    /// The functions that are called.
+    pub(super) fn functions(&self) -> &Arc<Functions> {
+        &self.functions
+    }
+
     /// What the external function said that failed last.
     pub(crate) fn message(&self) -> &str {
         self.machine.message()

@@ -35,6 +35,7 @@ pub(crate) mod sequence;
 pub(crate) mod tape;
 pub(crate) mod tape_builder;
 mod translation;
+mod upcalls;
 
 pub use machine_code::interpret;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};

@@ -6,11 +6,16 @@
 
 use super::instruction::{Instruction, LinearSolve, Register};
 use super::tape::Tape;
+use super::upcalls::Upcalls;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The registers that are written in a branch and read outside of it, or written in several. The
-/// code is that of a tape without calls, its routines where they are performed.
-pub(super) fn shared_by_branches(code: &[Instruction], tape: &Tape) -> FxHashSet<Register> {
+/// code is that of a tape, its routines where they are performed.
+pub(super) fn shared_by_branches(
+    code: &[Instruction],
+    tape: &Tape,
+    upcalls: &Upcalls,
+) -> FxHashSet<Register> {
     let mut regions = Regions::default();
     for (at, instruction) in code.iter().enumerate() {
         regions.reach(at);
@@ -22,7 +27,14 @@ pub(super) fn shared_by_branches(code: &[Instruction], tape: &Tape) -> FxHashSet
                 regions.begin(target as usize);
             }
             Instruction::Solve { solve } => regions.solve(&tape.solves[solve as usize]),
+            Instruction::Call { call } => {
+                let arguments = tape.calls[call as usize].arguments.iter();
+                arguments.for_each(|register| regions.read(*register));
+            }
             _ => instruction.result().into_iter().for_each(|d| regions.write(d)),
+        }
+        if let Some((d, results)) = upcalls.row(instruction, tape) {
+            (d..).take(results).for_each(|d| regions.write(d));
         }
     }
     regions.shared
@@ -79,6 +91,5 @@ impl Regions {
         }
         let entries = self.matrices.get(&solve.system).cloned().unwrap_or_default();
         entries.iter().chain(&solve.right).for_each(|register| self.read(*register));
-        (solve.d..).take(solve.right.len()).for_each(|d| self.write(d));
     }
 }

@@ -3,20 +3,21 @@
 //! Results stay in registers of the machine; only outputs are written to memory. Where the tape
 //! fails at a value that is not finite, the code goes on and adds up `0 · value`: the sum, which it
 //! returns, is zero if all were finite. Calls of functions and linear systems that need a workspace
-//! are not translated.
+//! are [upcalls](super::upcalls), which are only made while all values are finite.
 
 use super::instruction::{Instruction, LinearSolve, Register};
 use super::linear_system::{MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::regions::shared_by_branches;
 use super::tape::Tape;
+use super::upcalls::{self, Upcalls};
 use crate::elementary;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
-    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlotData, StackSlotKind,
-    Type, Value, types,
+    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlot, StackSlotData,
+    StackSlotKind, Type, Value, types,
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
@@ -29,31 +30,28 @@ const CHECKS: usize = 4;
 /// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot
 /// be translated.
 pub(super) fn translate(
-    (tape, outputs): (&Tape, &[Register]),
+    (tape, outputs, upcalls): (&Tape, &[Register], &Upcalls),
     instructions: &[Instruction],
     target: TargetFrontendConfig,
     context: &mut Context,
 ) -> Option<()> {
     let pointer = target.pointer_type();
     let signature = &mut context.func.signature;
-    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
+    signature.params.extend([AbiParam::new(pointer); 3]);
     signature.returns.push(AbiParam::new(types::F64));
     let mut workspace = FunctionBuilderContext::new();
     let mut builder = FunctionBuilder::new(&mut context.func, &mut workspace);
     let start = builder.create_block();
     builder.append_block_params_for_function_params(start);
     builder.switch_to_block(start);
-    let (memory, out) = (builder.block_params(start)[0], builder.block_params(start)[1]);
-    let functions = [1, 2].map(|arity| {
-        let mut signature = Signature::new(target.default_call_conv);
-        signature.params.push(AbiParam::new(pointer));
-        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
-        signature.returns.push(AbiParam::new(types::F64));
-        builder.import_signature(signature)
+    let parameters = builder.block_params(start);
+    let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
+    let (functions, elimination, asking) = signatures(&mut builder, target);
+    let array = (upcalls.room() > 0).then(|| {
+        let size = (8 * upcalls.room()) as u32;
+        let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
+        builder.create_sized_stack_slot(slot)
     });
-    let mut signature = Signature::new(target.default_call_conv);
-    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
-    let elimination = builder.import_signature(signature);
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
     let zero = builder.ins().f64const(0.0);
     checks.iter().for_each(|check| builder.def_var(*check, zero));
@@ -61,10 +59,14 @@ pub(super) fn translate(
         builder,
         tape,
         outputs,
+        upcalls,
         instructions,
         pointer,
         memory,
         out,
+        workspaces,
+        array,
+        failed: None,
         values: FxHashMap::default(),
         chosen: FxHashMap::default(),
         blocks: FxHashMap::default(),
@@ -72,6 +74,7 @@ pub(super) fn translate(
         places: FxHashMap::default(),
         functions,
         elimination,
+        asking,
         checks,
         next_check: 0,
     };
@@ -83,6 +86,31 @@ pub(super) fn translate(
     translation.enter(instructions.len());
     translation.finish(target);
     Some(())
+}
+
+/// The signatures of functions with one and two arguments, of [`small_system`], and of the upcalls.
+fn signatures(
+    builder: &mut FunctionBuilder,
+    target: TargetFrontendConfig,
+) -> ([SigRef; 2], SigRef, [SigRef; 2]) {
+    let pointer = target.pointer_type();
+    let functions = [1, 2].map(|arity| {
+        let mut signature = Signature::new(target.default_call_conv);
+        signature.params.push(AbiParam::new(pointer));
+        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
+        signature.returns.push(AbiParam::new(types::F64));
+        builder.import_signature(signature)
+    });
+    let mut signature = Signature::new(target.default_call_conv);
+    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
+    let elimination = builder.import_signature(signature);
+    let asking = [3, 4].map(|arguments| {
+        let mut signature = Signature::new(target.default_call_conv);
+        signature.params.extend(std::iter::repeat_n(AbiParam::new(pointer), arguments));
+        signature.returns.push(AbiParam::new(types::F64));
+        builder.import_signature(signature)
+    });
+    (functions, elimination, asking)
 }
 
 /// Calls a function of the table.
@@ -113,11 +141,17 @@ struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     tape: &'a Tape,
     outputs: &'a [Register],
+    upcalls: &'a Upcalls,
     /// Those of the tape, routines where they are performed.
     instructions: &'a [Instruction],
     pointer: Type,
     memory: Value,
     out: Value,
+    workspaces: Value,
+    /// Operands and results of upcalls.
+    array: Option<StackSlot>,
+    /// Returns what is not a number.
+    failed: Option<Block>,
     /// Registers that are written once, before they are read.
     values: FxHashMap<Register, Value>,
     /// Registers that a branch gives a value and that are read outside of it.
@@ -132,6 +166,8 @@ struct Translation<'a> {
     functions: [SigRef; 2],
     /// The signature of [`small_system`].
     elimination: SigRef,
+    /// The signatures of the upcalls: of linear systems, of functions.
+    asking: [SigRef; 2],
     checks: [Variable; CHECKS],
     next_check: usize,
 }
@@ -149,7 +185,7 @@ impl Translation<'_> {
             }
         }
         let mut shared: Vec<Register> =
-            shared_by_branches(self.instructions, self.tape).into_iter().collect();
+            shared_by_branches(self.instructions, self.tape, self.upcalls).into_iter().collect();
         shared.sort_unstable();
         shared.into_iter().for_each(|register| self.choose(register));
         for target in targets {
@@ -286,16 +322,20 @@ impl Translation<'_> {
             }
             Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
             Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
-            Instruction::Call { .. }
-            | Instruction::Given { .. }
-            | Instruction::Perform { .. }
-            | Instruction::Return { .. } => {
-                return None;
+            Instruction::Perform { .. } | Instruction::Return { .. } => return None,
+            Instruction::Call { call } => self.ask_for_call(call),
+            Instruction::Given { a, .. } => {
+                let a = self.get(a);
+                let is_given = self.builder.ins().fcmp(FloatCC::Equal, a, a);
+                self.go_on_if(is_given);
             }
-            Instruction::Solve { solve } => {
-                let tape = self.tape;
-                self.solve(&tape.solves[solve as usize])?;
-            }
+            Instruction::Solve { solve } => match self.upcalls.solve(solve) {
+                Some(_) => self.ask_for_solution(solve),
+                None => {
+                    let tape = self.tape;
+                    self.solve(&tape.solves[solve as usize])?;
+                }
+            },
             Instruction::JumpUnless { a, target } => {
                 let holds = self.is_true(a);
                 let next = self.builder.create_block();
@@ -430,6 +470,81 @@ impl Translation<'_> {
         self.builder.ins().fmul(difference, inverse)
     }
 
+    /// A linear system that needs a workspace.
+    fn ask_for_solution(&mut self, number: u32) {
+        let upcalls = self.upcalls;
+        let Some((solve, operands)) = upcalls.solve(number) else { return };
+        let entry = (upcalls::solve as *const () as usize, self.asking[0]);
+        let subject = std::ptr::from_ref(solve) as usize;
+        let rest = (solve.right.len(), solve.d, self.tape.solves[number as usize].d);
+        self.ask(entry, &[subject], operands, rest);
+    }
+
+    fn ask_for_call(&mut self, number: u32) {
+        let (upcalls, tape) = (self.upcalls, self.tape);
+        let (call, results) = upcalls.call(number);
+        let known = &tape.calls[number as usize];
+        let entry = (upcalls::call as *const () as usize, self.asking[1]);
+        let subject = std::ptr::from_ref(call) as usize;
+        self.ask(entry, &[subject, *results], &known.arguments, (*results, call.d, known.d));
+    }
+
+    /// An upcall with the operands in these registers; so many results at a place of the array go to
+    /// a row of registers.
+    fn ask(
+        &mut self,
+        (entry, signature): (usize, SigRef),
+        arguments: &[usize],
+        operands: &[Register],
+        (results, at, d): (usize, Register, Register),
+    ) {
+        let Some(array) = self.array else { return };
+        let check = self.check();
+        let zero = self.builder.ins().f64const(0.0);
+        let is_good = self.builder.ins().fcmp(FloatCC::Equal, check, zero);
+        self.go_on_if(is_good);
+        for (place, register) in (0..).zip(operands) {
+            let value = self.get(*register);
+            self.builder.ins().stack_store(self.pointer, value, array, 8 * place);
+        }
+        let array_address = self.builder.ins().stack_addr(self.pointer, array, 0);
+        let callee = self.address(entry);
+        let mut given = vec![self.workspaces, self.address(arguments[0]), array_address];
+        for argument in &arguments[1..] {
+            given.push(self.address(*argument));
+        }
+        let call = self.builder.ins().call_indirect(signature, callee, &given);
+        let status = self.builder.inst_results(call)[0];
+        let has_results = self.builder.ins().fcmp(FloatCC::Equal, status, zero);
+        self.go_on_if(has_results);
+        for (place, register) in (at..).zip(d..).take(results) {
+            let place = 8 * place as i32;
+            let value = self.builder.ins().stack_load(self.pointer, types::F64, array, place);
+            self.set(register, value);
+        }
+    }
+
+    /// Returns what is not a number unless a condition holds.
+    fn go_on_if(&mut self, condition: Value) {
+        let next = self.builder.create_block();
+        let failed = match self.failed {
+            Some(block) => block,
+            None => *self.failed.insert(self.builder.create_block()),
+        };
+        self.builder.ins().brif(condition, next, &[], failed, &[]);
+        self.builder.switch_to_block(next);
+    }
+
+    /// The sum of all checks so far.
+    fn check(&mut self) -> Value {
+        let sums = self.checks.map(|check| self.builder.use_var(check));
+        let mut total = sums[0];
+        for sum in &sums[1..] {
+            total = self.builder.ins().fadd(total, *sum);
+        }
+        total
+    }
+
     /// Writes the outputs that are not written yet, and returns the check.
     fn finish(mut self, target: TargetFrontendConfig) {
         for (place, register) in self.outputs.iter().enumerate() {
@@ -443,12 +558,13 @@ impl Translation<'_> {
                 );
             }
         }
-        let sums = self.checks.map(|check| self.builder.use_var(check));
-        let mut total = sums[0];
-        for sum in &sums[1..] {
-            total = self.builder.ins().fadd(total, *sum);
-        }
+        let total = self.check();
         self.builder.ins().return_(&[total]);
+        if let Some(failed) = self.failed {
+            self.builder.switch_to_block(failed);
+            let nothing = self.builder.ins().f64const(f64::NAN);
+            self.builder.ins().return_(&[nothing]);
+        }
         self.builder.seal_all_blocks();
         self.builder.finalize(target);
     }

@@ -33,8 +33,12 @@ impl Instantiation<'_> {
         let mut found = Vec::new();
         self.collect_variables(node, &mut found, errors);
         for at in found {
-            let mut variable = self.classes.tree.variables[at].0.clone();
-            variable.structural = self.values.structural.contains(&at);
+            // Nobody looks at the values in the tree, which may be long expressions.
+            let known = &mut self.classes.tree.variables[at].0;
+            let binding = known.binding.take();
+            let attributes = std::mem::take(&mut known.attributes);
+            let structural = self.values.structural.contains(&at);
+            let variable = Variable { binding, attributes, structural, ..known.clone() };
             model.variables.insert(variable.name.clone(), variable);
         }
     }

@@ -317,6 +317,10 @@ impl<'a> Builder<'a> {
             let right = lowering.number_of_text(b, span)?;
             return Ok(vec![Equation::new(left, right, span)]);
         }
+        let is_empty = |side: &Lowered<Expr>| side.shape().is_some_and(|shape| shape.len() == 0);
+        if (is_part_of_nothing(left) || is_part_of_nothing(right)) && is_empty(&a) && is_empty(&b) {
+            return Ok(Vec::new());
+        }
         let pairs = pairs(&a, &b, span)?;
         let of_record = |e: &Expression| matches!(e.kind, ExpressionKind::Field { .. });
         let is_record = matches!(a, Lowered::Record(_)) || of_record(left) || of_record(right);
@@ -569,6 +573,13 @@ fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equatio
     b.append_scalars(&mut right);
     let equation = |(left, right)| Equation::new(left, right, span);
     Ok(left.into_iter().zip(right).map(equation).collect())
+}
+
+/// Whether this is what a component of an array of components without elements is written as, such
+/// as `ports.C` of `Port ports[0]`: the sizes of its parts are not known, and nothing depends on
+/// them.
+fn is_part_of_nothing(e: &Expression) -> bool {
+    matches!(&e.kind, ExpressionKind::Array(elements) if elements.is_empty())
 }
 
 /// Whose the equations at these positions are.

@@ -54,14 +54,49 @@ pub fn compare(
     signals: &[String],
     tolerance: f64,
 ) -> Result<Vec<Compared>, Fault> {
+    check(reference, tolerance)?;
+    let judge = |tube: &Tube, values: &[f64], _: &[f64]| {
+        let worst = tube.worst_deviation(&result.time, values)?;
+        Some((worst, tube.distance(&worst)))
+    };
+    let judged = signals.iter().map(|signal| judged(result, reference, signal, tolerance, &judge));
+    judged.collect()
+}
+
+/// Compares signals of a result with a reference that has been sampled at instants of its own
+/// (see [`super::read_sampled`]). It need not show what happens between them, so the samples are
+/// compared with the result: each must lie in the tube around it, whose sides are those of the tube
+/// around the reference.
+///
+/// # Errors
+/// Those of [`compare`].
+pub fn compare_samples(
+    result: &ResultTable,
+    reference: &ResultTable,
+    signals: &[String],
+    tolerance: f64,
+) -> Result<Vec<Compared>, Fault> {
+    check(reference, tolerance)?;
+    let judge = |tube: &Tube, values: &[f64], samples: &[f64]| {
+        tube.around_other(&result.time, values).worst_sample(&reference.time, samples)
+    };
+    let judged = signals.iter().map(|signal| judged(result, reference, signal, tolerance, &judge));
+    judged.collect()
+}
+
+fn check(reference: &ResultTable, tolerance: f64) -> Result<(), Fault> {
     if !(tolerance > 0.0 && tolerance < 1.0) {
         bail!(crate::registry::BAD_OPTION, "the tolerance is {tolerance}, outside ]0, 1[");
     }
     if reference.time.is_empty() {
         bail!(BAD_REFERENCE, "the reference has no time points");
     }
-    signals.iter().map(|signal| compare_signal(result, reference, signal, tolerance)).collect()
+    Ok(())
 }
+
+/// The worst deviation and its distance, from the tube around the reference, the values of the
+/// result and those of the reference.
+type Judge<'a> = &'a dyn Fn(&Tube, &[f64], &[f64]) -> Option<(Deviation, f64)>;
 
 /// The signals of a reference that are to be compared: the lines of a list, without `time`; all of
 /// the reference without a list.
@@ -75,11 +110,12 @@ pub fn signals_to_compare(reference: &ResultTable, list: Option<&str>) -> Vec<St
     })
 }
 
-fn compare_signal(
+fn judged(
     result: &ResultTable,
     reference: &ResultTable,
     signal: &str,
     tolerance: f64,
+    judge: Judge,
 ) -> Result<Compared, Fault> {
     let Some(expected) = reference.column_like(signal) else {
         bail!(BAD_REFERENCE, "the reference has no signal `{signal}`")
@@ -87,12 +123,20 @@ fn compare_signal(
     let tube = Tube::around(&reference.time, &expected, tolerance);
     let agreement = match result.column_like(signal) {
         None => Agreement::Missing,
-        Some(values) => agreement(&tube, reference, &result.time, &values),
+        Some(values) => {
+            let judge = || judge(&tube, &values, &expected);
+            agreement(&tube, reference, &result.time, judge)
+        }
     };
     Ok(Compared { signal: signal.to_owned(), agreement })
 }
 
-fn agreement(tube: &Tube, reference: &ResultTable, time: &[f64], values: &[f64]) -> Agreement {
+fn agreement(
+    tube: &Tube,
+    reference: &ResultTable,
+    time: &[f64],
+    judge: impl Fn() -> Option<(Deviation, f64)>,
+) -> Agreement {
     let covered = time.first().copied().zip(time.last().copied());
     let (start, stop) = (reference.time[0], reference.time[reference.time.len() - 1]);
     let is_covering = covered.is_some_and(|(first, last)| {
@@ -101,9 +145,9 @@ fn agreement(tube: &Tube, reference: &ResultTable, time: &[f64], values: &[f64])
     if !is_covering {
         return Agreement::Incomplete { covered };
     }
-    match tube.worst_deviation(time, values) {
+    match judge() {
         None => Agreement::Inside,
-        Some(worst) => Agreement::Outside { worst, distance: tube.distance(&worst) },
+        Some((worst, distance)) => Agreement::Outside { worst, distance },
     }
 }
 
@@ -131,6 +175,24 @@ mod tests {
         let Agreement::Outside { worst, distance } = &found[1].agreement else { panic!() };
         assert_eq!((worst.time, worst.value), (1.0, 4.1));
         assert!((distance - (0.1 - 0.004) / 0.004).abs() < 1e-9, "{distance}");
+    }
+
+    #[test]
+    fn samples_need_not_show_what_happens_between_them() {
+        let reference = table(&[0.0, 50.0, 100.0], &[("a", &[0.0, 1.0, 1.0])]);
+        let compare = |time: &[f64], values: &[f64]| {
+            let result = table(time, &[("a", values)]);
+            let found = compare_samples(&result, &reference, &["a".to_owned()], 0.002).unwrap();
+            found[0].agreement.clone()
+        };
+        let peak = compare(&[0.0, 20.0, 20.0, 50.0, 100.0], &[0.0, 0.0, 5.0, 1.0, 1.0]);
+        assert_eq!(peak, Agreement::Inside);
+        // A jump may come a little later than at the sample, but not much.
+        let steps = [0.0, 0.0, 1.0, 1.0];
+        assert_eq!(compare(&[0.0, 50.1, 50.1, 100.0], &steps), Agreement::Inside);
+        let late = compare(&[0.0, 51.0, 51.0, 100.0], &steps);
+        let Agreement::Outside { worst, .. } = late else { panic!("{late:?}") };
+        assert_eq!((worst.time, worst.value, worst.lower), (50.0, 0.0, 0.998));
     }
 
     #[test]

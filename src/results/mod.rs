@@ -9,11 +9,13 @@ mod comparison;
 mod csv;
 pub mod errors;
 mod mat;
+mod sampled;
 mod table;
 mod tube;
 
-pub use comparison::{Agreement, Compared, compare, signals_to_compare};
+pub use comparison::{Agreement, Compared, compare, compare_samples, signals_to_compare};
 pub use csv::quoted;
+pub use sampled::{between_samples, read_sampled};
 pub use table::{ResultTable, Series, Values};
 pub use tube::{Deviation, TUBE_TOLERANCE, Tube};
 

@@ -98,6 +98,23 @@ impl<'a> Tube<'a> {
             .max_by(|a, b| self.distance(a).total_cmp(&self.distance(b)))
     }
 
+    /// The tube with sides of the same lengths around another trajectory.
+    pub(super) fn around_other<'b>(&self, time: &'b [f64], values: &'b [f64]) -> Tube<'b> {
+        Tube { time, values, half_width: self.half_width, half_height: self.half_height }
+    }
+
+    /// The sample farthest outside, if one is, and how far: with the value of the trajectory at its
+    /// time, and the bounds that the sample sets.
+    pub(super) fn worst_sample(&self, time: &[f64], samples: &[f64]) -> Option<(Deviation, f64)> {
+        let outside = time.iter().zip(samples).filter_map(|(time, sample)| {
+            let found = self.deviation(*time, *sample)?;
+            let (lower, upper) = (sample - self.half_height, sample + self.half_height);
+            let deviation = Deviation { time: *time, value: self.at(*time), lower, upper };
+            Some((deviation, self.distance(&found)))
+        });
+        outside.max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
     fn deviation(&self, time: f64, value: f64) -> Option<Deviation> {
         let (lower, upper) = self.bounds(time);
         let is_inside = lower <= value && value <= upper;

@@ -17,7 +17,7 @@
 //! that decides which equations hold, and that they bring to its very limit (a friction element
 //! that just begins to slide), would depend on rounding errors and never come to rest.
 
-use super::execution::run;
+use super::execution::read;
 use super::instants::{Change, same_time};
 use super::system::System;
 use crate::sim::Failure;
@@ -106,15 +106,17 @@ impl System {
     /// Writes the crossing functions of relations and roundings; y is loaded and solved.
     pub(super) fn relation_crossings(&mut self, out: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
-        run(&program.crossings.tape, &mut self.registers)?;
+        let mut values = std::mem::take(&mut self.crossing_values);
+        values.resize(program.crossings.outputs.len(), 0.0);
+        let computed = read(&program.crossings, &mut self.registers, &mut values);
         let n = program.crossing_relations.len();
-        let (sides, rest) = program.crossings.outputs.split_at(2 * n);
+        let (sides, rest) = values.split_at(2 * n);
         let (first, second) = out.split_at_mut(n);
         let pairs = sides.chunks_exact(2).zip(&program.crossing_relations);
         for (z, (pair, at)) in first.iter_mut().zip(pairs) {
             let relation = &program.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
-            let [a, b] = [pair[0], pair[1]].map(|side| self.registers[side as usize]);
+            let (a, b) = (pair[0], pair[1]);
             let excused = self.excused[*at];
             *z = match self.held[*at] {
                 true if holds => distance(relation.operator, true, (a, b), excused),
@@ -122,9 +124,8 @@ impl System {
                 false => a - b,
             };
         }
-        for (z, register) in second.iter_mut().zip(rest) {
-            *z = self.registers[*register as usize];
-        }
-        Ok(())
+        second.copy_from_slice(rest);
+        self.crossing_values = values;
+        computed
     }
 }

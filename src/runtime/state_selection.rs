@@ -12,7 +12,7 @@
 //!
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993), section 4.
 
-use super::execution::run;
+use super::execution::read;
 use crate::codegen::code::CompiledSelection;
 use crate::codegen::memory::Memory;
 use crate::sim::{DenseLu, Factorization, Failure, Pattern};
@@ -32,6 +32,8 @@ pub(super) struct Choice {
     nominal: Vec<f64>,
     /// By rows, relative to nominal values.
     jacobian: Vec<f64>,
+    /// Those that are not always zero, as its code computes them.
+    entries: Vec<f64>,
     /// By states.
     changes: Vec<f64>,
     lu: DenseLu,
@@ -85,6 +87,7 @@ impl Choice {
             determined: Vec::new(),
             nominal,
             jacobian: vec![0.0; k * (k - s)],
+            entries: Vec::new(),
             changes: vec![0.0; s * (k - s)],
             lu: DenseLu::new(k - s),
             current: None,
@@ -142,10 +145,11 @@ impl Choice {
     }
 
     fn evaluate(&mut self, selection: &CompiledSelection, r: &mut Memory) -> Result<(), Failure> {
-        run(&selection.jacobian.tape, r)?;
+        self.entries.resize(selection.places.len(), 0.0);
+        read(&selection.jacobian, r, &mut self.entries)?;
         let k = self.nominal.len();
-        for ((row, column), register) in selection.places.iter().zip(&selection.jacobian.outputs) {
-            self.jacobian[row * k + column] = r[*register as usize] * self.nominal[*column];
+        for ((row, column), entry) in selection.places.iter().zip(&self.entries) {
+            self.jacobian[row * k + column] = entry * self.nominal[*column];
         }
         Ok(())
     }

@@ -62,6 +62,8 @@ pub struct System {
     pub(super) uncertainty: Vec<f64>,
     pub(super) is_lenient: bool,
     pub(super) excused: Vec<f64>,
+    /// What the code of the crossing functions computes.
+    pub(super) crossing_values: Vec<f64>,
     /// Relations that events keep as they are, as long as their sides differ by no more.
     pub(super) kept: Vec<(usize, f64)>,
     nominal: Vec<f64>,
@@ -127,6 +129,7 @@ impl System {
             uncertainty: vec![0.0; program.relations.len()],
             is_lenient: false,
             excused: vec![0.0; program.relations.len()],
+            crossing_values: Vec::new(),
             kept: Vec::new(),
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),

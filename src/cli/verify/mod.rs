@@ -34,7 +34,8 @@ Examples:
   gapi verify Decay.mo --references references --filter Decay --output table.json
 
 A case is a folder of the collection that holds NAME.csv with the folder's own name, and perhaps
-comparisonSignals.txt; its path below the collection is the name of the model.
+comparisonSignals.txt; its path below the collection is the name of the model. Or it is a file
+Library_Examples_Model.txt as BuildingsPy writes them, with samples of all signals.
 
 Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
 pub(in crate::cli) struct VerifyArgs {
@@ -68,7 +69,13 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
-    let cases = match cases::find(&arguments.references, arguments.filter.as_deref()) {
+    let (references, filter) = (&arguments.references, arguments.filter.as_deref());
+    let library = session.library();
+    let classes = |name: &Name| match name.first() {
+        Some(_) => library.children(name),
+        None => library.roots().collect(),
+    };
+    let cases = match cases::find(references, filter, &classes) {
         Ok(cases) => cases,
         Err(error) => {
             let folder = arguments.references.display();
@@ -120,8 +127,13 @@ fn run(session: &mut Session, cases: &[Case], arguments: &VerifyArgs, global: &G
                 Some((table, signals)) => (Some(table), signals),
                 None => (None, Vec::new()),
             };
-            let reference =
-                table.as_ref().map(|table| Reference { table, signals: &signals, tolerance });
+            let is_sampled = case.is_sampled();
+            let reference = table.as_ref().map(|table| Reference {
+                table,
+                signals: &signals,
+                tolerance,
+                is_sampled,
+            });
             let enter = &mut |stage| watch.enter(stage);
             let class = Name::parse(&case.model);
             let verified = verification::verify(&library, &class, reference, &watch.cancel, enter);
@@ -156,6 +168,13 @@ fn reference(case: &Case) -> Result<Option<(results::ResultTable, Vec<String>)>,
             Fault::new(crate::script::errors::FILE_ERROR, text)
         })
     };
+    if case.is_sampled() {
+        let table = results::read_sampled(&String::from_utf8_lossy(&read(path)?))?;
+        return Ok(table.map(|table| {
+            let signals = results::signals_to_compare(&table, None);
+            (table, signals)
+        }));
+    }
     let table = results::format_of_file(&path.to_string_lossy())?.read(&read(path)?)?;
     let list = case.signals.as_deref().map(read).transpose()?;
     let list = list.as_deref().map(String::from_utf8_lossy);

@@ -42,6 +42,8 @@ pub struct Reference<'a> {
     pub signals: &'a [String],
     /// Half sides of the tubes, relative to the reference's extent.
     pub tolerance: f64,
+    /// Whether the table has samples of trajectories, not all their points.
+    pub is_sampled: bool,
 }
 
 /// Where a model got stuck.
@@ -110,7 +112,11 @@ pub fn verify(
     let result = simulate(&program, reference.as_ref(), cancel).map_err(stuck(Stage::Simulate))?;
     let Some(reference) = reference else { return Ok(Vec::new()) };
     enter(Stage::Compare);
-    results::compare(&result, reference.table, reference.signals, reference.tolerance)
+    let compare = match reference.is_sampled {
+        true => results::compare_samples,
+        false => results::compare,
+    };
+    compare(&result, reference.table, reference.signals, reference.tolerance)
         .map_err(nowhere)
         .map_err(stuck(Stage::Compare))
 }
@@ -127,6 +133,9 @@ fn simulate(
     if let Some(reference) = reference {
         let mut times = reference.table.time.clone();
         times.dedup();
+        if reference.is_sampled {
+            times = results::between_samples(&times);
+        }
         settings.output = OutputGrid::At(times);
     }
     let (observed, names) = observed(program, reference);

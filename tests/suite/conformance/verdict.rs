@@ -129,6 +129,7 @@ pub(crate) fn run(
         table: &reference.table,
         signals: &reference.signals,
         tolerance: TUBE_TOLERANCE,
+        is_sampled: false,
     });
     let compared =
         verification::verify(library, class, reference, &progress.cancel, enter).map_err(
