@@ -317,7 +317,7 @@ impl<'a> Builder<'a> {
             let right = lowering.number_of_text(b, span)?;
             return Ok(vec![Equation::new(left, right, span)]);
         }
-        let is_empty = |side: &Lowered<Expr>| side.shape().is_some_and(|shape| shape.len() == 0);
+        let is_empty = |side: &Lowered<Expr>| side.shape().is_some_and(|shape| shape.is_empty());
         if (is_part_of_nothing(left) || is_part_of_nothing(right)) && is_empty(&a) && is_empty(&b) {
             return Ok(Vec::new());
         }
