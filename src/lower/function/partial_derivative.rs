@@ -41,7 +41,7 @@ pub(super) fn call(
         *value = builder.dae.pool.variable(variable);
     }
     let asserted = builder.dae.assertions.len();
-    let results = super::call(builder, &target, arguments, span)?;
+    let results = Target::call(builder, &target, arguments, span)?;
     let actual = |v: VarId| given.iter().find(|(_, own, _)| *own == v).map(|(.., value)| *value);
     let Dae { assertions, pool, .. } = &mut builder.dae;
     for assertion in &mut assertions[asserted..] {
