@@ -1,7 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run, run_strictly};
+use super::execution::{read, run, run_parameter, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
@@ -49,6 +49,8 @@ pub struct System {
     pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
+    /// What reads a parameter that a function has left without value fails with.
+    lacking: Option<Failure>,
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
     /// Relations that keep changing in the round at hand.
@@ -126,6 +128,7 @@ impl System {
             observed: None,
             observed_variables: None,
             switches: vec![None; program.relations.len()],
+            lacking: None,
             has_changed: vec![false; program.relations.len()],
             inconsistent: vec![false; program.relations.len()],
             is_idle: vec![false; program.relations.len()],
@@ -294,8 +297,17 @@ impl System {
         }
     }
 
+    /// Whether a value is a number; it need not be where a parameter has no value.
+    fn is_a_number(&self, value: f64) -> Result<(), Failure> {
+        match &self.lacking {
+            Some(failure) if value.is_nan() => Err(failure.clone()),
+            _ => Ok(()),
+        }
+    }
+
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
+        self.lacking = None;
         self.registers.calls.restart();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
@@ -313,7 +325,10 @@ impl System {
             };
             match set {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
-                None => run_strictly(tape, &mut self.registers)?,
+                None => match run_parameter(*parameter, tape, &mut self.registers)? {
+                    Some(failure) => self.lacking = Some(failure),
+                    None => self.is_a_number(self.registers[parameter.0 as usize])?,
+                },
             }
         }
         run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
@@ -744,6 +759,7 @@ impl DaeSystem for System {
         }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        out.iter().try_for_each(|value| self.is_a_number(*value))?;
         self.note_open(t);
         Ok(())
     }

@@ -503,6 +503,31 @@ fn components_without_value_are_faults_of_who_reads_them() {
     assert_eq!(run(&text("b")).unwrap_err(), expected);
 }
 
+/// A parameter that a function leaves without value is a fault of the equations that read it.
+#[test]
+fn parameters_without_value_are_faults_of_who_reads_them() {
+    let text = |value: &str| {
+        format!(
+            "model M record R Real a; Real b; end R; \
+             function part input Real u; output R r; algorithm r.a := u; \
+             if u > 5 then r.b := 2; end if; end part; \
+             function chosen input R r; input Boolean c; output Real y; algorithm y := r.a; \
+             if c then y := y + r.b; end if; end chosen; \
+             parameter Real u = 1; final parameter R r = part(u); Real y = {value}; end M;"
+        )
+    };
+    let run = simulated(&text("time + chosen(r, false)"), 1.0);
+    assert_eq!(run.at("y", 1.0), 2.0);
+    for reading in ["chosen(r, true)", "time + r.b", "chosen(r, time > 0.5)"] {
+        let (program, _, _, ended) = super::hybrid::attempt(&text(reading), 1.0);
+        let message = program.explain(&ended.expect_err(reading)).message.clone();
+        assert!(message.contains("a variable has no value in the function `M.part`"), "{message}");
+        let warnings: Vec<&str> = program.warnings().iter().map(|w| w.message.as_str()).collect();
+        let expected = "the parameter `r.b` has no value: the function `M.part` gives it none";
+        assert!(warnings.contains(&expected), "{warnings:?}");
+    }
+}
+
 #[test]
 fn functions_take_arrays_of_texts() {
     let functions = "function f {h} algorithm y := u; check({\"one\", \"two\"}, u); end f; \
