@@ -70,6 +70,7 @@ mod settings;
 mod simulator;
 mod sliding;
 mod statistics;
+mod step_budget;
 mod switches;
 mod system;
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
+use super::step_budget::StepBudget;
 use super::switches::Watch;
 use super::{
     DaeSystem, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind, Statistics,
@@ -128,6 +129,7 @@ impl Simulator {
                 system: &mut system,
                 nominal: self.nominals.plain(),
                 settings,
+                budget: StepBudget::new(settings),
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut statistics,
             },
@@ -254,6 +256,8 @@ impl Run<'_> {
                 break;
             }
             self.watch_progress()?;
+            let Problem { settings, budget, statistics, .. } = &mut self.problem;
+            budget.extend(settings, self.t, statistics.attempts());
         }
         self.end_slide();
         let finished = self.problem.system.finish(self.t, self.y);
@@ -271,7 +275,9 @@ impl Run<'_> {
         }
         // Steps no longer than a delay that is all but zero would come to no end.
         let (longest, way) = (system.longest_step(), self.problem.settings.stop - self.t);
-        if way > 0.0 && (longest <= 0.0 || way / longest > self.problem.settings.max_steps as f64) {
+        if way > 0.0
+            && (longest <= 0.0 || way / longest > self.problem.settings.max_total_steps as f64)
+        {
             return Err(SimErrorKind::StepBudget);
         }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;

@@ -243,6 +243,9 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
     })
 }
 
+/// A simulation that somebody waits for may take so many steps as long as it gets on.
+pub(super) const MOST_STEPS: u64 = 1_000_000_000;
+
 /// Simulates a model with the parameter values that scripts gave to it.
 ///
 /// # Errors
@@ -256,6 +259,7 @@ pub fn simulate(
     let mut settings = settings(&model.program.experiment(), options).at(call)?;
     settings.cancel = session.world.interrupt_flag();
     settings.reached = options.reached.clone();
+    settings.max_total_steps = MOST_STEPS;
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = match &options.only {
