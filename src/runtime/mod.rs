@@ -23,6 +23,7 @@ mod instants;
 mod levenberg_marquardt;
 mod linearization;
 mod log_messages;
+mod loop_effort;
 mod mode_search;
 mod modes;
 mod newton;
@@ -39,6 +40,7 @@ mod system;
 mod transport_record;
 mod transports;
 
+pub use loop_effort::LoopEffort;
 pub use modes::Treated;
 pub use simulation_log::LogMessage;
 pub use singular_systems::Undetermined;

@@ -75,8 +75,8 @@ pub struct System {
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     pub(super) initial_solvers: Vec<LoopSolver>,
-    solvers: Vec<LoopSolver>,
-    event_solvers: Vec<LoopSolver>,
+    pub(super) solvers: Vec<LoopSolver>,
+    pub(super) event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
     pub(super) choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.

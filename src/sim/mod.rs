@@ -55,6 +55,7 @@
 mod accumulation;
 mod chattering;
 mod displacement;
+mod effort;
 mod error;
 mod event;
 mod instants;
@@ -77,6 +78,7 @@ mod system;
 mod tests;
 mod trajectory;
 
+pub use effort::Effort;
 pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use instants::{AT_ONCE, same_time};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};

@@ -33,6 +33,8 @@ pub struct Settings {
     /// Steps after which it is given up in any case: it gets on where it would end within these at
     /// its pace.
     pub max_total_steps: u64,
+    /// Whether the [`Effort`](super::Effort) is counted.
+    pub counts_effort: bool,
     /// The time on the clock that the simulation may take.
     pub time_budget: Option<TimeBudget>,
     /// Looked at before every step: whoever sets it to true ends the simulation.
@@ -75,6 +77,7 @@ impl Default for Settings {
             treats_chattering: true,
             max_steps: 1_000_000,
             max_total_steps: 1_000_000,
+            counts_effort: false,
             time_budget: None,
             cancel: None,
             reached: None,

@@ -9,8 +9,8 @@ use super::sliding::{MOST_SURFACES, Sliding};
 use super::step_budget::StepBudget;
 use super::switches::Watch;
 use super::{
-    DaeSystem, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind, Statistics,
-    Trajectory,
+    DaeSystem, Effort, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind,
+    Statistics, Trajectory,
 };
 use crate::registry::Options;
 use std::cell::OnceCell;
@@ -48,6 +48,7 @@ pub struct Simulator {
     nominals: Nominals,
     y: Vec<f64>,
     observed: Vec<f64>,
+    effort: Effort,
 }
 
 /// Nominal values of y, without and with shares of surfaces.
@@ -92,6 +93,11 @@ impl Simulator {
         Simulator::default()
     }
 
+    /// The effort of the last run, if its settings asked for it.
+    pub fn effort(&self) -> &Effort {
+        &self.effort
+    }
+
     /// Simulates a system. The observed variables at the output points and at both sides of every
     /// event become the rows of `out`, which keeps what was computed until a failure.
     ///
@@ -114,6 +120,10 @@ impl Simulator {
         self.y.resize(n * (1 + system.n_directions()), 0.0);
         self.set_nominals(system, settings.tolerance);
         out.reset(system.n_observed());
+        self.effort = Effort::default();
+        if settings.counts_effort {
+            self.effort.reset(n, system.n_crossings());
+        }
         let integrator: &mut dyn Integrator = if n == 0 {
             &mut self.without_unknowns
         } else {
@@ -142,6 +152,7 @@ impl Simulator {
             nominals: &self.nominals,
             y: &mut self.y,
             observed: &mut self.observed,
+            effort: &mut self.effort,
             out,
             t: settings.start,
             output_number: 0,
@@ -230,6 +241,7 @@ pub struct Run<'a> {
     pub(super) nominals: &'a Nominals,
     pub(super) y: &'a mut Vec<f64>,
     observed: &'a mut [f64],
+    effort: &'a mut Effort,
     out: &'a mut Trajectory,
     pub(super) t: f64,
     /// The next output point and its number.
@@ -249,7 +261,10 @@ impl Run<'_> {
         self.initialize()?;
         while self.t < self.problem.settings.stop {
             let after = match self.step() {
-                Ok(time_event) => self.advance_to_end_of_step(time_event)?,
+                Ok(time_event) => {
+                    self.count_step();
+                    self.advance_to_end_of_step(time_event)?
+                }
                 Err(kind) => self.jump(kind)?,
             };
             if after == After::Terminated {
@@ -295,6 +310,12 @@ impl Run<'_> {
 
     pub fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    fn count_step(&mut self) {
+        if self.problem.settings.counts_effort {
+            Effort::count(&mut self.effort.unknowns, self.integrator.dominant());
+        }
     }
 
     /// Makes a step; whether it ended at a time event.
@@ -458,6 +479,7 @@ impl Run<'_> {
                     self.remember(begin, event)?;
                     self.record_before(event)?;
                     self.problem.statistics.state_events += 1;
+                    Effort::count(&mut self.effort.crossings, self.crossings.last());
                     self.count_switches(begin, event)?;
                     let after = self.handle_event(event, true)?;
                     if after != After::Terminated && self.treat_chattering()? {

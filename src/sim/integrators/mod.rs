@@ -62,6 +62,11 @@ pub trait Integrator: Send {
     /// The end of the last step.
     fn time(&self) -> f64;
 
+    /// The unknown with the largest part in the error of the last step, where the method knows.
+    fn dominant(&self) -> Option<usize> {
+        None
+    }
+
     /// Notes that the right-hand side at the end of the last step is another one since, although
     /// there was no event: what is known of it there does not hold any more.
     fn branches_changed(&mut self) {}
