@@ -21,6 +21,11 @@ crate::codes! {
         "## What it means\nThe clocks of a model cannot be inferred, or contradict each other: variables in one equation belong to one clock, and what is clocked meets continuous time only through `sample` and `hold`.\n\n\
          ## Example\n`y = sample(u, Clock(1, 10)) + sample(v, Clock(1, 3));`\n\n\
          ## What to do\nUse one clock for both, or `subSample`, `superSample` and `shiftSample` between clocks of one base, and `hold` and `sample` between others.",
+    /// A state machine that breaks the rules of MLS §17.1.
+    INVALID_STATE_MACHINE = "invalid-state-machine":
+        "## What it means\nThe equations `transition` and `initialState` do not make a state machine: it must have exactly one initial state, and all transitions that leave one state must have different priorities. `activeState`, `ticksInState` and `timeInState` are about states of state machines only.\n\n\
+         ## Example\n`initialState(a); initialState(b); transition(a, b, x > 1);`\n\n\
+         ## What to do\nRemove or add `initialState`, or give each transition its `priority`.",
     /// A parameter that depends on itself.
     PARAMETER_CYCLE = "parameter-cycle":
         "## What it means\nThe bindings of parameters form a cycle, so none can be computed.\n\n\

@@ -37,7 +37,11 @@ impl Instantiation<'_> {
         let mut holder = self.classes.tree.nodes[node.0].parent;
         while let Some(id) = holder {
             if self.classes.tree.is_inner(id, declared.name) {
-                let state = self.member(id, declared.name)?.map(MemberState::own);
+                let state = self.member(id, declared.name)?.map(|state| match state {
+                    // An output of a state is one variable with the one further out.
+                    MemberState::Outer(same) => *same,
+                    state => state.own(),
+                });
                 if let Some(state) = &state {
                     self.check_same_type(state, declared)?;
                 }

@@ -32,6 +32,9 @@ impl Builder<'_> {
             builder.known_argument(entry, &call, at, name, default, span)
         };
         let of_scalar: OfScalar<Self> = match operator {
+            Clocked::State(operator) => {
+                return self.state_operator(operator, &call, span).map(Lowered::scalar);
+            }
             Clocked::Constructor => return self.clock(&call, span).map(Lowered::scalar),
             Clocked::Interval | Clocked::FirstTick => {
                 return self.about_ticks(operator, &call, span).map(Lowered::scalar);
