@@ -352,7 +352,9 @@ impl Classes<'_> {
         let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
         Some(
             fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
-                help: "connect an output of a component, or an input of the class, to inputs")
+                help: "connect an output of a component, or an input of the class, to inputs; \
+                       outputs of several states of a state machine are not supported: let the \
+                       states have an `outer output`")
             .at(edge.span),
         )
     }

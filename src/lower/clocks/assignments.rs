@@ -275,8 +275,8 @@ impl Builder<'_> {
         values: &[(Expr, Expr, ClockedEquation)],
     ) {
         let Some((_, _, first)) = values.first() else { return };
-        let previous = self.previous_variable(variable);
-        let mut merged = self.dae.pool.variable(previous);
+        // `last(v)`: a reset of the state that declares it comes first.
+        let mut merged = self.previous_or_start(variable);
         for (guard, value, _) in values.iter().rev() {
             merged = self.dae.pool.if_then_else(*guard, *value, merged);
         }
