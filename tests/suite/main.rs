@@ -82,6 +82,7 @@ mod shipped;
 mod shipped_functions;
 mod simulation;
 mod singular_derivatives;
+mod starting;
 mod state_machines;
 mod structural_parameters;
 mod structure;
