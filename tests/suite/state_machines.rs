@@ -1,13 +1,13 @@
 //! State machines (MLS chapter 17) against values that the specification gives or that follow by
 //! hand.
 
-use super::hybrid::{Run, compiled, simulated};
+use super::hybrid::{Run, attempt, compiled, simulated};
 
 /// The values at the ticks 0, 1, 2, … of a clock with this interval.
 #[track_caller]
 fn ticks(run: &Run, name: &str, interval: f64, expected: &[f64]) {
     let times = (0..expected.len()).map(|tick| tick as f64 * interval + interval / 4.0);
-    let found: Vec<f64> = times.map(|time| run.at(name, time)).collect();
+    let found: Vec<f64> = times.map(|time| run.held(name, time)).collect();
     let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9;
     assert!(found.iter().zip(expected).all(close), "{name}: {found:?}, not {expected:?}");
 }
@@ -34,7 +34,7 @@ fn two_states(equations: &str) -> String {
          block B outer output Integer v; Integer m(start = 0);
          equation v = previous(v) + 10; m = previous(m) + 1; end B;
          A a; B b; Integer k(start = 0) = previous(k) + 1;
-         Integer tick = sample(1, Clock(1, 10)) + 0*k;
+         Integer tick = sample(1, Clock(1, 10)) + k;
          Boolean ina = activeState(a);
          equation initialState(a); {equations} end M;"
     )
@@ -171,7 +171,7 @@ fn the_lower_number_is_the_higher_priority_whatever_the_kind() {
     let text = |one: &str, other: &str| {
         format!(
             "model M block S end S; S a; S b; S c; Boolean inb = activeState(b);
-             Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + 0*k;
+             Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + k;
              equation initialState(a); transition(a, b, {one}); transition(a, c, {other}); end M;"
         )
     };
@@ -206,8 +206,8 @@ fn a_reset_transition_sets_start_values_and_another_one_keeps_them() {
 fn a_self_transition_restarts_ticks_and_time_in_a_state() {
     let run = simulated(
         "model M block S Integer n; Real t; equation n = ticksInState(); t = timeInState(); end S;
-         S a; Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + 0*k;
-         equation initialState(a); transition(a, a, ticksInState() >= 3, immediate = false);
+         S a; Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + k;
+         equation initialState(a); transition(a, a, k > 0 and ticksInState() >= 3, immediate = false);
          end M;",
         0.7,
     );
@@ -238,19 +238,22 @@ fn a_synchronized_transition_waits_for_final_states() {
 
 #[test]
 fn arrays_algorithms_and_assertions_belong_to_their_states() {
-    let run = simulated(
-        "model M inner Real x(start = 1);
-         block S parameter Real f = 2; outer output Real x; Real y[2](each start = 0);
-         algorithm y := {x, 2*x}; equation x = f*previous(x); assert(x < 20, \"large\"); end S;
-         S s[2](f = {2, 3}); Integer k(start = 0) = previous(k) + 1;
-         Integer u = sample(1, Clock(1, 10)) + 0*k;
+    let text = "model M inner Real x(start = 1);
+         block S parameter Real f = 2; parameter Real limit = 5; outer output Real x;
+         Real y[2](each start = 0);
+         algorithm y := {x, 2*x}; equation x = f*previous(x); assert(x < limit, \"large\"); end S;
+         S s[2](f = {2, 3}, limit = {5, 20}); Integer k(start = 0) = previous(k) + 1;
+         Integer u = sample(1, Clock(1, 10)) + k;
          equation initialState(s[1]); transition(s[1], s[2], k == 3); transition(s[2], s[1], k == 4);
-         end M;",
-        0.35,
-    );
+         end M;";
+    // x is 12 at the third tick, when the assertion of s[1] would be violated.
+    let run = simulated(text, 0.25);
     ticks(&run, "x", 0.1, &[2., 4., 12.]);
     ticks(&run, "s[1].y[2]", 0.1, &[4., 8., 8.]);
     ticks(&run, "s[2].y[1]", 0.1, &[0., 0., 12.]);
+    let (program, _, _, ended) = attempt(text, 0.35);
+    let message = program.explain(&ended.expect_err("s[1] is active again")).message.clone();
+    assert!(message.contains("large (at t = 0.3"), "{message}");
 }
 
 #[test]
@@ -268,7 +271,7 @@ fn what_is_no_state_machine_is_refused_with_a_place() {
     let model = |declarations: &str, equations: &str| {
         format!(
             "model M block S end S; S a; S b; {declarations}
-             Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + 0*k;
+             Integer k(start = 0) = previous(k) + 1; Integer u = sample(1, Clock(1, 10)) + k;
              equation {equations} end M;"
         )
     };
