@@ -14,7 +14,7 @@ crate::codes! {
     /// Something of the language that the compiler cannot treat.
     NOT_SUPPORTED = "not-supported":
         "## What it means\nThe model uses a part of the language that this program does not support in equations. It reports an error rather than wrong numbers.\n\n\
-         ## Example\n`y = spatialDistribution(…);`\n\n\
+         ## Example\n`Clock(Clock(1, 10), \"ExplicitRungeKutta4\")`\n\n\
          ## What to do\nRewrite the model without it; the message gives the position and the reason.",
     /// Clocks that do not go together, or one that nothing gives.
     CLOCK_CONFLICT = "clock-conflict":
