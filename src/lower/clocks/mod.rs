@@ -25,6 +25,7 @@ mod partitions;
 mod recognition;
 mod solver_methods;
 mod state_machines;
+mod state_operators;
 mod state_outputs;
 mod ticks;
 mod when;
@@ -49,6 +50,13 @@ pub(super) struct Clocks {
     /// Assertions and calls in clocked when-clauses, with their clocks.
     asserted: Vec<(VarId, Assertion)>,
     machines: StateMachines,
+}
+
+impl Clocks {
+    /// Whether nothing is clocked.
+    fn is_empty(&self) -> bool {
+        self.occurrences.is_empty() && self.on_clock.is_empty() && self.machines.states.is_empty()
+    }
 }
 
 /// A clocked operator in an expression.
