@@ -36,6 +36,7 @@ mod singular_systems;
 mod sliding;
 mod state_selection;
 mod system;
+mod transport_record;
 mod transports;
 
 pub use modes::Treated;

@@ -8,7 +8,7 @@ use super::newton::LoopSolver;
 use super::sensitivity_state::Sensitivity;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
-use super::transports::Record;
+use super::transport_record::Record;
 use crate::codegen::code::{Outputs, Step};
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Program};

@@ -9,6 +9,7 @@
 use super::execution::run;
 use super::profile::{End, Profile};
 use super::system::System;
+use super::transport_record::Record;
 use crate::codegen::code::Outputs;
 use crate::codegen::events::CompiledTransport;
 use crate::codegen::memory::Memory;
@@ -24,23 +25,6 @@ const LONGEST_MOVE: f64 = 0.1;
 const ROUNDING: f64 = 1e-10;
 /// How often values are read again that depend on each other.
 const PASSES: usize = 50;
-
-/// What has been recorded of one of them.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Record {
-    profile: Profile,
-    /// The longest delay, or the length of the pipe.
-    longest: f64,
-    /// Whether the velocity was positive when it was recorded last.
-    positive: bool,
-    /// Time and position then, and the velocity between the last two.
-    last: (f64, f64),
-    velocity: f64,
-    /// The delay time then.
-    delay: f64,
-    /// What went in at the start.
-    first: Vec<f64>,
-}
 
 /// Where a profile is read.
 #[derive(Debug, Clone, Copy)]
