@@ -6,7 +6,7 @@ use super::used_variables::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::graph::{Bipartite, match_equations};
-use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
+use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
 use crate::lower::{Dae, Equation, Kind, is_real};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
@@ -84,7 +84,7 @@ fn check_constant_between_events(
         |v: VarId| dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed);
     match dae.pool.any_variable(value, varies) {
         false => Ok(()),
-        true => Err(fault!(NOT_SUPPORTED,
+        true => Err(fault!(NOT_DISCRETE,
             "`{}` is discrete, but its equation may change between events",
             dae.variable(variable).name;
             help: "do not use relations inside `noEvent` or inside functions")

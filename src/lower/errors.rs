@@ -56,4 +56,9 @@ crate::codes! {
         "## What it means\nThe initial equations and fixed start values do not determine all states of the model, so the start values of the states listed are used although they are not fixed.\n\n\
          ## Example\n`Real x(start = 1, fixed = true); Real y(start = 2);` with `der(x) = y; der(y) = -x;`: nothing fixes `y`.\n\n\
          ## What to do\nSet `fixed = true` for the variables listed, or write an initial equation for each.",
+    /// What is discrete, but not by a discrete-time expression.
+    NOT_DISCRETE = "not-discrete":
+        "## What it means\nAn Integer, Boolean or enumeration variable, or a variable of a when-clause, must have discrete-time expressions (MLS §3.8.4): they change at events only. Relations and `integer` in functions and in `noEvent` cause no events.\n\n\
+         ## Example\n`Integer n = f(time);` with `function f input Real x; output Integer y; algorithm y := integer(x); end f;`\n\n\
+         ## What to do\nWrite the relation, `integer` or `floor` in the model, outside of functions and `noEvent`.",
 }
