@@ -7,7 +7,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
-use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
+use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
 use crate::lower::{Dae, Equation, Kind, Variable, is_real};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
@@ -118,7 +118,7 @@ fn may_vary(dae: &Dae, aliases: &[Option<Alias>], (variable, equation): (VarId, 
 }
 
 fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {
-    fault!(NOT_SUPPORTED,
+    fault!(NOT_DISCRETE,
         "`{}` is discrete, but its equation may change between events",
         dae.variable(variable).name;
         help: "do not use relations inside `noEvent` or inside functions")

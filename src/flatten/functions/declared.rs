@@ -611,6 +611,7 @@ impl Instantiation<'_> {
             StatementKind::For { indices, body } => {
                 let visit =
                     |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                self.check_range_stays(indices, body, context)?;
                 let indices = self.with_ranges(indices, context, local, &visit)?;
                 let (mut indices, inner) = self.iterators(&indices, context, local)?;
                 if self.classes.is_in_model(context) {
