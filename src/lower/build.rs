@@ -56,7 +56,13 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     }
     builder.move_to_start(asserted);
     builder.partition_clocks()?;
-    builder.dae.functions = Arc::new(builder.calls.functions.finish());
+    let functions = builder.calls.functions.finish();
+    for (function, code) in functions.codes.iter().enumerate() {
+        for (input, inverse) in &code.inverses {
+            builder.dae.pool.declare_inverse(function as u32, *input, inverse.clone());
+        }
+    }
+    builder.dae.functions = Arc::new(functions);
     Ok(builder.dae)
 }
 

@@ -176,7 +176,7 @@ impl Classes<'_> {
     ) -> Result<Rc<Nested>, Diagnostic> {
         let prefixes = self.library.class(child).prefixes();
         let outer = self.scope(scope).modifier.elements.get(&name).cloned().unwrap_or_default();
-        let original = Nested {
+        let mut original = Nested {
             text: self.text_of(child),
             parent: scope,
             // A final redeclaration cannot be replaced; components of the class can be modified.
@@ -186,12 +186,18 @@ impl Classes<'_> {
             inner: prefixes.inner,
             instance: Cell::new(None),
         };
-        let Some(redeclaration) = outer.redeclaration else { return Ok(Rc::new(original)) };
+        let constraint = self.library.class(child).constraint().cloned();
+        let Some(redeclaration) = outer.redeclaration else {
+            // The modifiers of the constraining clause hold for the original class as well.
+            if constraint.is_some() {
+                original.defaults = self.constraining(&original, constraint.as_ref())?;
+            }
+            return Ok(Rc::new(original));
+        };
         if prefixes.is_final {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared")
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
-        let constraint = self.library.class(child).constraint().cloned();
         let defaults = self.constraining(&original, constraint.as_ref())?;
         self.replaced(original, &redeclaration, &defaults)
     }

@@ -235,6 +235,7 @@ impl Instances {
             self.known.insert(signature.clone(), instance.clone());
         }
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
+        code.inverses = self.inverses(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
         if self.instructions > MAX_INSTRUCTIONS {
             return Err(fault!(
