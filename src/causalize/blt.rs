@@ -8,7 +8,7 @@ use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equati
 use crate::lower::errors::{NOT_SUPPORTED, SINGULAR_SYSTEM, UNBALANCED_MODEL};
 use crate::lower::{Dae, Equation, Kind};
 use crate::source::Span;
-use crate::symbolic::{Expr, VarId, solve};
+use crate::symbolic::{Expr, Solution, VarId, solve};
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
 
@@ -60,7 +60,7 @@ pub(super) fn solve_block(
     members: &[VarId],
 ) -> Result<Block, Diagnostic> {
     if let (&[equation], &[variable]) = (block, members)
-        && let Some(value) = explicit(dae, equations[equation], variable)
+        && let Some(value) = explicit_alone(dae, equations[equation], variable)
     {
         return Ok(Block::Assignment(Assignment { variable, value, equation }));
     }
@@ -119,8 +119,26 @@ fn may_determine(dae: &Dae, equation: Equation, variable: VarId, members: &[VarI
     }
 }
 
-/// The value of a variable by one equation, if it can be had without dividing by what may be zero.
+/// The value of a variable by one equation, if it can be had without dividing by what may be zero:
+/// within a loop also by what is zero at an iterate only.
 pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+    explicit_where(dae, equation, variable, |dae, solution| {
+        is_safe(dae, solution.divisor) && is_safe(dae, solution.inverted)
+    })
+}
+
+/// The same where all else in the equation is known: `a / v = b` has no solution where b is zero,
+/// and Newton's method would divide by v, which begins at zero.
+pub(super) fn explicit_alone(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+    explicit_where(dae, equation, variable, |dae, solution| is_safe(dae, solution.divisor))
+}
+
+fn explicit_where(
+    dae: &mut Dae,
+    equation: Equation,
+    variable: VarId,
+    is_allowed: impl Fn(&Dae, &Solution) -> bool,
+) -> Option<Expr> {
     let pool = &mut dae.pool;
     if pool.as_variable(equation.left) == Some(variable)
         && !pool.depends_on(equation.right, variable)
@@ -133,7 +151,7 @@ pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Op
         return Some(equation.left);
     }
     let solution = solve(pool, equation.left, equation.right, variable)?;
-    is_safe(dae, solution.divisor).then_some(solution.value)
+    is_allowed(dae, &solution).then_some(solution.value)
 }
 
 /// Where equations are written and, where instances share the place, whose they are.

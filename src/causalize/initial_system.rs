@@ -14,7 +14,7 @@ use super::event_system::{match_mixed, of_kind, sort_mixed, with_initial};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, Kind, StateSelect};
 use crate::symbolic::{VarId, substitute};
 
 /// The initial system in solving order.
@@ -163,7 +163,8 @@ fn previous_values(dae: &Dae) -> (Vec<Remembered>, Vec<Remembered>) {
 }
 
 /// Variables whose start values hold where nothing else determines them, the most wanted first:
-/// states, and instead of those chosen at run time the candidates, those chosen at first before the
+/// those that the model prefers as states and gives a start value, be they states or not (a tank
+/// begins with its level, not with no mass); states, and instead of those chosen at run time the candidates, those chosen at first before the
 /// others; among these the ones with a start value of their own.
 fn start_values_to_take(
     dae: &Dae,
@@ -175,12 +176,22 @@ fn start_values_to_take(
         |v: &VarId| selections.iter().any(|s| s.chosen.iter().any(|at| s.candidates[*at] == *v));
     let offered = |v: &VarId| match states.binary_search(v) {
         Ok(_) => selections.iter().all(|s| !s.states.contains(v)),
-        Err(_) => selections.iter().any(|s| s.candidates.contains(v)),
+        Err(_) => selections.iter().any(|s| s.candidates.contains(v)) || is_preferred(dae, *v),
     };
     let mut taken: Vec<VarId> = free.iter().copied().filter(offered).collect();
     let is_candidate = |v: &VarId| states.binary_search(v).is_err();
-    taken.sort_by_key(|v| (is_candidate(v) && !chosen(v), dae.variable(*v).start.is_none()));
+    taken.sort_by_key(|v| {
+        let variable = dae.variable(*v);
+        (!is_preferred(dae, *v), is_candidate(v) && !chosen(v), variable.start.is_none())
+    });
     taken
+}
+
+/// Whether a model prefers a variable as a state and says where it begins.
+fn is_preferred(dae: &Dae, v: VarId) -> bool {
+    let variable = dae.variable(v);
+    let is_wanted = matches!(variable.state_select, StateSelect::Prefer | StateSelect::Always);
+    is_wanted && variable.start.is_some() && is_continuous(dae, v)
 }
 
 fn is_continuous(dae: &Dae, v: VarId) -> bool {

@@ -26,6 +26,7 @@ mod dummy_derivatives;
 mod dump;
 mod dynamic_states;
 mod event_system;
+mod hidden_constraints;
 mod homotopy;
 mod index_reduction;
 mod initial_system;

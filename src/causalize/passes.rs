@@ -3,6 +3,7 @@
 use super::causalized::{Alias, CausalizedDae};
 use super::dummy_derivatives::ChosenStates;
 use super::event_system::{self, EventSystem};
+use super::hidden_constraints::hidden_constraints;
 use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
 use super::{
@@ -86,6 +87,9 @@ pub const PASSES: &[Pass] = &[
         .writing(report::write_initial_blocks),
 ];
 
+/// How often constraints that sorting has brought to light are differentiated; each time all of them are.
+const MOST_REDUCTIONS: usize = 10;
+
 /// A system on its way through the passes.
 pub(super) struct Causalization<'a> {
     flat: &'a FlatModel,
@@ -95,6 +99,8 @@ pub(super) struct Causalization<'a> {
     parameters: Vec<VarId>,
     aliases: Vec<Option<Alias>>,
     chosen: ChosenStates,
+    /// What index reduction began with, but for the expressions.
+    before: (Dae, Vec<Option<Alias>>),
     /// The equations after the start, and what they are solved for.
     actual: Vec<Equation>,
     unknowns: Vec<VarId>,
@@ -131,6 +137,7 @@ impl<'a> Causalization<'a> {
             parameters: Vec::new(),
             aliases: Vec::new(),
             chosen: ChosenStates::default(),
+            before: Default::default(),
             actual: Vec::new(),
             unknowns: Vec::new(),
             blocks: Vec::new(),
@@ -172,11 +179,37 @@ impl<'a> Causalization<'a> {
     }
 
     fn reduce_index(&mut self) -> Result<(), Diagnostic> {
+        let pool = std::mem::take(&mut self.dae.pool);
+        self.before = (self.dae.clone(), self.aliases.clone());
+        self.dae.pool = pool;
         self.chosen = index_reduction::reduce_index(&mut self.dae, &mut self.aliases)?;
         Ok(())
     }
 
+    /// Sorts, and begins again with index reduction where constraints between states come to light.
     fn sort_blocks(&mut self) -> Result<(), Diagnostic> {
+        self.sort_reduced()?;
+        for _ in 0..MOST_REDUCTIONS {
+            let n_given = self.before.0.equations.len();
+            let constraints =
+                hidden_constraints(&mut self.dae, &self.actual, &self.blocks, n_given);
+            if constraints.is_empty() {
+                break;
+            }
+            let pool = std::mem::take(&mut self.dae.pool);
+            (self.dae, self.aliases) = self.before.clone();
+            self.dae.pool = pool;
+            for (number, equation) in constraints {
+                self.dae.equations[number] = equation;
+            }
+            self.reduce_index()?;
+            self.sort_reduced()?;
+        }
+        self.before = Default::default();
+        Ok(())
+    }
+
+    fn sort_reduced(&mut self) -> Result<(), Diagnostic> {
         let ChosenStates { states, selections } = &self.chosen;
         reinit::check_reinits(&self.dae, &self.aliases, states, selections)?;
         self.unknowns = index_reduction::unknowns(&self.dae, &self.aliases, states);

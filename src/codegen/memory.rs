@@ -13,6 +13,10 @@ pub(crate) struct Memory {
     pub(crate) registers: Vec<f64>,
     pub(crate) calls: Calls,
     pub(crate) systems: Vec<LinearSystem>,
+    /// The first registers are those of the variables.
+    pub(super) n_variables: usize,
+    /// Where the last tape that was run has passed on an overflow.
+    pub(crate) overflow: Option<u32>,
 }
 
 /// Runs calls of functions.
@@ -45,7 +49,13 @@ impl Memory {
             impure: Vec::new(),
             failure: None,
         };
-        let mut memory = Memory { registers: Vec::new(), calls, systems: Vec::new() };
+        let mut memory = Memory {
+            registers: Vec::new(),
+            calls,
+            systems: Vec::new(),
+            n_variables: registers.n_variables(),
+            overflow: None,
+        };
         memory.extend(registers);
         memory
     }

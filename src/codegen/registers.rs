@@ -13,6 +13,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(crate) struct Registers {
     next: Register,
+    n_variables: usize,
     constants: FxHashMap<u64, Register>,
     functions: Arc<Functions>,
     /// Workspaces of linear systems by matrix, and their sizes.
@@ -29,6 +30,7 @@ impl Registers {
         let next = n_variables as Register;
         Registers {
             next,
+            n_variables,
             constants: FxHashMap::default(),
             functions,
             workspaces: FxHashMap::default(),
@@ -59,6 +61,10 @@ impl Registers {
     /// The functions that tapes on these registers call.
     pub(super) fn functions(&self) -> &Arc<Functions> {
         &self.functions
+    }
+
+    pub(super) fn n_variables(&self) -> usize {
+        self.n_variables
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -1,5 +1,9 @@
 //! Instructions on registers. A jump skips what is not needed, so that a branch that is not taken
 //! is never evaluated.
+//!
+//! A value that is not finite is a failure at once, but for one: where `exp`, `sinh` or `cosh` of a
+//! finite argument overflows, the value is infinite as in IEEE 754 until a variable takes it, so that
+//! `2/(1 + exp(-v/v0)) - 1` has its limit for every v.
 
 use super::instruction::LinearSolve;
 use super::memory::Memory;
@@ -19,9 +23,11 @@ pub(crate) struct Tape {
 }
 
 impl Tape {
-    /// Runs it; on failure the number of the instruction without a finite value.
+    /// Runs it; on failure the number of the instruction without a finite value. Where an overflow
+    /// was passed on, [`Memory::overflow`] has its number, and every variable is finite.
     pub(crate) fn run(&self, memory: &mut Memory) -> Result<(), u32> {
-        let Memory { registers: r, calls, systems } = memory;
+        let Memory { registers: r, calls, systems, n_variables, overflow } = memory;
+        *overflow = None;
         self.routines.iter().for_each(|(_, link)| r[*link as usize] = 0.0);
         let mut at = 0usize;
         while let Some(instruction) = self.code.get(at) {
@@ -51,10 +57,13 @@ impl Tape {
                     let holds = operator.holds(r[a as usize], r[b as usize]);
                     r[d as usize] = f64::from(u8::from(holds));
                 }
-                Instruction::Unary { d, a, function, .. } => {
+                Instruction::Unary { id, d, a, function } => {
                     let value = function(r[a as usize]);
                     if !value.is_finite() {
-                        return Err(at as u32 - 1);
+                        if !(r[a as usize].is_finite() && id.get().overflows) {
+                            return Err(at as u32 - 1);
+                        }
+                        overflow.get_or_insert(at as u32 - 1);
                     }
                     r[d as usize] = value;
                 }
@@ -90,7 +99,16 @@ impl Tape {
                 Instruction::Return { link } => at = r[link as usize] as usize,
             }
         }
-        Ok(())
+        match *overflow {
+            Some(at) if !self.variables_are_finite(r, *n_variables) => Err(at),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the variables that the tape assigns have finite values.
+    fn variables_are_finite(&self, r: &[f64], n_variables: usize) -> bool {
+        let mut assigned = self.code.iter().filter_map(Instruction::result);
+        assigned.all(|d| d as usize >= n_variables || r[d as usize].is_finite())
     }
 
     /// The origin of an instruction.

@@ -323,7 +323,7 @@ impl<'a> Builder<'a> {
             let right = lowering.number_of_text(b, span)?;
             return Ok(vec![Equation::new(left, right, span)]);
         }
-        let is_empty = |side: &Lowered<Expr>| side.shape().is_some_and(|shape| shape.len() == 0);
+        let is_empty = |side: &Lowered<Expr>| side.shape().is_some_and(|shape| shape.is_empty());
         if (is_part_of_nothing(left) || is_part_of_nothing(right)) && is_empty(&a) && is_empty(&b) {
             return Ok(Vec::new());
         }
@@ -446,7 +446,13 @@ impl<'a> Builder<'a> {
             )
             .at(span));
         }
-        let second = in_order_of(&first, second);
+        // Integers and Booleans need an equation each that gives them a value; Reals do not: the
+        // solution is the same. With all equations paired so, the loops of the hysteresis models of
+        // the standard library become linear, and chatter at their turning points.
+        let second = match first.iter().any(|equation| self.determines_discrete(equation)) {
+            true => in_order_of(&first, second),
+            false => second,
+        };
         let pool = &mut self.dae.pool;
         let merged = first.into_iter().zip(second).map(|(a, b)| {
             if a.left == b.left {
@@ -458,6 +464,11 @@ impl<'a> Builder<'a> {
             Equation { left, right: pool.if_then_else(condition, x, y), ..a }
         });
         Ok(merged.collect())
+    }
+
+    fn determines_discrete(&self, equation: &Equation) -> bool {
+        let variable = self.dae.pool.as_variable(equation.left);
+        variable.is_some_and(|v| self.dae.variable(v).base != BaseType::Real)
     }
 
     /// Assertions in a branch hold only where it is taken, and are looked at only there.

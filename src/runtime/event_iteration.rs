@@ -24,8 +24,10 @@ use rustc_hash::FxHashSet;
 const MAX_ROUNDS: usize = 100;
 /// Most rounds, however new the values are: a counter that counts itself never has the same again.
 const MOST_ROUNDS: usize = 10_000;
-/// Most passes of a round.
+/// Passes of a round after which values that have come back end it.
 const MAX_PASSES: usize = 60;
+/// Most passes, however new the values are: each of 200 relays in a chain may wait for the one before.
+const MOST_PASSES: usize = 10_000;
 /// Passes in which all relations may change; from then on one after the other.
 const PASSES_AT_ONCE: usize = 10;
 /// Relative difference of Reals that solving a loop again may make.
@@ -166,9 +168,10 @@ impl System {
     }
 
     /// The outcome, with what happened to discrete variables.
-    fn with_discrete(&self, outcome: EventOutcome) -> EventOutcome {
+    fn with_discrete(&mut self, outcome: EventOutcome) -> EventOutcome {
         let mut pairs = self.before.iter().zip(&self.program.events.discrete);
         let changed = pairs.any(|(old, variable)| *old != self.registers[variable.0 as usize]);
+        self.has_effect |= changed;
         either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
@@ -264,8 +267,15 @@ impl System {
 
     /// Solves and updates relations until they stay as they are; whether one changed.
     pub(super) fn settle(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
-        let mut any = false;
-        for number in 0..MAX_PASSES {
+        let (mut any, mut comes_back) = (false, false);
+        let mut known = FxHashSet::default();
+        for number in 0..MOST_PASSES {
+            if number >= PASSES_AT_ONCE {
+                comes_back |= !known.insert(self.values_of_events());
+            }
+            if number >= MAX_PASSES && comes_back {
+                break;
+            }
             let change = if number < PASSES_AT_ONCE { Change::All } else { Change::First };
             if number == PASSES_AT_ONCE {
                 self.inconsistent.fill(false);
@@ -354,6 +364,7 @@ impl System {
                 let value = self.registers[pair[1] as usize];
                 self.registers[state.0 as usize] = if *negated { -value } else { value };
                 self.carry_through_reinit(number, *negated);
+                self.has_effect = true;
                 any = true;
             }
         }

@@ -17,7 +17,12 @@ pub fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(
     for (value, register) in out.iter_mut().zip(&code.outputs) {
         *value = registers[*register as usize];
     }
-    Ok(())
+    match registers.overflow {
+        Some(at) if !out.iter().all(|value| value.is_finite()) => {
+            Err(failure(&code.tape, registers, at))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The operation that had no value, and its number in a [`Failure::Domain`].
@@ -60,29 +65,41 @@ impl Operation {
 
 /// Runs a tape; a failure says which operation of which equation.
 pub fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
-    tape.run(registers).map_err(|at| {
-        let operation = match tape.code[at as usize] {
-            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),
-            Instruction::Call { .. } => {
-                if let Some(failure) = registers.calls.failure {
-                    return Failure::Function {
-                        function: failure.function,
-                        at: failure.at,
-                        reason: failure.reason as u8,
-                    };
-                }
-                Operation::DIVISION
-            }
-            Instruction::Given { function, .. } => {
+    tape.run(registers).map_err(|at| failure(tape, registers, at))
+}
+
+/// The same where what the tape computes is used long after: an overflow is a failure at once.
+pub fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
+    run(tape, registers)?;
+    match registers.overflow {
+        Some(at) => Err(failure(tape, registers, at)),
+        None => Ok(()),
+    }
+}
+
+/// The failure of an instruction.
+fn failure(tape: &Tape, registers: &Memory, at: u32) -> Failure {
+    let operation = match tape.code[at as usize] {
+        Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),
+        Instruction::Call { .. } => {
+            if let Some(failure) = registers.calls.failure {
                 return Failure::Function {
-                    function,
-                    at: registers.calls.end_of(function),
-                    reason: crate::bytecode::Reason::Unassigned as u8,
+                    function: failure.function,
+                    at: failure.at,
+                    reason: failure.reason as u8,
                 };
             }
-            Instruction::Pow { .. } => Operation::POWER,
-            _ => Operation::DIVISION,
-        };
-        Failure::Domain { origin: tape.origin(at), operation }
-    })
+            Operation::DIVISION
+        }
+        Instruction::Given { function, .. } => {
+            return Failure::Function {
+                function,
+                at: registers.calls.end_of(function),
+                reason: crate::bytecode::Reason::Unassigned as u8,
+            };
+        }
+        Instruction::Pow { .. } => Operation::POWER,
+        _ => Operation::DIVISION,
+    };
+    Failure::Domain { origin: tape.origin(at), operation }
 }

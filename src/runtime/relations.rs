@@ -81,6 +81,10 @@ impl System {
         }
         let [a, b] = [sides.outputs[0], sides.outputs[1]];
         let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+        if a == b && a.is_infinite() {
+            // Which of two overflows is larger is not known.
+            return before;
+        }
         let mut kept = self.kept.iter().filter(|(relation, _)| *relation == at);
         if kept.any(|(_, limit)| (a - b).abs() <= *limit) {
             return before;

@@ -3,11 +3,16 @@
 //! A mode is a combination of values of relations with the values of events that follow from them.
 //! It is a function of the combination alone where no value of events remembers another one: no
 //! `pre`, no when-clause and no `reinit` depends on the relations.
+//!
+//! A relation of which another one does may be followed while its events change nothing, as that of
+//! `q = r or pre(q)` while `q` holds.
 
+use super::execution::run;
 use super::instants::Stage;
 use super::modes::Treated;
 use super::system::System;
 use crate::sim::{Failure, Side, Treatment};
+use crate::symbolic::RelationOperator;
 
 /// Passes in which the values of events of a mode must come to rest.
 const PASSES: usize = 10;
@@ -87,9 +92,52 @@ impl System {
         }
     }
 
-    pub(super) fn change_sides(&mut self, sides: &[(usize, bool)]) -> Result<(), Failure> {
+    /// Sets relations without an event; whether no value that remembers them has changed. If one
+    /// has, all is as before.
+    pub(super) fn change_sides(&mut self, sides: &[(usize, bool)]) -> Result<bool, Failure> {
+        let has_memory = !sides.iter().all(|(crossing, _)| self.is_memoryless(*crossing));
+        let before = if has_memory { self.registers.to_vec() } else { Vec::new() };
         sides.iter().for_each(|(crossing, is_positive)| self.set_side(*crossing, *is_positive));
-        self.solve_for_values_of_events().map(|_| ())
+        self.solve_for_values_of_events()?;
+        if !has_memory {
+            return Ok(true);
+        }
+        let discrete = self.program.events.discrete.iter().map(|v| v.0 as usize);
+        let is_idle = discrete.into_iter().all(|at| self.registers[at] == before[at]);
+        if is_idle && !self.reinit_is_due()? {
+            return Ok(true);
+        }
+        self.registers.copy_from_slice(&before);
+        for (crossing, _) in sides {
+            if let Some(at) = self.relation_of(*crossing) {
+                self.is_idle[at] = false;
+            }
+        }
+        Ok(false)
+    }
+
+    /// Notes of the relations that have changed in the event at hand whether anything followed.
+    pub(super) fn note_idle_relations(&mut self) {
+        let changed =
+            self.has_changed.iter().zip(&mut self.is_idle).filter(|(changed, _)| **changed);
+        changed.for_each(|(_, is_idle)| *is_idle = !self.has_effect);
+    }
+
+    /// Whether the last event of a relation has changed nothing.
+    pub(super) fn is_idle_now(&self, crossing: usize) -> bool {
+        let Some(at) = self.relation_of(crossing) else { return false };
+        let operator = self.program.relations[at].operator;
+        let has_sides = !matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
+        has_sides && self.is_idle[at] && self.histories.is_empty()
+    }
+
+    /// Whether the condition of a `reinit` holds.
+    fn reinit_is_due(&mut self) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        let reinits = &program.events.reinits;
+        run(&reinits.tape, &mut self.registers)?;
+        let mut conditions = reinits.outputs.chunks_exact(2).map(|pair| pair[0] as usize);
+        Ok(conditions.any(|condition| self.registers[condition] != 0.0))
     }
 
     pub(super) fn keep_uncertainty(&mut self, crossings: &[f64]) {

@@ -1,7 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run};
+use super::execution::{read, run, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
@@ -53,6 +53,10 @@ pub struct System {
     pub(super) has_changed: Vec<bool>,
     /// Relations that keep changing in the round at hand.
     pub(super) inconsistent: Vec<bool>,
+    /// Whether the last event of each relation has changed no value of events.
+    pub(super) is_idle: Vec<bool>,
+    /// Whether the event at hand has changed values of events.
+    pub(super) has_effect: bool,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
     /// Whether such relations are kept so from the beginning of the event at hand.
@@ -124,6 +128,8 @@ impl System {
             switches: vec![None; program.relations.len()],
             has_changed: vec![false; program.relations.len()],
             inconsistent: vec![false; program.relations.len()],
+            is_idle: vec![false; program.relations.len()],
+            has_effect: false,
             held: vec![false; program.relations.len()],
             keeps_held: false,
             uncertainty: vec![0.0; program.relations.len()],
@@ -307,10 +313,10 @@ impl System {
             };
             match set {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
-                None => run(tape, &mut self.registers)?,
+                None => run_strictly(tape, &mut self.registers)?,
             }
         }
-        run(&program.registers.hoisted.tape, &mut self.registers)?;
+        run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
         run(&program.time_rests, &mut self.registers)?;
         for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
             *switch = relation
@@ -422,6 +428,7 @@ impl System {
         self.take_start_values_of_events();
         self.has_changed.fill(false);
         self.held.fill(false);
+        self.is_idle.fill(false);
         self.uncertainty.fill(0.0);
         self.excused.fill(0.0);
         self.update_relations(t, Change::All);
@@ -604,8 +611,10 @@ impl DaeSystem for System {
         self.load(t, y);
         self.registers.calls.next_instant();
         self.has_changed.fill(false);
+        self.has_effect = false;
         self.enter_event(t)?;
         let mut outcome = self.event(t)?;
+        self.note_idle_relations();
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
@@ -668,7 +677,11 @@ impl DaeSystem for System {
         self.is_memoryless(crossing)
     }
 
-    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+    fn can_follow_now(&self, crossing: usize) -> bool {
+        self.is_memoryless(crossing) || self.is_idle_now(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<bool, Failure> {
         self.load(t, y);
         self.change_sides(sides)
     }

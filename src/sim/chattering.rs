@@ -8,7 +8,8 @@
 //! they lead into a corner of surfaces   the solution slides along all of them
 //! else                                  the relation is followed: it is evaluated between steps,
 //!                                       without events, until it has been quiet
-//! values of events remember the side    events go on, and end with an error if the row goes on
+//! values of events remember the side    events go on, and end with an error if the row goes on;
+//!                                       where its events change nothing it is followed instead
 //! ```
 //!
 //! An event ends a slide that it has displaced (`displacement`). Following is exact up to the
@@ -99,7 +100,13 @@ impl Run<'_> {
         }
         self.integrator.branches_changed();
         let followed = self.problem.system.follow(self.t, self.y, &watch.sides);
-        followed.map_err(SimErrorKind::Evaluation)
+        if !followed.map_err(SimErrorKind::Evaluation)? {
+            for (at, is_positive) in watch.sides.drain(..) {
+                search.followed[at] = false;
+                search.signs[at] = if is_positive { -1 } else { 1 };
+            }
+        }
+        Ok(())
     }
 
     /// Does something about the rows that have become long at the event just handled; whether the
@@ -122,11 +129,11 @@ impl Run<'_> {
             return Ok(false);
         }
         let system = &self.problem.system;
-        let is_endless = |at: &usize| rows[*at].is_endless(span) && !system.can_follow(*at);
+        let is_endless = |at: &usize| rows[*at].is_endless(span) && !system.can_follow_now(*at);
         if switched.iter().any(is_endless) {
             return Err(SimErrorKind::Chattering);
         }
-        let is_chattering = |at: &usize| rows[*at].length + 1 >= ROW && system.can_follow(*at);
+        let is_chattering = |at: &usize| rows[*at].length + 1 >= ROW && system.can_follow_now(*at);
         let chattering: Vec<usize> = (0..rows.len()).filter(is_chattering).collect();
         if chattering.is_empty() {
             self.watch_for_accumulation()?;
@@ -144,7 +151,9 @@ impl Run<'_> {
         if was_constrained {
             self.start_crossings()?;
         }
-        let distinct = self.distinct(chattering);
+        let system = &self.problem.system;
+        let may_slide = chattering.iter().copied().filter(|at| system.can_follow(*at));
+        let distinct = self.distinct(&may_slide.collect::<Vec<_>>());
         let opposing = match distinct.len() + sliding.len() {
             1 => distinct.clone(),
             _ => self.opposing(&distinct),

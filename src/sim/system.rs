@@ -121,10 +121,15 @@ pub trait DaeSystem {
     fn can_follow(&self, _crossing: usize) -> bool {
         false
     }
+    /// The same where it works for the values of events at hand only: as the last event of this
+    /// function has shown, nothing follows from it but what [`DaeSystem::can_follow`] allows.
+    fn can_follow_now(&self, crossing: usize) -> bool {
+        self.can_follow(crossing)
+    }
     /// Changes branches without an event: these crossing functions are positive, or negative, from
-    /// (t, y) on.
-    fn follow(&mut self, _t: f64, _y: &[f64], _sides: &[(usize, bool)]) -> Result<(), Failure> {
-        Ok(())
+    /// (t, y) on. Whether that was possible; if not, nothing has changed, and they need an event.
+    fn follow(&mut self, _t: f64, _y: &[f64], _sides: &[(usize, bool)]) -> Result<bool, Failure> {
+        Ok(false)
     }
     /// Writes left − right of the relations that have no events although the right-hand side
     /// depends on them (`noEvent`); as many at all times.

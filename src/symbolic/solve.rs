@@ -19,8 +19,11 @@ pub struct Linear {
 pub struct Solution {
     /// What the variable is equal to; does not contain it.
     pub value: Expr,
-    /// What the solution divides by: it holds where this is not zero.
+    /// What the solution divides by: where this is zero the equation may hold for every value.
     pub divisor: Expr,
+    /// What it divides by where the variable stands below a fraction: `a / v = b` has no solution at
+    /// all where `b` is zero, so that nothing is lost there.
+    pub inverted: Expr,
 }
 
 /// Takes an expression apart that is linear in `variable`; `None` if it is not, or not visibly.
@@ -110,71 +113,74 @@ fn linear_node(
 pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Option<Solution> {
     let one = pool.constant(1.0);
     let (left_has, right_has) = (pool.depends_on(left, variable), pool.depends_on(right, variable));
-    let (mut side, mut other, mut divisor) = match (left_has, right_has) {
+    let (mut side, other) = match (left_has, right_has) {
         (false, false) => return None,
-        (true, false) => (left, right, one),
-        (false, true) => (right, left, one),
-        (true, true) => (pool.sub(left, right), pool.constant(0.0), one),
+        (true, false) => (left, right),
+        (false, true) => (right, left),
+        (true, true) => (pool.sub(left, right), pool.constant(0.0)),
     };
+    let mut moved = Solution { value: other, divisor: one, inverted: one };
     loop {
         if let Some(linear) = linear_in(pool, side, variable) {
             if pool.as_constant(linear.coefficient) == Some(0.0) {
                 return None;
             }
-            let difference = pool.sub(other, linear.rest);
+            let difference = pool.sub(moved.value, linear.rest);
             let value = pool.div(difference, linear.coefficient);
-            return Some(Solution { value, divisor: pool.mul(divisor, linear.coefficient) });
+            let divisor = pool.mul(moved.divisor, linear.coefficient);
+            return Some(Solution { value, divisor, ..moved });
         }
-        (side, other, divisor) = peel(pool, side, other, divisor, variable)?;
+        (side, moved) = peel(pool, side, moved, variable)?;
     }
 }
 
-/// Moves the outermost operation of `side` to the other side.
-fn peel(
-    pool: &mut Pool,
-    side: Expr,
-    other: Expr,
-    divisor: Expr,
-    variable: VarId,
-) -> Option<(Expr, Expr, Expr)> {
-    match *pool.node(side) {
-        Node::Neg(a) => Some((a, pool.neg(other), divisor)),
-        Node::Add(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
-            (true, false) => Some((a, pool.sub(other, b), divisor)),
-            (false, true) => Some((b, pool.sub(other, a), divisor)),
-            _ => None,
+/// Moves the outermost operation of `side` to the other side, which is the value of `moved`.
+fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option<(Expr, Solution)> {
+    let other = moved.value;
+    let has = |pool: &Pool, a: Expr, b: Expr| {
+        (pool.depends_on(a, variable), pool.depends_on(b, variable))
+    };
+    let (inner, value) = match *pool.node(side) {
+        Node::Neg(a) => (a, pool.neg(other)),
+        Node::Add(a, b) => match has(pool, a, b) {
+            (true, false) => (a, pool.sub(other, b)),
+            (false, true) => (b, pool.sub(other, a)),
+            _ => return None,
         },
-        Node::Sub(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
-            (true, false) => Some((a, pool.add(other, b), divisor)),
-            (false, true) => Some((b, pool.sub(a, other), divisor)),
-            _ => None,
+        Node::Sub(a, b) => match has(pool, a, b) {
+            (true, false) => (a, pool.add(other, b)),
+            (false, true) => (b, pool.sub(a, other)),
+            _ => return None,
         },
         Node::Mul(a, b) => {
-            let (inner, factor) = match (pool.depends_on(a, variable), pool.depends_on(b, variable))
-            {
+            let (inner, factor) = match has(pool, a, b) {
                 (true, false) => (a, b),
                 (false, true) => (b, a),
                 _ => return None,
             };
-            Some((inner, pool.div(other, factor), pool.mul(divisor, factor)))
+            let divisor = pool.mul(moved.divisor, factor);
+            return Some((inner, Solution { value: pool.div(other, factor), divisor, ..moved }));
         }
-        Node::Div(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
-            (true, false) => Some((a, pool.mul(other, b), divisor)),
-            (false, true) => Some((b, pool.div(a, other), pool.mul(divisor, other))),
-            _ => None,
+        Node::Div(a, b) => match has(pool, a, b) {
+            (true, false) => (a, pool.mul(other, b)),
+            (false, true) => {
+                let inverted = pool.mul(moved.inverted, other);
+                return Some((b, Solution { value: pool.div(a, other), inverted, ..moved }));
+            }
+            _ => return None,
         },
         Node::Apply(id, arguments) if Some(id) == function::find("exp") => {
-            Some((arguments.first(), pool.function("log", &[other]), divisor))
+            (arguments.first(), pool.function("log", &[other]))
         }
         Node::Apply(id, arguments) if Some(id) == function::find("log") => {
-            Some((arguments.first(), pool.function("exp", &[other]), divisor))
+            (arguments.first(), pool.function("exp", &[other]))
         }
         Node::Call { function, output: 0, arguments } => {
-            let (inner, value) = inverted(pool, function, arguments, other, variable)?;
-            Some((inner, value, divisor))
+            inverted(pool, function, arguments, other, variable)?
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some((inner, Solution { value, ..moved }))
 }
 
 /// The argument of a call that holds the variable, and its value by the declared inverse of the

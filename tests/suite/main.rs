@@ -82,6 +82,7 @@ mod shipped;
 mod shipped_functions;
 mod simulation;
 mod singular_derivatives;
+mod starting;
 mod structural_parameters;
 mod structure;
 mod syntax_properties;

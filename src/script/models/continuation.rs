@@ -113,7 +113,11 @@ impl DaeSystem for Continued {
         self.system.can_follow(crossing)
     }
 
-    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+    fn can_follow_now(&self, crossing: usize) -> bool {
+        self.system.can_follow_now(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<bool, Failure> {
         self.system.follow(t, y, sides)
     }
 

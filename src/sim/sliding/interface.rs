@@ -145,7 +145,11 @@ impl DaeSystem for Sliding<'_> {
         self.inner.can_follow(crossing)
     }
 
-    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+    fn can_follow_now(&self, crossing: usize) -> bool {
+        self.inner.can_follow_now(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<bool, Failure> {
         self.inner.follow(t, y, sides)
     }
 

@@ -30,7 +30,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
             pool.div(half, root)
         })
     },
-    real("exp", Value::Unary(crate::elementary::exp), |pool, x, _| pool.function("exp", &[x[0]])),
+    Function {
+        overflows: true,
+        ..real("exp", Value::Unary(crate::elementary::exp), |pool, x, _| {
+            pool.function("exp", &[x[0]])
+        })
+    },
     Function {
         aliases: &["ln"],
         domain: POSITIVE,

@@ -37,6 +37,8 @@ pub struct Function {
     pub derivative: fn(pool: &mut Pool, arguments: &[Expr], which: usize) -> Expr,
     /// Where it has a value; `None` everywhere.
     pub domain: Option<Domain>,
+    /// Whether finite arguments may have a value beyond the largest number, which is infinite then.
+    pub overflows: bool,
     /// The type of its value.
     pub result: ResultType,
     /// Whether a jump of its value is a state event outside `noEvent` (MLS §3.7.2).
@@ -167,6 +169,7 @@ const fn real(
         value,
         derivative,
         domain: None,
+        overflows: false,
         result: ResultType::Real,
         event_generating: false,
         unit: UnitRule::Unknown,
