@@ -421,6 +421,7 @@ impl<'a> Builder<'a> {
         };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
+        let is_initial = super::when::is_initial(condition);
         let condition = lowering.scalar(condition)?;
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
@@ -446,13 +447,13 @@ impl<'a> Builder<'a> {
             )
             .at(span));
         }
-        // Integers and Booleans need an equation each that gives them a value; Reals do not: the
-        // solution is the same. With all equations paired so, the loops of the hysteresis models of
-        // the standard library become linear, and chatter at their turning points.
-        let second = match first.iter().any(|equation| self.determines_discrete(equation)) {
-            true => in_order_of(&first, second),
-            false => second,
-        };
+        // Paired by position, equations for different variables would be one, and the variables of
+        // all branches one loop: the compressors of IBPSA, off with k = 1 and on with k/(k - 1).
+        // The branch of `initial()` keeps its order unless a variable needs an equation of its own:
+        // paired otherwise, the loops of the hysteresis models of the standard library become
+        // linear, and chatter at their turning points.
+        let reorders = !is_initial || first.iter().any(|e| self.determines_discrete(e));
+        let second = if reorders { in_order_of(&first, second) } else { second };
         let pool = &mut self.dae.pool;
         let merged = first.into_iter().zip(second).map(|(a, b)| {
             if a.left == b.left {

@@ -57,6 +57,7 @@ mod chattering;
 mod displacement;
 mod error;
 mod event;
+mod inner_loops;
 mod instants;
 mod integrators;
 mod linear;
