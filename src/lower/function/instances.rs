@@ -1,7 +1,7 @@
 //! Functions compiled for certain arguments, each combination once.
 
 use super::statements::Body;
-use crate::budget::instruction_limit;
+use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, ValueType};
@@ -29,7 +29,7 @@ pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
 
 /// Calls of numbers are left to the simulation after so many that took all the instructions that one
 /// may take.
-const MAX_FOLDED: u64 = 5;
+const MAX_FOLDED: u64 = 25;
 
 /// What a function is compiled for.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -255,7 +255,7 @@ impl Instances {
         if !self.is_finished(instance.code) {
             return None;
         }
-        if self.folded > MAX_FOLDED * instruction_limit() {
+        if self.folded > MAX_FOLDED * step_limit() {
             return None;
         }
         let mut machine = Machine::default();
