@@ -19,7 +19,7 @@ use crate::flatten::BaseType;
 use crate::lower::Homotopy;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::VarId;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
 const CONSISTENT: f64 = 1e-6;
@@ -81,6 +81,8 @@ pub struct System {
     pub(super) choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
     pub(super) solves_loops: bool,
+    /// That of the Jacobian of the states alone, where loops are solved inside: full.
+    full_pattern: OnceLock<Pattern>,
     /// The samples.
     pub(super) clocks: Vec<Clock>,
     /// Values that discrete variables had before an event.
@@ -146,6 +148,7 @@ impl System {
             event_solvers: Vec::new(),
             choices: Vec::new(),
             solves_loops: false,
+            full_pattern: OnceLock::new(),
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
             previous_iterate: vec![0.0; program.events.iterated.len()],
@@ -248,10 +251,15 @@ impl System {
         }
     }
 
+    /// Whether loops are solved inside, and there are some.
+    fn has_inner_loops(&self) -> bool {
+        self.solves_loops && !self.program.iteration.is_empty()
+    }
+
     /// Loads y, and solves for the iteration variables that it does not hold.
     fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.load(t, y);
-        if !self.solves_loops || self.program.iteration.is_empty() {
+        if !self.has_inner_loops() {
             return Ok(());
         }
         self.solve(Stage::Continuous)?;
@@ -552,10 +560,16 @@ impl DaeSystem for System {
     }
 
     fn pattern(&self) -> &Pattern {
-        &self.program.pattern
+        if !self.has_inner_loops() {
+            return &self.program.pattern;
+        }
+        self.full_pattern.get_or_init(|| Pattern::full(self.n_differential()))
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        if self.has_inner_loops() {
+            return self.difference_jacobian(t, y, values);
+        }
         self.load(t, y);
         match read(&self.program.jacobian, &mut self.registers, values) {
             // A derivative may have no value where the right-hand side has one.

@@ -58,6 +58,7 @@ mod displacement;
 mod effort;
 mod error;
 mod event;
+mod inner_loops;
 mod instants;
 mod integrators;
 mod linear;

@@ -55,20 +55,29 @@ pub struct Simulator {
 #[derive(Default)]
 pub struct Nominals {
     plain: Vec<f64>,
-    with_shares: [OnceCell<Vec<f64>>; MOST_SURFACES],
+    /// Those of the states alone, once loops are solved inside.
+    states: OnceCell<Vec<f64>>,
+    /// For both.
+    with_shares: [[OnceCell<Vec<f64>>; MOST_SURFACES]; 2],
     /// That of a share.
     share: f64,
 }
 
 impl Nominals {
     pub fn plain(&self) -> &[f64] {
-        &self.plain
+        self.states.get().unwrap_or(&self.plain)
+    }
+
+    /// Leaves out those of algebraic unknowns from now on.
+    pub fn show_states(&self, n: usize) {
+        self.states.get_or_init(|| self.plain[..n].to_vec());
     }
 
     /// With so many shares at a place.
     pub fn with_shares(&self, place: usize, k: usize) -> &[f64] {
-        self.with_shares[k - 1].get_or_init(|| {
-            let (before, behind) = self.plain.split_at(place);
+        let slots = &self.with_shares[usize::from(self.states.get().is_some())];
+        slots[k - 1].get_or_init(|| {
+            let (before, behind) = self.plain().split_at(place);
             [before, &vec![self.share; k], behind].concat()
         })
     }
@@ -184,7 +193,8 @@ impl Simulator {
             *nominal = 1.0;
         }
         nominals.share = nominal_share(tolerance);
-        nominals.with_shares.iter_mut().for_each(|with| drop(with.take()));
+        nominals.states.take();
+        nominals.with_shares.iter_mut().flatten().for_each(|with| drop(with.take()));
     }
 }
 
@@ -217,7 +227,7 @@ fn integrator<'a>(
 
 /// Whether the simulation goes on after an event.
 #[derive(PartialEq)]
-enum After {
+pub enum After {
     /// The step still holds.
     Resume,
     /// The integrator was restarted.
@@ -265,7 +275,7 @@ impl Run<'_> {
                     self.count_step();
                     self.advance_to_end_of_step(time_event)?
                 }
-                Err(kind) => self.jump(kind)?,
+                Err(kind) => self.jump(kind).or_else(|kind| self.take_loops_inside(kind))?,
             };
             if after == After::Terminated {
                 break;

@@ -425,6 +425,20 @@ fn the_second_derivative_function_is_used() {
     assert!((column("a") - second).abs() < 1e-9, "{} is not {second}", column("a"));
 }
 
+#[test]
+fn the_declared_inverse_is_used_as_written() {
+    // It is only nearly an inverse: whoever iterates finds 1 instead.
+    let model = "model Main \
+        function rate input Real u; input Real k; output Real y; \
+        algorithm y := k*(u + u^3); annotation(Inline = false, inverse(u = drop(y, k = k))); \
+        end rate; function drop input Real y; input Real k; output Real u; \
+        algorithm u := y/k/3; annotation(Inline = false, inverse(y = rate(u, k))); end drop; \
+        parameter Real k = 2; Real x; Real y; \
+        equation 3*rate(x, k) + 1 = 13; drop(y, k) = 2; end Main;";
+    let run = simulated(model, 1.0);
+    assert_eq!((run.column("x")[0], run.column("y")[0]), (2.0 / 3.0, 20.0));
+}
+
 /// A table as an external object, with the derivative that its library declares.
 const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
     input String name; input Real table[:, :]; input Integer smoothness; output Table id; \

@@ -20,8 +20,8 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference,
-    DerivativeClass, Element, Expression, ExpressionKind, ForIndex, NamedArgument, Purity,
-    Restriction, Section, Statement, StatementKind, Subscript, Visibility,
+    DerivativeClass, Element, ElementModification, Expression, ExpressionKind, ForIndex,
+    NamedArgument, Purity, Restriction, Section, Statement, StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
@@ -186,25 +186,53 @@ impl Instantiation<'_> {
         }
     }
 
-    /// Makes the functions of `derivative` annotations ready and writes their full names; those
-    /// that cannot be made ready are left out (MLS §12.7.1).
-    fn derivatives(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
+    /// Makes the functions of `derivative` and `inverse` annotations ready and writes their full
+    /// names; those that cannot be made ready are left out (MLS §12.7.1, §12.8).
+    fn named_functions(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
         let mut kept = Vec::with_capacity(arguments.len());
         for mut argument in arguments {
-            if let Argument::Element(element) = &mut argument
-                && element.name.node.last().is_some_and(|name| name == "derivative")
-                && let Some(modification) = &mut element.modification
-                && let Some(Binding::Expression(e)) = &mut modification.binding
-                && let ExpressionKind::Reference(reference) = &mut e.kind
-            {
-                match self.function_name(&reference.name(), context, e.span) {
-                    Ok(full) => *reference = ComponentReference::from_name(&full, e.span),
-                    Err(_) => continue,
-                }
+            let is_ready = match &mut argument {
+                Argument::Element(element) => match element.name.node.last().map(Ident::as_str) {
+                    Some("derivative") => self.name_function(element, context),
+                    Some("inverse") => self.name_inverses(element, context),
+                    _ => true,
+                },
+                Argument::Redeclaration(_) => true,
+            };
+            if is_ready {
+                kept.push(argument);
             }
-            kept.push(argument);
         }
         kept
+    }
+
+    /// Writes the full name of the function behind `=`, alone or called; whether there is one.
+    fn name_function(&mut self, element: &mut ElementModification, context: ScopeId) -> bool {
+        let Some(modification) = &mut element.modification else { return true };
+        let Some(Binding::Expression(e)) = &mut modification.binding else { return true };
+        let span = e.span;
+        let (ExpressionKind::Reference(reference)
+        | ExpressionKind::Call { function: reference, .. }) = &mut e.kind
+        else {
+            return true;
+        };
+        match self.function_name(&reference.name(), context, span) {
+            Ok(full) => {
+                *reference = ComponentReference::from_name(&full, span);
+                true
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// The same of each input of `inverse(x = f(y), ...)`.
+    fn name_inverses(&mut self, element: &mut ElementModification, context: ScopeId) -> bool {
+        let Some(modification) = &mut element.modification else { return false };
+        modification.arguments.retain_mut(|argument| match argument {
+            Argument::Element(of_input) => self.name_function(of_input, context),
+            Argument::Redeclaration(_) => false,
+        });
+        !modification.arguments.is_empty()
     }
 
     /// The name of a function, with a number if another function has it: the same text in another
@@ -289,7 +317,7 @@ impl Instantiation<'_> {
         let mut annotations = Vec::new();
         for scope in &lineage {
             let own = annotation(self.classes.text(*scope).sections());
-            annotations.extend(self.derivatives(own, *scope));
+            annotations.extend(self.named_functions(own, *scope));
         }
         Ok(Function {
             name: name.clone(),

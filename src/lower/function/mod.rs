@@ -13,6 +13,7 @@ mod emitter;
 mod external;
 mod external_kinds;
 mod instances;
+mod inverse;
 mod partial_derivative;
 mod place;
 mod printing;
@@ -72,6 +73,11 @@ fn inlined_or_compiled(
     mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if inverse::is_kept(function)
+        && let Ok(outputs) = compiled_call(builder, function, arguments.clone(), span)
+    {
+        return Ok(outputs);
+    }
     let asserted = builder.dae.assertions.len();
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
