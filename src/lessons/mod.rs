@@ -1,0 +1,15 @@
+//! Exercises about the genetic algorithm: scripts with a gap, hints, solutions, and checks.
+//!
+//! A [`Lesson`] is a script of about one page that a learner completes. [`check`] runs the learner's
+//! copy in memory, once as it is and again with other seeds, inputs or files ([`variant`]), and asks
+//! after each run what must hold. A [`Progress`] remembers what is passed. Nothing here touches files:
+//! the command line and a page give the texts.
+
+mod check;
+mod progress;
+mod shipped;
+mod variant;
+
+pub use check::{Verdict, check, without_changes};
+pub use progress::Progress;
+pub use shipped::{Check, Claim, Lesson, all};
