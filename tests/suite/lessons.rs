@@ -147,7 +147,9 @@ fn what_is_passed_is_kept_beside_the_copies() {
     assert!(!out.contains("copied") && out.contains("Lesson 4 passed."), "{out}");
     assert!(out.ends_with("The next lesson: gapi lesson 5\n"), "{out}");
     let (_, out, _) = gapi(&here, &["lesson"]);
-    assert!(out.contains("[x] Lesson 4: ") && out.contains("\n1 of 18 passed. Next: gapi lesson 1\n"));
+    assert!(
+        out.contains("[x] Lesson 4: ") && out.contains("\n1 of 18 passed. Next: gapi lesson 1\n")
+    );
     let (code, out, _) = gapi(&here, &["lesson", "4", "--reset"]);
     assert!(code == 0 && out.contains("04_selection.mos is kept as lessons/04_selection.mos.old"));
     let (_, out, _) = gapi(&here, &["lesson"]);
@@ -180,7 +182,10 @@ fn every_hint_is_reached_one_after_another() {
             assert!(out.contains(&format!("Hint {} of {of}: {hint}\n", k + 1)), "{out}");
         }
         let (_, out, _) = gapi(&here, &["lesson", &number, "--hint"]);
-        assert!(out.ends_with(&format!("The solution: gapi lesson {number} --solution\n")), "{out}");
+        assert!(
+            out.ends_with(&format!("The solution: gapi lesson {number} --solution\n")),
+            "{out}"
+        );
         let (_, out, _) = gapi(&here, &["lesson", &number, "--solution"]);
         let filled = lesson.solution.iter().map(|[_, filled]| filled.trim());
         assert!(filled.clone().all(|filled| out.contains(filled)), "{out}");

@@ -22,7 +22,7 @@ impl Copies<'_> {
     }
 
     /// All files of a lesson: their names and how they are shipped.
-    fn shipped<'l>(lesson: &'l Lesson) -> impl Iterator<Item = (&'l str, &'l str)> {
+    fn shipped(lesson: &Lesson) -> impl Iterator<Item = (&str, &str)> {
         let companions = lesson.companions.iter().map(|(name, text)| (&**name, &**text));
         companions.chain([(&*lesson.file, &*lesson.text)])
     }

@@ -10,9 +10,9 @@ use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
 use crate::registry::BAD_OPTION;
-use crate::script::{Reporting, Session};
 use crate::script::builtins::Failure;
 use crate::script::models::{simulation, static_curve};
+use crate::script::{Reporting, Session};
 use crate::source::Span;
 use crate::{bail, mat};
 use std::path::Path;

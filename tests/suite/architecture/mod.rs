@@ -151,8 +151,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "lessons", "syntax", "budget", "external", "script", "identify", "teach", "runtime", "codegen", "results",
-            "plot", "sim", "ga", "models", "registry", "name", "source", "diag",
+            "lessons", "syntax", "budget", "external", "script", "identify", "teach", "runtime",
+            "codegen", "results", "plot", "sim", "ga", "models", "registry", "name", "source",
+            "diag",
         ],
     ),
 ];
