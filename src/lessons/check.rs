@@ -22,15 +22,6 @@ pub enum Verdict {
     NotYet(String),
 }
 
-/// Whether a script is the shipped one, whatever its line ends and its blanks at the end.
-pub fn without_changes(lesson: &Lesson, text: &str, companions: &[(String, String)]) -> bool {
-    let same = |a: &str, b: &str| {
-        a.trim_end().lines().map(str::trim_end).eq(b.trim_end().lines().map(str::trim_end))
-    };
-    same(text, &lesson.text)
-        && lesson.companions.iter().zip(companions).all(|(a, b)| same(&a.1, &b.1))
-}
-
 /// Checks the learner's script, whose companions lie beside it.
 pub fn check(lesson: &Lesson, text: &str, companions: &[(String, String)]) -> Verdict {
     let failed = lesson.checks.iter().find_map(|check| {

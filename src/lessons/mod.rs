@@ -5,11 +5,13 @@
 //! after each run what must hold. A [`Progress`] remembers what is passed. Nothing here touches files:
 //! the command line and a page give the texts.
 
+mod advice;
 mod check;
 mod progress;
 mod shipped;
 mod variant;
 
-pub use check::{Verdict, check, without_changes};
+pub use advice::advice;
+pub use check::{Verdict, check};
 pub use progress::Progress;
 pub use shipped::{Check, Claim, Lesson, all};

@@ -92,7 +92,7 @@ fn work_on(
     }
     let file = copies.file(&lesson.file).display().to_string();
     if copies.make(lesson)? {
-        terminal::print(&format!("{}\ncopied to {file}\n\n", lesson.introduction()));
+        terminal::print(&format!("{}\ncopied to {file}\n\n", filled(&lesson.introduction())));
     } else {
         terminal::print(&format!("Lesson {}: {}\n{file}\n\n", lesson.number, lesson.title()));
     }
@@ -190,12 +190,15 @@ fn run_and_check(
         return Ok(ExitCode::from(code));
     }
     let number = lesson.number;
+    let (text, companions) = copies.read(lesson)?;
     let verdict = match code {
-        0 => {
-            let (text, companions) = copies.read(lesson)?;
-            lessons::check(lesson, &text, &companions)
+        0 => lessons::check(lesson, &text, &companions),
+        _ => {
+            let advice = lessons::advice(lesson, &text).join(" ");
+            Verdict::NotYet(format!(
+                "The script ended with the error above. Correct it first. {advice}"
+            ))
         }
-        _ => Verdict::NotYet("The script ended with the error above. Correct it first.".into()),
     };
     match verdict {
         Verdict::Passed => {
@@ -219,7 +222,8 @@ fn run_and_check(
 
 /// Paragraphs in lines that fit a terminal; lines that begin with a blank or a sign stay.
 fn filled(text: &str) -> String {
-    let is_prose = |part: &&str| part.lines().all(|line| line.starts_with(char::is_alphabetic));
+    let begins = |c: char| c.is_alphabetic() || c == '(';
+    let is_prose = |part: &&str| part.lines().all(|line| line.starts_with(begins));
     let paragraphs = text.trim_end().split("\n\n").map(|part| match is_prose(&part) {
         true => crate::teach::plain::wrapped(part),
         false => format!("{part}\n"),
