@@ -147,11 +147,13 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "diag",
         ],
     ),
+    ("lessons", &["script", "value", "syntax", "source"]),
     (
         "cli",
         &[
-            "budget", "external", "script", "identify", "teach", "runtime", "codegen", "results",
-            "plot", "sim", "ga", "models", "registry", "name", "source", "diag",
+            "lessons", "syntax", "budget", "external", "script", "identify", "teach", "runtime",
+            "codegen", "results", "plot", "sim", "ga", "models", "registry", "name", "source",
+            "diag",
         ],
     ),
 ];
