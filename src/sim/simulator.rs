@@ -118,21 +118,7 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        system.begin();
-        // Explicit methods see no algebraic variables if the system can do without; and without
-        // states there is nothing to integrate, only equations to solve at every point.
-        let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
-        let solves_loops = is_explicit || system.n_differential() == 0;
-        system.solve_loops(solves_loops);
-        let n = system.n_differential() + system.n_algebraic();
-        self.resize(system, n);
-        self.y.resize(n * (1 + system.n_directions()), 0.0);
-        self.set_nominals(system, settings.tolerance);
-        out.reset(system.n_observed());
-        self.effort = Effort::default();
-        if settings.counts_effort {
-            self.effort.reset(n, system.n_crossings());
-        }
+        let (n, is_explicit, solves_loops) = self.prepare(system, settings, out);
         let integrator: &mut dyn Integrator = if n == 0 {
             &mut self.without_unknowns
         } else {
@@ -148,7 +134,11 @@ impl Simulator {
                 system: &mut system,
                 nominal: self.nominals.plain(),
                 settings,
-                budget: StepBudget::new(settings),
+                budget: StepBudget::new(
+                    settings.start,
+                    settings.max_steps,
+                    settings.max_total_steps,
+                ),
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut statistics,
             },
@@ -176,6 +166,32 @@ impl Simulator {
         let ended = run.run();
         ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
         Ok(statistics)
+    }
+
+    /// Sets up the workspace; the number of unknowns, whether the method is explicit, and whether the
+    /// system solves its loops itself.
+    fn prepare(
+        &mut self,
+        system: &mut dyn DaeSystem,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> (usize, bool, bool) {
+        system.begin();
+        // Explicit methods see no algebraic variables if the system can do without; and without
+        // states there is nothing to integrate, only equations to solve at every point.
+        let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
+        let solves_loops = is_explicit || system.n_differential() == 0;
+        system.solve_loops(solves_loops);
+        let n = system.n_differential() + system.n_algebraic();
+        self.resize(system, n);
+        self.y.resize(n * (1 + system.n_directions()), 0.0);
+        self.set_nominals(system, settings.tolerance);
+        out.reset(system.n_observed());
+        self.effort = Effort::default();
+        if settings.counts_effort {
+            self.effort.reset(n, system.n_crossings());
+        }
+        (n, is_explicit, solves_loops)
     }
 
     fn resize(&mut self, system: &dyn DaeSystem, n: usize) {
@@ -282,7 +298,7 @@ impl Run<'_> {
             }
             self.watch_progress()?;
             let Problem { settings, budget, statistics, .. } = &mut self.problem;
-            budget.extend(settings, self.t, statistics.attempts());
+            budget.extend(self.t, settings.stop, statistics.attempts());
         }
         self.end_slide();
         let finished = self.problem.system.finish(self.t, self.y);
