@@ -67,6 +67,10 @@
 //! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks; [`cli`]: the command line, the only door outside.
 
+#![cfg_attr(
+    not(all(feature = "jit", feature = "xlsx", feature = "hdf5", feature = "pictures")),
+    allow(dead_code, unused_imports, reason = "what only the parts that are left out use")
+)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
 
 pub mod bibliography;
@@ -104,4 +108,5 @@ pub mod teach;
 pub mod units;
 pub mod value;
 
+#[cfg(feature = "cli")]
 pub mod cli;

@@ -23,6 +23,7 @@ mod produced;
 pub mod quiz;
 #[cfg(test)]
 mod sample;
+#[cfg(feature = "cli")]
 pub mod screen;
 mod step;
 mod stop_test;
