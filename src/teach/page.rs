@@ -87,11 +87,7 @@ fn body() -> Markup {
                     p.legend { (LEGEND) }
                     p id="individual" aria-live="polite" { "\u{a0}" }
                 }
-                section id="curve-panel" {
-                    h3 { "Best fitness over the generations" }
-                    p { label { input id="future" type="checkbox"; " show how it goes on" } }
-                    div id="curve" {}
-                }
+                (curve_panel())
                 section id="family-panel" {
                     h3 { "The family of the best" }
                     p {
@@ -107,6 +103,17 @@ fn body() -> Markup {
                 }
                 (panel("tell", "Can the data tell?"))
             }
+        }
+    }
+}
+
+/// The curve up to now, and the switch for the rest.
+fn curve_panel() -> Markup {
+    html! {
+        section id="curve-panel" {
+            h3 { "Best fitness over the generations" }
+            p { label { input id="future" type="checkbox"; " show how it continues" } }
+            div id="curve" {}
         }
     }
 }

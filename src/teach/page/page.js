@@ -193,7 +193,7 @@ function begin() {
   at("up").value = Math.min(1, DATA.parameters.length - 1);
   const left = DATA.of - DATA.generations.length;
   at("subject").textContent = DATA.model + ": " + DATA.parameters.map((_, j) => titled(j)).join(", ") +
-    (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, those that improve the best, and the last" : "");
+    (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, the largest improvements, and the last" : "");
   at("prediction").addEventListener("submit", predict);
   at("predicting").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
