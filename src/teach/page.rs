@@ -65,11 +65,7 @@ fn body() -> Markup {
         main {
             div.column {
                 (panel("drawing", "This step"))
-                section id="script-panel" {
-                    h3 { "The script" }
-                    p id="script-name" {}
-                    pre id="script" tabindex="0" {}
-                }
+                (script_panel())
                 (panel("fit", "Measured and simulated"))
                 section id="landscape-panel" {
                     h3 { "The landscape of the fitness" }
@@ -103,6 +99,17 @@ fn body() -> Markup {
                 }
                 (panel("tell", "Can the data tell?"))
             }
+        }
+    }
+}
+
+/// The script with the line of this step.
+fn script_panel() -> Markup {
+    html! {
+        section id="script-panel" {
+            h3 { "The script" }
+            p id="script-name" {}
+            pre id="script" tabindex="0" {}
         }
     }
 }
