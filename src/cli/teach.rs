@@ -152,12 +152,14 @@ fn recorded(
     let is_other = change.is_some() || again.run.is_some_and(|run| run > 0);
     let output = if is_other { output.within("what_if") } else { output };
     let out = output.folder.clone();
-    let terminal = Terminal::new(global.color, true);
+    let mut terminal = Terminal::new(global.color, false);
+    terminal.show_progress_only();
     let world = SystemWorld::for_results(terminal, output, None)
         .map_err(|error| Trouble::Message(error.to_string()))?;
     world.catch_interrupts();
     let reporting = if again.run.is_some() { Reporting::Off } else { Reporting::Usual };
-    let options = Options { echo: Echo::Nothing, reporting, ..Options::default() };
+    // A quiet session reports errors only.
+    let options = Options { echo: Echo::Nothing, quiet: true, reporting, ..Options::default() };
     let mut session = session::open(global, world).with_options(options);
     session.use_stream(again.run.unwrap_or(0) as u64);
     let file = out.join("run.trace");

@@ -147,7 +147,7 @@ mod tests {
         let settings =
             [repeated("original", &[1.0, 2.0, 3.0]), repeated("F_Mut := 1", &[2.0, 1.0, 4.0])];
         let text = summary(&settings);
-        assert!(text.contains("original          2.000"), "{text}");
+        assert!(text.contains("original        2.000"), "{text}");
         assert!(text.contains("1.500 to 3.000  1 of 3"), "{text}");
         let series = &figure(&settings).panels[0].series;
         assert_eq!(series.len(), 4);

@@ -16,6 +16,7 @@ pub mod explain;
 pub mod family;
 mod file;
 mod generation;
+mod kept;
 pub mod page;
 pub mod picture;
 pub mod plain;

@@ -4,6 +4,9 @@
 use crate::cli::{command, folder, gapi};
 use crate::shipped::project;
 use gapilib::lessons::{self, Lesson, Verdict};
+use gapilib::script::world::MemoryWorld;
+use gapilib::script::{Reporting, Session};
+use gapilib::value::Value;
 use serde::Deserialize;
 use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
@@ -206,6 +209,30 @@ fn a_saved_copy_is_checked_again() {
     assert!(lines.any(|line| waits(&line)));
     watching.kill().unwrap();
     watching.wait().unwrap();
+}
+
+/// What lesson 3 says about random search, over 20 seeds: ten times as many individuals make the best
+/// fitness about ten times smaller.
+#[test]
+fn ten_times_as_many_random_individuals_gain_a_factor_of_ten() {
+    let (text, _) = lesson(3).solved();
+    let mean_of_log = |count: usize| {
+        let counts = format!("for Count in {{{count}}} loop");
+        let text = text.replace("for Count in {1, 10, 100, 1000} loop", &counts);
+        let best = |stream| {
+            let mut session = Session::new(Box::new(MemoryWorld::new()));
+            session.options.reporting = Reporting::Off;
+            session.use_stream(stream);
+            assert_eq!(session.run_text("lesson 3", &text).code, 0);
+            match session.variable("Best") {
+                Some(Value::Real(best)) => best.ln(),
+                other => panic!("{other:?}"),
+            }
+        };
+        (1..=20).map(best).sum::<f64>() / 20.0
+    };
+    let factor = (mean_of_log(50) - mean_of_log(500)).exp();
+    assert!((4.0..25.0).contains(&factor), "{factor}");
 }
 
 /// A learner can watch every lesson, also unsolved, step by step.
