@@ -38,6 +38,7 @@ convertElement("Pumps.Base", "extent", "size");
 convertModifiers("Pumps.Pump", {"low=1", "high=3"}, {"gain=%low%*(%high% - 1)"}, true);
 convertModifiers({"Pumps.Base"}, fill("", 0), {"size=7"});
 convertModifiers("Pumps.Pump", {"colour"}, fill("", 0));
+convertModifiers("Pumps.Pump", {"first"}, {"rate(start=2*%first%)"});
 convertMessage("Pumps.Valve", "there are no valves any more");
 convertMessage("Pumps.Pump", "set the flow", "speed");
 "#;
@@ -165,11 +166,12 @@ fn elements_are_converted_where_they_are_named() {
 #[test]
 fn modifiers_are_converted_with_the_values_and_defaults_of_the_script() {
     converted(
-        "model M Pumps.Pump p(low = 2 + 1, colour = 3); Pumps.Pump q(high = 9); Pumps.Pump r; end M;",
+        "model M Pumps.Pump p(low = 2 + 1, colour = 3); Pumps.Pump q(high = 9); Pumps.Pump r; Pumps.Pump s(first = 1 + 4); end M;",
         &[
             "parameter Real 'p.gain' = (2 + 1) * (3 - 1);",
             "parameter Real 'q.gain' = 1 * (9 - 1);",
             "parameter Real 'r.gain' = 1;",
+            "Real 's.rate'(start = 2 * (1 + 4)) = 's.gain' * 's.nominal';",
         ],
     );
     // What is written takes precedence over what is added to all uses.

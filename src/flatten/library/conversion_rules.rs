@@ -40,8 +40,8 @@ pub(super) struct Conditional {
 pub(super) struct ModifierRule {
     /// Names with their defaults.
     pub(super) old: Vec<(Name, Option<Arc<str>>)>,
-    /// Names with expressions, in which `%name%` stands for an old value.
-    pub(super) new: Vec<(Name, Arc<str>)>,
+    /// Modifiers as they are written, in which `%name%` stands for an old value.
+    pub(super) new: Vec<Arc<str>>,
 }
 
 impl Rules {
@@ -107,7 +107,7 @@ impl Rules {
             }
             ("convertModifiers", [classes, old, new]) => {
                 for class in *classes {
-                    self.modifier_rule(class, old, new, call.span)?;
+                    self.modifier_rule(class, old, new);
                 }
             }
             _ => return Err(no_rule(call.span)),
@@ -126,18 +126,12 @@ impl Rules {
         self.elements.entry(class).or_default().push((Name::parse(old), Name::parse(new)));
     }
 
-    fn modifier_rule(
-        &mut self,
-        class: &str,
-        old: &[Arc<str>],
-        new: &[Arc<str>],
-        span: Span,
-    ) -> Result<(), Diagnostic> {
+    fn modifier_rule(&mut self, class: &str, old: &[Arc<str>], new: &[Arc<str>]) {
         let class = Name::parse(class);
         if old.iter().any(|old| old.trim_start().starts_with("cardinality")) {
             let message = "modifiers that depend on `cardinality` are not converted";
             self.messages.entry(class).or_default().push((None, message.into()));
-            return Ok(());
+            return;
         }
         let mut rule = ModifierRule::default();
         for text in old {
@@ -146,12 +140,8 @@ impl Rules {
                 .map_or((&**text, None), |(name, default)| (name, Some(Arc::from(default.trim()))));
             rule.old.push((Name::parse(name.trim()), default));
         }
-        for text in new {
-            let (name, value) = text.split_once('=').ok_or_else(|| no_rule(span))?;
-            rule.new.push((Name::parse(name.trim()), value.trim().into()));
-        }
+        rule.new = new.to_vec();
         self.modifiers.entry(class).or_default().push(rule);
-        Ok(())
     }
 
     /// The new name of a class, or of what lies in one: the longest rule counts.

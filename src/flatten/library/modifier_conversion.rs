@@ -7,13 +7,13 @@ use super::old_names::Meaning;
 use crate::fault;
 use crate::flatten::errors::CONVERSION;
 use crate::name::{Ident, Name};
-use crate::source::{Span, Spanned};
+use crate::source::Span;
 use crate::syntax;
 use crate::syntax::ast::{
-    Argument, Binding, ClassSpecifier, ComponentDeclaration, ComponentReference,
-    ElementModification, Expression, ExpressionKind, Modification, RedeclaredElement, Subscript,
+    Argument, Binding, ClassSpecifier, ComponentDeclaration, ComponentReference, Expression,
+    ExpressionKind, Modification, RedeclaredElement, Subscript,
 };
-use crate::syntax::visit::{Rewrite, rewrite_expression};
+use crate::syntax::visit::{Rewrite, rewrite_arguments, rewrite_expression};
 use std::sync::Arc;
 
 /// The arguments of a modification.
@@ -89,9 +89,9 @@ impl Converter<'_> {
             }
             self.rename(&old, rules, given);
             // What is written takes precedence.
-            for (name, value) in added {
-                if position(given, &name).is_none() {
-                    given.push(modifier(&name, value, span));
+            for argument in added {
+                if name_of(&argument).is_none_or(|name| position(given, name).is_none()) {
+                    given.push(argument);
                 }
             }
         }
@@ -151,7 +151,7 @@ impl Converter<'_> {
         &mut self,
         rule: &ModifierRule,
         given: &mut Modifiers,
-        added: &mut Vec<(Name, Expression)>,
+        added: &mut Modifiers,
         span: Span,
     ) {
         let mut values = Vec::new();
@@ -175,12 +175,12 @@ impl Converter<'_> {
                 .iter()
                 .any(|(name, _)| position(std::slice::from_ref(argument), name).is_some())
         });
-        for (name, template) in &rule.new {
+        for template in &rule.new {
             match filled(template, &values, span) {
-                Some(value) => added.push((name.clone(), value)),
+                Some(arguments) => added.extend(arguments),
                 None => self.problems.push(
-                    fault!(CONVERSION, "the modifier `{name}={template}` of a conversion script has \
-                                        no value here";
+                    fault!(CONVERSION, "the modifier `{template}` of a conversion script has no \
+                                        value here";
                         help: "give the old modifiers a default in the script")
                     .at(span),
                 ),
@@ -193,11 +193,15 @@ fn empty(span: Span) -> Modification {
     Modification { arguments: Vec::new(), binding: None, span }
 }
 
+fn name_of(argument: &Argument) -> Option<&Name> {
+    match argument {
+        Argument::Element(element) => Some(&element.name.node),
+        Argument::Redeclaration(_) => None,
+    }
+}
+
 fn position(given: &[Argument], name: &Name) -> Option<usize> {
-    given.iter().position(|argument| match argument {
-        Argument::Element(element) => element.name.node.parts == name.parts,
-        Argument::Redeclaration(_) => false,
-    })
+    given.iter().position(|one| name_of(one).is_some_and(|known| known.parts == name.parts))
 }
 
 fn bound(argument: &Argument) -> Option<&Expression> {
@@ -210,18 +214,6 @@ fn bound(argument: &Argument) -> Option<&Expression> {
     }
 }
 
-fn modifier(name: &Name, value: Expression, span: Span) -> Argument {
-    let binding = Some(Binding::Expression(value));
-    Argument::Element(ElementModification {
-        each: false,
-        is_final: false,
-        name: Spanned { node: name.clone(), span },
-        modification: Some(Modification { arguments: Vec::new(), binding, span }),
-        description: None,
-        span,
-    })
-}
-
 /// An expression of a script, as if it were written at a place.
 fn parsed(text: &str, span: Span) -> Option<Expression> {
     let mut e = syntax::parse_expression(span.source, text).ok()?;
@@ -229,17 +221,18 @@ fn parsed(text: &str, span: Span) -> Option<Expression> {
     Some(e)
 }
 
-/// The value of a new modifier, with the old values for `%name%`.
-fn filled(template: &str, values: &[(Name, Option<Expression>)], span: Span) -> Option<Expression> {
+/// A new modifier, with the old values for `%name%`.
+fn filled(template: &str, values: &[(Name, Option<Expression>)], span: Span) -> Option<Modifiers> {
     // `'%name%'` is an identifier, which no other name of the template can be.
     let mut text = template.to_owned();
     for (name, _) in values {
         text = text.replace(&format!("%{name}%"), &format!("'%{name}%'"));
     }
-    let mut e = syntax::parse_expression(span.source, &text).ok()?;
+    let text = format!("M({text})");
+    let (_, mut arguments) = syntax::parse_class_with_modification(span.source, &text).ok()?;
     let mut filling = Filling { values, span, complete: true };
-    filling.expression(&mut e);
-    filling.complete.then_some(e)
+    rewrite_arguments(&mut filling, &mut arguments);
+    filling.complete.then_some(arguments)
 }
 
 /// Puts old values where a template names them.
