@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// The libraries whose classes have other names than a library was written for.
 pub(super) type Conversions = Arc<[(Ident, Arc<Rules>)]>;
 
+/// Why a class, or an element of it, cannot be converted.
+type Message = (Option<Name>, Arc<str>);
+
 /// The rules of one script, by the old names of the classes.
 #[derive(Debug, Default)]
 pub(super) struct Rules {
@@ -23,7 +26,7 @@ pub(super) struct Rules {
     conditional: FxHashMap<Name, Vec<Conditional>>,
     elements: FxHashMap<Name, Vec<(Name, Name)>>,
     modifiers: FxHashMap<Name, Vec<ModifierRule>>,
-    messages: FxHashMap<Name, Vec<(Option<Name>, Arc<str>)>>,
+    messages: FxHashMap<Name, Vec<Message>>,
 }
 
 /// `convertClassIf(class, element, value, new)`
@@ -182,7 +185,7 @@ impl Rules {
     pub(super) fn message(&self, old: &Name) -> Option<&Arc<str>> {
         (1..=old.parts.len()).rev().find_map(|length| {
             let head = Name::new(old.parts[..length].iter().copied());
-            let of_class = |(element, _): &&(Option<Name>, Arc<str>)| element.is_none();
+            let of_class = |(element, _): &&Message| element.is_none();
             self.messages.get(&head)?.iter().find(of_class).map(|(_, message)| message)
         })
     }

@@ -6,7 +6,7 @@ use super::{ClassId, Library, Origin, locked};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::CONVERSION;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax;
 use crate::syntax::ast::{
@@ -28,6 +28,12 @@ impl Library {
         let found = self.find_conversions(id);
         locked(&self.conversions.rules).insert(id, found.clone());
         found
+    }
+
+    /// Whether a library has a script that converts what was written for another version of it.
+    pub fn converts_from(&self, library: &Name, version: &str) -> bool {
+        let rules = self.find(library).map(|id| self.rules_from(id, version, Span::NONE));
+        matches!(rules, Some(Ok(Some(_))))
     }
 
     /// Whether the classes of any library are converted.
