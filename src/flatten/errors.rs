@@ -93,4 +93,7 @@ codes! {
     /// What an old library does otherwise (a warning).
     OLD_LIBRARY = "old-library":
         "## What it means\n\nA library uses legacy constructs that current Modelica does not allow: files without `within`, folders or files whose names differ from their contents (MLS §13.4), annotations anywhere in a class, graphics of Modelica 1 or 2, values of `outer` components (§5.4). The library works nevertheless. The warning is given once for each library and construct, at the first occurrence.\n\n## Example\n\nA folder `CaseStudies` whose `package.mo` has `package casestudies`.\n\n## What to do\n\nNothing, or follow the message in all files of the library.",
+    /// A conversion of a library to newer versions of those that it uses.
+    CONVERSION = "conversion":
+        "## What it means\n\nA library says by `uses` that it was written for an older version of another one, and the rules by which the newer version converts it (MLS §18.8) are not there, are no rules, or say that it cannot be converted.\n\n## Example\n\n`convertMessage(\"Pumps.Old\", \"use Pumps.New, which needs a nominal flow\")` in the conversion script of a library, and a model with `Pumps.Old pump`.\n\n## What to do\n\nFollow the message, or load the version that the library was written for.",
 }

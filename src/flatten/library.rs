@@ -2,10 +2,15 @@
 
 mod bases;
 mod chains;
+mod conversion;
+mod conversion_rules;
 mod element_index;
 mod files;
 mod legacy;
+mod modifier_conversion;
+mod old_names;
 mod reading;
+mod versions;
 
 pub(super) use bases::Question;
 pub use files::LibraryFiles;
@@ -21,11 +26,13 @@ use crate::syntax::ast::{
     Section, StoredDefinition, Visibility,
 };
 use bases::BaseCache;
+use conversion_rules::Conversions;
 use element_index::ElementIndex;
 use files::{Entry, Folder};
 use indexmap::{IndexMap, IndexSet};
 pub(super) use legacy::LegacyConstruct;
 use legacy::LegacyConstructs;
+use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -51,6 +58,8 @@ pub struct Library {
     /// The classes that were asked for and could not be read.
     broken: Mutex<IndexSet<ClassId>>,
     legacy: LegacyConstructs,
+    /// Another one as soon as a class is added.
+    conversions: Arc<ConversionCache>,
     resources: Resources,
     /// Whether what the specification forbids but libraries do is an error.
     strict: bool,
@@ -67,10 +76,22 @@ impl Clone for Library {
             bases: self.bases.clone(),
             broken: Mutex::default(),
             legacy: self.legacy.clone(),
+            conversions: self.conversions.clone(),
             resources: self.resources.clone(),
             strict: self.strict,
         }
     }
+}
+
+/// How libraries are converted to the versions of others that are loaded, found so far.
+#[derive(Debug, Default)]
+struct ConversionCache {
+    /// Whether any library is.
+    is_any: OnceLock<bool>,
+    /// By the classes at the top.
+    rules: Mutex<FxHashMap<ClassId, Result<Conversions, Diagnostic>>>,
+    /// Classes as if converted, where that changes them, in the order of all classes.
+    classes: boxcar::Vec<OnceLock<Option<Box<Class>>>>,
 }
 
 /// A class that may not have been read yet.
@@ -240,6 +261,7 @@ impl Library {
             }
         }
         self.bases = Arc::default();
+        self.conversions = Arc::default();
         id
     }
 
@@ -310,6 +332,7 @@ impl Library {
 
     /// Removes a class at the top level; `false` if there was none.
     pub fn remove(&mut self, name: Ident) -> bool {
+        self.conversions = Arc::default();
         self.roots.shift_remove(&name).is_some()
     }
 
@@ -346,7 +369,8 @@ impl Library {
 
     /// Reads a class and all that are in it, and returns what is wrong with their texts.
     pub fn read_all(&self, name: &Name) -> Vec<Diagnostic> {
-        self.find(name).map_or(Vec::new(), |id| self.problems_below(id))
+        let all = self.find(name).map_or(Vec::new(), |id| self.below(id, |_| true));
+        all.into_iter().flat_map(|id| self.seen(id).problems.clone()).collect()
     }
 
     /// A class and those in it, outer before inner; of those inside only where `enter` allows.
@@ -371,7 +395,7 @@ impl Library {
     /// was made of these classes is worth nothing.
     pub fn take_problems(&self) -> Vec<Diagnostic> {
         let broken = std::mem::take(&mut *locked(&self.broken));
-        broken.into_iter().flat_map(|id| self.read(id).problems.clone()).collect()
+        broken.into_iter().flat_map(|id| self.seen(id).problems.clone()).collect()
     }
 
     /// Warnings about the libraries read since the last call, each kind once for a library.
@@ -405,11 +429,16 @@ impl Library {
 
     /// A class, read now if it was not.
     pub(super) fn class(&self, id: ClassId) -> &Class {
-        let class = self.read(id);
+        let class = self.seen(id);
         if !class.problems.is_empty() {
             locked(&self.broken).insert(id);
         }
         class
+    }
+
+    /// A class as those that use it see it: converted, if its library is.
+    fn seen(&self, id: ClassId) -> &Class {
+        self.as_converted(id).unwrap_or_else(|| self.read(id))
     }
 
     /// Whether a nested class stands for an inherited one: `redeclare` (MLS §7.3); known

@@ -16,6 +16,7 @@ mod clocks;
 mod compat;
 mod compliance;
 mod conformance;
+mod conversions;
 mod diagnostics;
 mod digits;
 mod displacement;

@@ -158,10 +158,15 @@ impl Session {
         let is_shipped = self.classes.file_of(name)?.starts_with(models::FOLDER);
         let (asked, given) = (numbers(wanted), numbers(&loaded));
         let fits = asked.first() == given.first() && asked <= given;
+        let converts = match self.classes.library.converts_from(name, wanted) {
+            true => "its conversion script is applied; ",
+            false => "",
+        };
         (!fits && !is_shipped).then(|| {
             fault!(OTHER_VERSION, "version {loaded} of library `{name}` is loaded, but version \
                                    {wanted} is required";
-                help: "if results differ, give the folder of the required version with `--library`")
+                help: "{converts}if results differ, give the folder of the required version with \
+                       `--library`")
         })
     }
 
