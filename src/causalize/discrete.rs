@@ -8,7 +8,7 @@ use crate::fault;
 use crate::graph::{Bipartite, match_equations};
 use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
 use crate::lower::{Dae, Equation, Kind, is_real};
-use crate::symbolic::{Expr, VarId};
+use crate::symbolic::{Expr, Node, VarId};
 use rustc_hash::FxHashMap;
 
 /// Moves the equations that determine discrete variables to those of events, and drops previous
@@ -50,10 +50,18 @@ pub(super) fn separate_discrete(
             variable.name; help: "write an equation `{} = …` for it", variable.name)
         .labelled(variable.span, "no equation determines this"));
     }
-    for (equation, unknown) in
-        std::mem::take(&mut dae.equations).into_iter().zip(&matching.equation_to_unknown)
-    {
-        let Some(unknown) = unknown else {
+    let equations = std::mem::take(&mut dae.equations);
+    let pairs = || equations.iter().copied().zip(&matching.equation_to_unknown);
+    for (equation, unknown) in pairs() {
+        if let Some(unknown) = unknown
+            && is_call_that_varies(dae, open[*unknown], equation)
+        {
+            dae.variables[open[*unknown].0 as usize].kind = Kind::Unknown;
+        }
+    }
+    for (equation, unknown) in pairs() {
+        let unknown = unknown.filter(|at| dae.variable(open[*at]).kind == Kind::Discrete);
+        let Some(unknown) = unknown.as_ref() else {
             dae.equations.push(equation);
             continue;
         };
@@ -74,15 +82,28 @@ fn drop_unused_previous(dae: &mut Dae) {
     }
 }
 
+/// Whether a function gives an Integer or Boolean that follows continuous inputs, such as the number
+/// of phases in the records of media: it varies between events, where nothing else could be meant,
+/// and without events, as everything in functions. Not if something asks for `pre` of it.
+fn is_call_that_varies(dae: &Dae, variable: VarId, equation: Equation) -> bool {
+    let is_left = dae.pool.as_variable(equation.left) == Some(variable);
+    let right = if is_left { equation.right } else { equation.left };
+    matches!(dae.pool.node(right), Node::Call { .. })
+        && dae.pool.any_variable(right, |v| varies(dae, v))
+        && !dae.variables.iter().any(|other| other.kind == Kind::Previous(variable))
+}
+
+fn varies(dae: &Dae, v: VarId) -> bool {
+    dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed)
+}
+
 fn check_constant_between_events(
     dae: &Dae,
     variable: VarId,
     value: Expr,
     equation: Equation,
 ) -> Result<(), Diagnostic> {
-    let varies =
-        |v: VarId| dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed);
-    match dae.pool.any_variable(value, varies) {
+    match dae.pool.any_variable(value, |v| varies(dae, v)) {
         false => Ok(()),
         true => Err(fault!(NOT_SUPPORTED,
             "`{}` is discrete, but its equation may change between events",
