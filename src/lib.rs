@@ -65,7 +65,7 @@
 //! - [`units`]: units of measurement and their conversion;
 //! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
 //! - [`models`]: the Modelica packages that are part of the program;
-//! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
+//! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks; [`cli`]: the command line, the only door outside.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
 
@@ -88,6 +88,7 @@ pub mod functions;
 pub mod ga;
 pub mod graph;
 pub mod identify;
+pub mod lessons;
 pub mod lower;
 pub mod mat;
 pub mod page;

@@ -5,10 +5,11 @@ use super::causalized::Alias;
 use super::used_variables::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
-use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Kind, is_real};
-use crate::symbolic::{Expr, Node, VarId};
+use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
+use crate::lower::{Dae, Equation, Kind, Variable, is_real};
+use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
 
 /// Moves the equations that determine discrete variables to those of events, and drops previous
@@ -50,27 +51,40 @@ pub(super) fn separate_discrete(
             variable.name; help: "write an equation `{} = …` for it", variable.name)
         .labelled(variable.span, "no equation determines this"));
     }
-    let equations = std::mem::take(&mut dae.equations);
-    let pairs = || equations.iter().copied().zip(&matching.equation_to_unknown);
-    for (equation, unknown) in pairs() {
-        if let Some(unknown) = unknown
-            && is_call_that_varies(dae, open[*unknown], equation)
-        {
-            dae.variables[open[*unknown].0 as usize].kind = Kind::Unknown;
-        }
-    }
-    for (equation, unknown) in pairs() {
-        let unknown = unknown.filter(|at| dae.variable(open[*at]).kind == Kind::Discrete);
-        let Some(unknown) = unknown.as_ref() else {
+    let mut determining: Vec<(VarId, Equation)> = Vec::new();
+    for (equation, unknown) in
+        std::mem::take(&mut dae.equations).into_iter().zip(&matching.equation_to_unknown)
+    {
+        let Some(unknown) = unknown else {
             dae.equations.push(equation);
             continue;
         };
         let left = dae.pool.variable(open[*unknown]);
         let right = if equation.left == left { equation.right } else { equation.left };
-        check_constant_between_events(dae, open[*unknown], right, equation)?;
-        dae.events.equations.push(Equation { left, right, ..equation });
+        determining.push((open[*unknown], Equation { left, right, ..equation }));
     }
+    leave_varying(dae, aliases, &mut determining)?;
+    dae.events.equations.extend(determining.into_iter().map(|(_, equation)| equation));
     Ok(())
+}
+
+/// Leaves to the continuous equations what follows from Integers that change between events: the
+/// phase of a medium that another record passes on.
+fn leave_varying(
+    dae: &mut Dae,
+    aliases: &[Option<Alias>],
+    determining: &mut Vec<(VarId, Equation)>,
+) -> Result<(), Diagnostic> {
+    loop {
+        let varying = determining.iter().position(|(_, equation)| varies(dae, equation.right));
+        let Some(at) = varying else { return Ok(()) };
+        let (variable, equation) = determining.remove(at);
+        if !may_vary(dae, aliases, (variable, equation)) {
+            return Err(not_constant(dae, variable, equation));
+        }
+        dae.variables[variable.0 as usize].kind = Kind::Unknown;
+        dae.equations.push(equation);
+    }
 }
 
 fn drop_unused_previous(dae: &mut Dae) {
@@ -82,33 +96,31 @@ fn drop_unused_previous(dae: &mut Dae) {
     }
 }
 
-/// Whether a function gives an Integer or Boolean that follows continuous inputs, such as the number
-/// of phases in the records of media: it varies between events, where nothing else could be meant,
-/// and without events, as everything in functions. Not if something asks for `pre` of it.
-fn is_call_that_varies(dae: &Dae, variable: VarId, equation: Equation) -> bool {
-    let is_left = dae.pool.as_variable(equation.left) == Some(variable);
-    let right = if is_left { equation.right } else { equation.left };
-    matches!(dae.pool.node(right), Node::Call { .. })
-        && dae.pool.any_variable(right, |v| varies(dae, v))
-        && !dae.variables.iter().any(|other| other.kind == Kind::Previous(variable))
+/// Whether a value may change between events.
+fn varies(dae: &Dae, value: Expr) -> bool {
+    dae.pool.any_variable(value, |v| is_varying(dae, v))
 }
 
-fn varies(dae: &Dae, v: VarId) -> bool {
+fn is_varying(dae: &Dae, v: VarId) -> bool {
     dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed)
 }
 
-fn check_constant_between_events(
-    dae: &Dae,
-    variable: VarId,
-    value: Expr,
-    equation: Equation,
-) -> Result<(), Diagnostic> {
-    match dae.pool.any_variable(value, |v| varies(dae, v)) {
-        false => Ok(()),
-        true => Err(fault!(NOT_SUPPORTED,
-            "`{}` is discrete, but its equation may change between events",
-            dae.variable(variable).name;
-            help: "do not use relations inside `noEvent` or inside functions")
-        .at(equation.span)),
-    }
+/// Whether a variable may change between events: it is another name of an Integer that may, or
+/// follows from such; and nothing asks for its value before an event.
+fn may_vary(dae: &Dae, aliases: &[Option<Alias>], (variable, equation): (VarId, Equation)) -> bool {
+    let is_other_name = |(alias, own): (&Option<Alias>, &Variable)| {
+        own.kind == Kind::Unknown && alias.is_some_and(|alias| alias.of == variable)
+    };
+    let is_real = |v: VarId| is_varying(dae, v) && dae.variable(v).base == BaseType::Real;
+    let may_vary = aliases.iter().zip(&dae.variables).any(is_other_name)
+        || !dae.pool.any_variable(equation.right, is_real);
+    may_vary && !dae.variables.iter().any(|v| v.kind == Kind::Previous(variable))
+}
+
+fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {
+    fault!(NOT_DISCRETE,
+        "`{}` is discrete, but its equation may change between events",
+        dae.variable(variable).name;
+        help: "do not use relations inside `noEvent` or inside functions")
+    .at(equation.span)
 }

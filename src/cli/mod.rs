@@ -9,6 +9,7 @@ mod comparison;
 mod completions;
 mod device;
 mod disk;
+mod effort;
 mod explain;
 mod help;
 mod identify;

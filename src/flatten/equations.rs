@@ -64,8 +64,10 @@ impl Instantiation<'_> {
                 }
             }
         }
+        let outputs = self.outer_outputs(node)?;
         model.parts.push(Part {
             instance: self.classes.tree.nodes[node.0].path.as_str().into(),
+            outputs,
             equations: equations..model.equations.len(),
             initial_equations: initial_equations..model.initial_equations.len(),
             algorithms: algorithms..model.algorithms.len(),

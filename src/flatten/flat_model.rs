@@ -52,6 +52,8 @@ pub struct FlatModel {
 pub struct Part {
     /// Its full path, empty for the model itself.
     pub instance: Arc<str>,
+    /// Variables of enclosing instances that its `outer output` components are (MLS §17.3.5).
+    pub outputs: Vec<Arc<str>>,
     /// Positions in [`FlatModel::equations`].
     pub equations: Range<usize>,
     /// Positions in [`FlatModel::initial_equations`].

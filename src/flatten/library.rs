@@ -412,16 +412,10 @@ impl Library {
         class
     }
 
-    /// Whether a nested class stands for an inherited one: `redeclare`, or `extends M(…)`
-    /// (MLS §7.3); known without reading it.
+    /// Whether a nested class stands for an inherited one: `redeclare` (MLS §7.3); known
+    /// without reading it. `model extends M` alone is a class beside the inherited one.
     pub(super) fn is_redeclaration(&self, id: ClassId) -> bool {
-        let slot = self.slot(id);
-        let extends = |definition: &ClassDefinition| match &definition.specifier {
-            ClassSpecifier::Long(long) => long.class_extends.is_some(),
-            _ => false,
-        };
-        slot.declared.prefixes.redeclare
-            || matches!(&slot.origin, Origin::Head(definition, _) if extends(definition))
+        self.slot(id).declared.prefixes.redeclare
     }
 
     fn slot(&self, id: ClassId) -> &Slot {

@@ -20,7 +20,7 @@ mod tests;
 mod values;
 
 pub use arrays::concatenation;
-pub use operators::{Clocked, Operator, Temporal};
+pub use operators::{Clocked, Operator, StateOperator, Temporal};
 pub use plan::{Argument, Element, Elements, Pick, Plan, PlanOf};
 pub use reductions::Reduction;
 pub use rules::{ArgumentShapes, Known, ShapeRule, TypeRule, VariabilityRule};

@@ -93,6 +93,23 @@ pub enum Clocked {
     Interval,
     /// `firstTick(u)`
     FirstTick,
+    /// What the states of state machines are asked for, or made by (MLS ch. 17).
+    State(StateOperator),
+}
+
+/// An operator of state machines (MLS §17.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StateOperator {
+    /// `activeState(state)`
+    Active,
+    /// `ticksInState()`
+    Ticks,
+    /// `timeInState()`
+    Time,
+    /// `transition(from, to, condition, …)`, an equation
+    Transition,
+    /// `initialState(state)`, an equation
+    Initial,
 }
 
 /// An operator of the values of expressions.
@@ -119,6 +136,17 @@ const fn clocked(
 ) -> Builtin {
     let entry = temporal(name, Temporal::Clocked(operator));
     Builtin { inputs, least, most: inputs.len(), section: "MLS §16.5", ..entry }
+}
+
+/// An operator of state machines, of these arguments.
+const fn of_states(
+    name: &'static str,
+    operator: StateOperator,
+    inputs: &'static [&'static str],
+    least: usize,
+) -> Builtin {
+    let entry = clocked(name, Clocked::State(operator), inputs, least);
+    Builtin { shape: ShapeRule::Scalar, unit: UnitRule::Unknown, section: "MLS §17.1", ..entry }
 }
 
 /// What has no value, or one that nothing is known of.
@@ -296,4 +324,28 @@ pub(super) const OPERATORS: &[Builtin] = &[
         section: "MLS §16.10",
         ..clocked("firstTick", Clocked::FirstTick, &["u"], 0)
     },
+    Builtin {
+        value_type: TypeRule::Boolean,
+        ..of_states("activeState", StateOperator::Active, &["state"], 1)
+    },
+    // Flattening adds the instance in which they are written.
+    Builtin {
+        most: 1,
+        value_type: TypeRule::Integer,
+        ..of_states("ticksInState", StateOperator::Ticks, &[], 0)
+    },
+    Builtin {
+        most: 1,
+        value_type: TypeRule::Real,
+        ..of_states("timeInState", StateOperator::Time, &[], 0)
+    },
+    of_unknown_value(
+        of_states("transition", StateOperator::Transition, TRANSITION, 3),
+        (3, TRANSITION.len()),
+    ),
+    of_unknown_value(of_states("initialState", StateOperator::Initial, &["state"], 1), (1, 1)),
 ];
+
+/// The arguments of `transition`.
+const TRANSITION: &[&str] =
+    &["from", "to", "condition", "immediate", "reset", "synchronize", "priority"];

@@ -9,7 +9,8 @@ use super::builder::Builder;
 use super::dae::Kind;
 use super::equation::Equation;
 use super::errors::{
-    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE,
+    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_DISCRETE, NOT_SUPPORTED, UNBALANCED_MODEL,
+    UNRESOLVED_REFERENCE,
 };
 use super::events::Termination;
 use super::execution::Loops;
@@ -87,7 +88,7 @@ impl Builder<'_> {
             .at(equation.span));
         }
         if !in_when && self.varies(equation.right) {
-            return Err(fault!(NOT_SUPPORTED,
+            return Err(fault!(NOT_DISCRETE,
                 "`{name}` is discrete, but its value can change between events";
                 help: "do not use relations inside `noEvent` or inside functions")
             .at(equation.span));

@@ -30,8 +30,9 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     builder.find_varying_texts();
     builder.find_discrete();
     builder.fold_constants()?;
-    builder.bindings()?;
     builder.dae.instances = flat.parts.iter().map(|part| part.instance.clone()).collect();
+    builder.find_states();
+    builder.bindings()?;
     let owners_of = |range| owners(&flat.parts, range);
     let owners = owners_of(|part| &part.equations);
     for (position, equation) in flat.equations.iter().enumerate() {
@@ -513,8 +514,23 @@ impl<'a> Builder<'a> {
         };
         let name = function.name().to_string();
         match name.as_str() {
-            "assert" => self.assertion(arguments, call.span, loops),
+            "assert" => {
+                let first = self.dae.assertions.len();
+                self.assertion(arguments, call.span, loops)?;
+                if let Some(active) = self.activity_here() {
+                    self.guard_assertions(first, active);
+                }
+                Ok(())
+            }
             _ if name.starts_with("Connections.") => Ok(()),
+            "transition" | "initialState" => {
+                self.state_equation(&name, arguments, call.span, loops)
+            }
+            _ if self.activity_here().is_some() => Err(fault!(
+                NOT_SUPPORTED,
+                "a call of `{name}` as an equation of a state of a state machine"
+            )
+            .at(call.span)),
             _ => self.call_statement(call, loops, self.place.initial),
         }
     }

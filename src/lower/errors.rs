@@ -14,13 +14,18 @@ crate::codes! {
     /// Something of the language that the compiler cannot treat.
     NOT_SUPPORTED = "not-supported":
         "## What it means\nThe model uses a part of the language that this program does not support in equations. It reports an error rather than wrong numbers.\n\n\
-         ## Example\n`y = spatialDistribution(…);`\n\n\
+         ## Example\n`Clock(Clock(1, 10), \"ExplicitRungeKutta4\")`\n\n\
          ## What to do\nRewrite the model without it; the message gives the position and the reason.",
     /// Clocks that do not go together, or one that nothing gives.
     CLOCK_CONFLICT = "clock-conflict":
         "## What it means\nThe clocks of a model cannot be inferred, or contradict each other: variables in one equation belong to one clock, and what is clocked meets continuous time only through `sample` and `hold`.\n\n\
          ## Example\n`y = sample(u, Clock(1, 10)) + sample(v, Clock(1, 3));`\n\n\
          ## What to do\nUse one clock for both, or `subSample`, `superSample` and `shiftSample` between clocks of one base, and `hold` and `sample` between others.",
+    /// A state machine that breaks the rules of MLS §17.1.
+    INVALID_STATE_MACHINE = "invalid-state-machine":
+        "## What it means\nThe equations `transition` and `initialState` do not make a state machine: it must have exactly one initial state, and all transitions that leave one state must have different priorities. `activeState`, `ticksInState` and `timeInState` are about states of state machines only.\n\n\
+         ## Example\n`initialState(a); initialState(b); transition(a, b, x > 1);`\n\n\
+         ## What to do\nRemove or add `initialState`, or give each transition its `priority`.",
     /// A parameter that depends on itself.
     PARAMETER_CYCLE = "parameter-cycle":
         "## What it means\nThe bindings of parameters form a cycle, so none can be computed.\n\n\
@@ -51,4 +56,9 @@ crate::codes! {
         "## What it means\nThe initial equations and fixed start values do not determine all states of the model, so the start values of the states listed are used although they are not fixed.\n\n\
          ## Example\n`Real x(start = 1, fixed = true); Real y(start = 2);` with `der(x) = y; der(y) = -x;`: nothing fixes `y`.\n\n\
          ## What to do\nSet `fixed = true` for the variables listed, or write an initial equation for each.",
+    /// What is discrete, but not by a discrete-time expression.
+    NOT_DISCRETE = "not-discrete":
+        "## What it means\nAn Integer, Boolean or enumeration variable, or a variable of a when-clause, must have discrete-time expressions (MLS §3.8.4): they change at events only. Relations and `integer` in functions and in `noEvent` cause no events.\n\n\
+         ## Example\n`Integer n = f(time);` with `function f input Real x; output Integer y; algorithm y := integer(x); end f;`\n\n\
+         ## What to do\nWrite the relation, `integer` or `floor` in the model, outside of functions and `noEvent`.",
 }

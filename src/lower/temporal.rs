@@ -4,7 +4,7 @@ use super::build::scalar_of_nothing;
 use super::builder::Builder;
 use super::dae::Kind;
 use super::equation::{Assertion, Equation, Level, Part};
-use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
 use super::expressions::{Array, Target, size_fault};
 use crate::diag::Diagnostic;
@@ -130,7 +130,7 @@ impl Builder<'_> {
             return Ok(self.dae.pool.variable(*variable));
         }
         if self.varies(b) {
-            return Err(fault!(NOT_SUPPORTED, "this condition can change between events";
+            return Err(fault!(NOT_DISCRETE, "this condition can change between events";
                 help: "do not use relations inside `noEvent` or inside functions")
             .at(span));
         }

@@ -24,6 +24,7 @@ mod instants;
 mod levenberg_marquardt;
 mod linearization;
 mod log_messages;
+mod loop_effort;
 mod mode_search;
 mod modes;
 mod multiple_roots;
@@ -38,8 +39,10 @@ mod singular_systems;
 mod sliding;
 mod state_selection;
 mod system;
+mod transport_record;
 mod transports;
 
+pub use loop_effort::LoopEffort;
 pub use modes::Treated;
 pub use simulation_log::LogMessage;
 pub use singular_systems::Undetermined;

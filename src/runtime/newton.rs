@@ -41,6 +41,9 @@ pub(super) struct LoopSolver {
     x: Vec<f64>,
     /// Whether the Jacobian is singular at the last solution.
     pub(super) is_singular: bool,
+    /// How often it was solved, and its residuals evaluated.
+    pub(super) solutions: u64,
+    pub(super) evaluations: u64,
 }
 
 impl LoopSolver {
@@ -56,6 +59,8 @@ impl LoopSolver {
             start: vec![0.0; n],
             x: vec![0.0; n],
             is_singular: false,
+            solutions: 0,
+            evaluations: 0,
         }
     }
 
@@ -72,7 +77,7 @@ impl LoopSolver {
         }
         self.x.copy_from_slice(&self.guess);
         let nominal = self.nominal.clone();
-        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false };
+        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false, count: 0 };
         let mut outcome = self.attempt(&mut equations, initial);
         if initial {
             outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
@@ -104,6 +109,8 @@ impl LoopSolver {
         let solution = if outcome.is_ok() { &self.x } else { &self.guess };
         // What follows from the unknowns is computed from the values they end with.
         let evaluated = equations.evaluate(solution);
+        self.solutions += 1;
+        self.evaluations += equations.count;
         outcome.and(evaluated)
     }
 
@@ -173,6 +180,8 @@ struct Evaluation<'a> {
     nominal: Arc<[f64]>,
     /// Whether the registers hold the Jacobian at the unknowns that they hold.
     has_jacobian: bool,
+    /// How often it was evaluated.
+    count: u64,
 }
 
 impl Evaluation<'_> {
@@ -181,6 +190,7 @@ impl Evaluation<'_> {
         for (unknown, value) in self.torn.unknowns.iter().zip(x) {
             self.r[*unknown as usize] = *value;
         }
+        self.count += 1;
         let done = run(&self.torn.tape, self.r);
         self.has_jacobian = done.is_ok();
         match done {

@@ -1,14 +1,14 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run, run_strictly};
+use super::execution::{read, run, run_parameter, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
 use super::sensitivity_state::Sensitivity;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
-use super::transports::Record;
+use super::transport_record::Record;
 use crate::codegen::code::{Outputs, Step};
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Program};
@@ -49,6 +49,8 @@ pub struct System {
     pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
+    /// What reads a parameter that a function has left without value fails with.
+    lacking: Option<Failure>,
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
     /// Relations that keep changing in the round at hand.
@@ -73,8 +75,8 @@ pub struct System {
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     pub(super) initial_solvers: Vec<LoopSolver>,
-    solvers: Vec<LoopSolver>,
-    event_solvers: Vec<LoopSolver>,
+    pub(super) solvers: Vec<LoopSolver>,
+    pub(super) event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
     pub(super) choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
@@ -128,6 +130,7 @@ impl System {
             observed: None,
             observed_variables: None,
             switches: vec![None; program.relations.len()],
+            lacking: None,
             has_changed: vec![false; program.relations.len()],
             inconsistent: vec![false; program.relations.len()],
             is_idle: vec![false; program.relations.len()],
@@ -302,8 +305,17 @@ impl System {
         }
     }
 
+    /// Whether a value is a number; it need not be where a parameter has no value.
+    fn is_a_number(&self, value: f64) -> Result<(), Failure> {
+        match &self.lacking {
+            Some(failure) if value.is_nan() => Err(failure.clone()),
+            _ => Ok(()),
+        }
+    }
+
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
+        self.lacking = None;
         self.registers.calls.restart();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
@@ -321,7 +333,10 @@ impl System {
             };
             match set {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
-                None => run_strictly(tape, &mut self.registers)?,
+                None => match run_parameter(*parameter, tape, &mut self.registers)? {
+                    Some(failure) => self.lacking = Some(failure),
+                    None => self.is_a_number(self.registers[parameter.0 as usize])?,
+                },
             }
         }
         run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
@@ -758,6 +773,7 @@ impl DaeSystem for System {
         }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        out.iter().try_for_each(|value| self.is_a_number(*value))?;
         self.note_open(t);
         Ok(())
     }

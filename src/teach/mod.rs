@@ -6,8 +6,9 @@
 //! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
 //! makes a page of them all, [`picture`] a picture of one generation, [`screen`] a terminal's full
 //! of each step. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have
-//! been.
+//! been, [`bands`] does so over many seeds.
 
+pub mod bands;
 pub mod branches;
 pub mod errors;
 mod event;

@@ -28,13 +28,21 @@ const CURVE_POINTS: usize = 1000;
 pub fn page(trace: Trace, result: Option<&str>) -> String {
     let result = result.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(Value::Null);
     let page = Page {
-        title: &format!("{} - step by step", trace.subject.model),
+        title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
         scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();")],
         data: &[("data", data(trace, result).to_string())],
         body: body(),
     };
     page.document()
+}
+
+/// The model, or the script where no model is simulated.
+fn subject_name(trace: &Trace) -> &str {
+    match (trace.subject.model.as_str(), trace.scripts.first()) {
+        ("", Some(script)) => &script.name,
+        (model, _) => model,
+    }
 }
 
 fn body() -> Markup {
@@ -268,22 +276,27 @@ fn step(walk: &Walk) -> Value {
 
 fn generation(generation: &Generation) -> Value {
     let origins: Vec<Value> = generation.origins.iter().map(origin).collect();
-    let sorted = generation.sorted.as_ref();
+    let (sorted, crossed) = (generation.sorted.as_ref(), generation.crossed.as_ref());
+    let mutated = generation.mutated.as_ref();
+    // An operator alone has what it was given.
+    let children = crossed.map(|c| &c.rows).or(mutated.map(|m| &m.before));
+    let elites = sorted.map(|s| s.elites).or(crossed.map(|c| c.elites));
     json!({
         "n": generation.n_genes,
+        "call": generation.is_call,
         "genes": rounded(&generation.genes),
         "fitness": rounded(&generation.fitness),
         "origins": origins,
         "failures": generation.failures,
         "order": generation.order(),
-        "parents": sorted.map(|sorted| sorted.parents),
-        "elites": sorted.map(|sorted| sorted.elites),
+        "parents": sorted.map(|s| s.parents).or(crossed.map(|c| c.parents)),
+        "elites": elites.or(mutated.map(|m| m.elites)),
         "best": rounded(&generation.best_simulated),
-        "points": generation.crossed.as_ref().map(|crossed| &crossed.points),
-        "children": generation.crossed.as_ref().map(|crossed| rounded(&crossed.rows)),
-        "u": generation.mutated.as_ref().map(|mutated| rounded(&mutated.numbers)),
-        "after": generation.mutated.as_ref().map(|mutated| rounded(&mutated.after)),
-        "factor": generation.mutated.as_ref().map(|mutated| mutated.factor),
+        "points": crossed.map(|c| &c.points),
+        "children": children.map(|rows| rounded(rows)),
+        "u": mutated.map(|m| rounded(&m.numbers)),
+        "after": mutated.map(|m| rounded(&m.after)),
+        "factor": mutated.map(|m| m.factor),
     })
 }
 

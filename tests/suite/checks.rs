@@ -320,3 +320,66 @@ fn the_modifiers_of_a_redeclaration_do_not_hold_for_the_next_one() {
         assert_eq!(rows.column(column).last(), Some(&expected), "{name}");
     }
 }
+
+/// What libraries do against the specification: accepted, but not in a library that is to conform
+/// in all.
+#[track_caller]
+fn refused_if_strict(text: &str, code: &str) {
+    accepted(text);
+    let mut library = library(text);
+    library.set_strict(true);
+    let errors = flatten(&library, &Name::parse("M"), &[]).expect_err("the model is accepted");
+    let codes: Vec<&str> = errors.iter().map(|error| error.code.slug).collect();
+    assert!(codes.contains(&code), "{codes:?}");
+}
+
+#[test]
+fn what_libraries_do_is_refused_only_where_all_must_conform() {
+    let base = "model B model P parameter Real k = 2; end P; end B;";
+    let derived = |text: &str| format!("{base} model M extends B; {text} P p; end M;");
+    refused_if_strict(&derived("model P parameter Real k = 3; end P;"), "duplicate-element");
+    accepted(&derived("model P parameter Real k = 2; end P;"));
+    refused_if_strict(
+        "connector C Real e; flow Real f; end C; model A C c; equation c.e = c.f; end A;
+         model B A a; end B; model M B b; A a; equation connect(a.c, b.a.c); end M;",
+        "invalid-connection",
+    );
+    refused_if_strict(
+        "model A outer parameter Real p = 2; Real x = p; end A;
+         model M inner parameter Real p = 1; A a; end M;",
+        "illegal-prefix",
+    );
+    refused_if_strict(
+        "connector C Real e; flow Real f; end C; model M extends C; equation e = 1; f = 2; end M;",
+        "type-mismatch",
+    );
+    refused_if_strict(
+        "function f input Real x; output Real y; output Real z; algorithm y := x; z := 2*x; end f;
+         model M Real a[2]; Real b[2]; equation (a, b) = f({1, 2}); end M;",
+        "size-mismatch",
+    );
+}
+
+#[test]
+fn a_loop_does_not_change_the_size_that_gives_its_range() {
+    let function = |range: &str, assigned: &str| {
+        format!(
+            "function f input Integer n; output Integer y; protected Integer x[:];
+             algorithm y := 1; x := ones(n);
+             for i{range} loop {assigned} y := y + x[i]; end for; end f;
+             model M parameter Integer k = f(3); end M;"
+        )
+    };
+    refused(&function("", "x := ones(size(x, 1) - 1);"), "size-mismatch");
+    accepted(&function("", ""));
+    accepted(&function(" in 1:n", "x := ones(n);"));
+}
+
+/// A flow variable sums to zero in connectors only.
+#[test]
+fn a_flow_variable_outside_of_connectors_is_a_variable() {
+    accepted(
+        "record R Real f; end R; connector C flow R r; Real e; end C;
+         model M C c; flow Real x = 3; equation c.e = 1; end M;",
+    );
+}

@@ -83,6 +83,12 @@ impl Run {
         near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
     }
 
+    /// The value of the last row up to a time: that of what varies at events only.
+    pub(super) fn held(&self, name: &str, time: f64) -> f64 {
+        let rows = self.rows.time().iter().zip(self.column(name));
+        rows.take_while(|(t, _)| **t <= time).last().expect("a row before this time").1
+    }
+
     /// Times of events.
     pub(super) fn events(&self) -> Vec<f64> {
         let pairs = self.rows.time().windows(2).filter(|t| t[0] == t[1]);
@@ -260,6 +266,8 @@ fn an_integer_of_a_record_may_change_between_events() {
         let phase = |h: f64| if h > 0.51 { 2.0 } else { 1.0 };
         near(run.at("bound.phase", t), phase(t), 0.0);
         near(run.at("equal.phase", t), phase(2.0 * t), 0.0);
+        near(run.at("passed[1].phase", t), phase(2.0 * t), 0.0);
+        near(run.at("passed[2].phase", t), phase(t), 0.0);
         near(run.at("density", t), if t > 0.51 { 10.0 } else { 1000.0 }, 0.0);
     }
 }

@@ -84,6 +84,7 @@ mod shipped_functions;
 mod simulation;
 mod singular_derivatives;
 mod starting;
+mod state_machines;
 mod structural_parameters;
 mod structure;
 mod syntax_properties;

@@ -230,7 +230,7 @@ fn what_is_not_handled_is_refused() {
     assert_eq!(refused("model M Real x; Real y; equation x = 1; x = 2; end M;"), "singular-system");
     assert_eq!(
         refused("model M Real x = time; Boolean b = noEvent(x > 1); end M;"),
-        "not-supported"
+        "not-discrete"
     );
     assert_eq!(
         refused("model M parameter Real a = b; parameter Real b = a; Real x = a; end M;"),
@@ -334,4 +334,14 @@ fn functions_are_differentiated() {
     let text =
         text.replace(" Real w; end F;", " end F;").replace("Real z(start", "Real w; Real z(start");
     jacobian_agrees(&text);
+}
+
+#[test]
+fn the_name_of_an_enumeration_variable_is_compared_by_number() {
+    let run = super::hybrid::simulated(
+        "model M type E = enumeration(low, high); E e = if time > 0.5 then E.high else E.low;
+         Boolean b = String(e) == \"high\"; end M;",
+        1.0,
+    );
+    assert_eq!((run.at("b", 0.2), run.at("b", 0.8)), (0.0, 1.0));
 }

@@ -27,6 +27,7 @@ use crate::syntax::ast::{CausalityPrefix, ConnectionPrefix, Restriction};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Local unknowns and equations of one instance of a class.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -128,6 +129,13 @@ impl Instantiation<'_> {
         let errors = self.classes.count_connections(connections, &mut counts, &owners);
         if !errors.is_empty() {
             return Err(errors);
+        }
+        for path in determined_from_inside(model) {
+            if let Some(count) = counts.iter_mut().find_map(|(node, count)| {
+                (self.classes.tree.nodes[node.0].path == path).then_some(count)
+            }) {
+                count.unclear = true;
+            }
         }
         for redundant in connections.graph.nodes() {
             if let Some(owner) = owners.get(&redundant) {
@@ -344,7 +352,9 @@ impl Classes<'_> {
         let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
         Some(
             fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
-                help: "connect an output of a component, or an input of the class, to inputs")
+                help: "connect an output of a component, or an input of the class, to inputs; \
+                       outputs of several states of a state machine are not supported: let the \
+                       states have an `outer output`")
             .at(edge.span),
         )
     }
@@ -360,4 +370,16 @@ impl Tree {
         };
         set.iter().filter(varies).count().saturating_sub(1)
     }
+}
+
+/// The instances with `outer output` components, and those that hold the variables behind these:
+/// in a state machine several equations determine one variable in turn (MLS §17.3.5).
+fn determined_from_inside(model: &FlatModel) -> BTreeSet<&str> {
+    let mut paths = BTreeSet::new();
+    for part in model.parts.iter().filter(|part| !part.outputs.is_empty()) {
+        paths.insert(&*part.instance);
+        let holder = |name: &'_ Arc<str>| name.rfind('.').unwrap_or(0);
+        paths.extend(part.outputs.iter().map(|name| &name[..holder(name)]));
+    }
+    paths
 }

@@ -242,6 +242,9 @@ impl Walk<'_, '_> {
                     self.connection(&format!("Connections.{}", operator.name), call.span, around);
                 }
             }
+            [name] if ["transition", "initialState"].contains(&name.name.as_str()) => {
+                self.connection(name.name.as_str(), call.span, around);
+            }
             [name] if name.name.as_str() == "reinit" && !around.when => {
                 self.wrong(
                     call.span,

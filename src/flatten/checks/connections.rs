@@ -33,7 +33,9 @@ impl Visit for Walk<'_, '_> {
             return walk_equation(self, equation);
         };
         let wrong = self.no_connector(left).or_else(|| self.no_connector(right));
-        self.errors.extend(wrong.or_else(|| self.mismatch(left, right, equation.span)));
+        let wrong = wrong.or_else(|| self.mismatch(left, right, equation.span));
+        let wrong = wrong.or_else(|| self.too_deep(left)).or_else(|| self.too_deep(right));
+        self.errors.extend(wrong);
     }
 }
 
@@ -59,6 +61,25 @@ impl Walk<'_, '_> {
         (!is_connector && !in_connector).then(|| {
             fault!(INVALID_CONNECTION, "`{}` is not a connector", component.name();
                 help: "connect connectors; for variables, write an equation")
+            .at(reference.span)
+        })
+    }
+
+    /// A connector of a component of a component. Libraries use them, and what is meant is clear:
+    /// only those that are to conform in all are told.
+    fn too_deep(&self, reference: &ComponentReference) -> Option<Diagnostic> {
+        if !self.class.library.is_strict() {
+            return None;
+        }
+        let path = self.class.path(reference)?;
+        let is_component = |one: &&Component<'_>| {
+            let restriction = one.class().map(Scope::restriction);
+            matches!(restriction, Some(Restriction::Model | Restriction::Block))
+        };
+        (path.iter().filter(is_component).count() > 1).then(|| {
+            fault!(INVALID_CONNECTION, "`{}` is a connector of a component of another component",
+                crate::syntax::print::reference(reference);
+                help: "connect it in the class of the component, to a connector of that class")
             .at(reference.span)
         })
     }

@@ -12,6 +12,7 @@ mod connections;
 mod connectors;
 mod elements;
 mod imports;
+mod inherited_classes;
 mod lineage;
 mod lookup;
 mod modifications;
@@ -67,6 +68,7 @@ fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     connections::check(class, errors);
     access::check(class, errors);
     modifications::check(class, errors);
+    inherited_classes::check(class, errors);
     usage::check(class, errors);
     types::check(class, errors);
 }

@@ -38,7 +38,8 @@ impl Instantiation<'_> {
         }
         self.add_constraint_equations(connections, model)?;
         let mut unconnected = Vec::new();
-        self.classes.unconnected_flows(self.classes.tree.root, connections, &mut unconnected);
+        let root = self.classes.tree.root;
+        self.classes.unconnected_flows(root, false, connections, &mut unconnected);
         for side in unconnected {
             let span = self.classes.tree.end_span(End::Scalar(side.leaf, side.element));
             model.equations.push(self.classes.tree.flow_equation(&[side], span));
@@ -121,11 +122,13 @@ impl Classes<'_> {
     fn unconnected_flows(
         &mut self,
         node: NodeId,
+        in_connector: bool,
         connections: &Connections,
         found: &mut Vec<ConnectorSide>,
     ) {
+        let in_connector = in_connector || self.tree.is_connector(node);
         if let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind {
-            if leaf.connection == Some(ConnectionPrefix::Flow) {
+            if in_connector && leaf.connection == Some(ConnectionPrefix::Flow) {
                 let count = self.tree.variables[leaf.variable].0.len();
                 let sides =
                     (0..count).map(|element| ConnectorSide { leaf: node, element, outside: false });
@@ -141,7 +144,7 @@ impl Classes<'_> {
                 _ => continue,
             };
             for one in nodes {
-                self.unconnected_flows(one, connections, found);
+                self.unconnected_flows(one, in_connector, connections, found);
             }
         }
     }

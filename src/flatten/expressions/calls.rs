@@ -61,6 +61,9 @@ impl Instantiation<'_> {
         if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
             return Ok(Some(value));
         }
+        if let Some(value) = self.state_operator(span, function, arguments, context, local)? {
+            return Ok(Some(value));
+        }
         if let Some(value) = self.conversion(span, function, arguments, context, local)? {
             return Ok(Some(value));
         }

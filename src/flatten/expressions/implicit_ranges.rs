@@ -6,13 +6,14 @@ use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
-use crate::flatten::instantiate::instance::{MemberState, NodeKind};
+use crate::flatten::instantiate::instance::{Declaration, MemberState, NodeKind};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Subscript,
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
+    StatementKind, Subscript,
 };
-use crate::syntax::visit::{Visit, walk_reference};
+use crate::syntax::visit::{Visit, walk_reference, walk_statement};
 
 /// Where a loop variable is a subscript: the array without this and later subscripts, and the
 /// dimension, from 0.
@@ -57,7 +58,56 @@ impl Visit for Uses {
     }
 }
 
+/// Finds the arrays that are assigned as a whole.
+#[derive(Default)]
+struct Assigned {
+    names: Vec<Ident>,
+}
+
+impl Visit for Assigned {
+    fn statement(&mut self, statement: &Statement) {
+        let targets = match &statement.kind {
+            StatementKind::Assign { target, .. } => vec![target],
+            StatementKind::MultiAssign { targets, .. } => targets.iter().flatten().collect(),
+            _ => Vec::new(),
+        };
+        self.names.extend(targets.iter().filter_map(|target| target.as_ident()));
+        walk_statement(self, statement);
+    }
+}
+
 impl Instantiation<'_> {
+    /// The size that gives a loop in a function its range must stay as it is in the loop
+    /// (MLS §11.2.2.1).
+    pub fn check_range_stays(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        context: ScopeId,
+    ) -> Result<(), Diagnostic> {
+        for index in indices.iter().filter(|index| index.range.is_none()) {
+            let mut uses = Uses { name: index.name.node, found: Vec::new() };
+            let mut assigned = Assigned::default();
+            body.iter().for_each(|statement| uses.statement(statement));
+            body.iter().for_each(|statement| assigned.statement(statement));
+            for array in uses.found.iter().filter_map(|one| one.array.as_ident()) {
+                let elements = self.classes.elements(context)?;
+                let declared = elements.get(array);
+                let is_open = |one: &Declaration| {
+                    one.dims.iter().any(|(d, _)| matches!(d, Subscript::All(_)))
+                };
+                if assigned.names.contains(&array) && declared.is_some_and(|one| is_open(one)) {
+                    return Err(fault!(SIZE_MISMATCH,
+                        "the loop runs over the subscripts of `{array}`, which it assigns: the size \
+                         of `{array}` may change";
+                        help: "write the range: `for {} in 1:n loop`", index.name.node)
+                    .at(index.name.span));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// The loop variables with ranges; those that are not written are found by letting `visit` look
     /// through the body.
     pub fn with_ranges(

@@ -11,5 +11,6 @@ pub mod overloaded_arrays;
 pub mod overloading;
 pub mod paths;
 pub mod resolve;
+pub mod state_machines;
 pub mod values;
 pub mod vectorization;

@@ -53,12 +53,15 @@ impl Instantiation<'_> {
         let Some(Some(function)) = self.functions.table.get(name).cloned() else { return Ok(None) };
         if !arguments.iterators.is_empty()
             || function.body == FunctionBody::RecordConstructor
-            || function.outputs.len() != 1
+            || function.outputs.is_empty()
         {
             return Ok(None);
         }
         let (dims, spread) = self.spread(&function, name, arguments)?;
         let Some(dims) = dims else { return Ok(None) };
+        if function.outputs.len() > 1 {
+            return self.several_outputs(name, span);
+        }
         let count: usize = dims.iter().product();
         if count > MAX_CALLS {
             return Err(fault!(
@@ -70,6 +73,17 @@ impl Instantiation<'_> {
         let calls = (0..count).map(|at| spread.call(name, arguments, &indices_of(at, &dims), span));
         let calls = calls.collect();
         Ok(Some(crate::flatten::connections::arranged(calls, &dims, span)))
+    }
+
+    /// Functions of several outputs are not called for each element; libraries do it nevertheless.
+    fn several_outputs(&self, name: &Name, span: Span) -> Result<Option<Expression>, Diagnostic> {
+        if !self.classes.library.is_strict() {
+            return Ok(None);
+        }
+        Err(fault!(SIZE_MISMATCH, "`{name}` is called with an array where it takes a scalar, and \
+                                   has several outputs";
+            help: "call it in a loop: only functions with one output are called for each element")
+        .at(span))
     }
 
     /// The sizes of the array of calls, and the arguments that are spread over it.

@@ -19,9 +19,9 @@ use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
-    ElementModification, Expression, ExpressionKind, ForIndex, NamedArgument, Purity, Restriction,
-    Section, Statement, StatementKind, Subscript, Visibility,
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference,
+    DerivativeClass, Element, ElementModification, Expression, ExpressionKind, ForIndex,
+    NamedArgument, Purity, Restriction, Section, Statement, StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
@@ -142,15 +142,6 @@ impl Instantiation<'_> {
         if !is_function {
             return self.object_constructor(class);
         }
-        if let ClassSpecifier::Derivative(derivative) =
-            &self.classes.text(class).definition.specifier
-        {
-            let (name, span) = (self.classes.text(id).name.clone(), derivative.target.span);
-            return Err(fault!(NOT_SUPPORTED,
-                "`{name}` is a partial derivative of a function, which is not supported yet";
-                help: "write the derivative as a separate function")
-            .at(span));
-        }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(id, class);
         self.functions.table.insert(name.clone(), None);
@@ -158,9 +149,13 @@ impl Instantiation<'_> {
         if self.classes.is_record(class) {
             self.functions.record_scopes.insert(name.clone(), class);
         }
-        let function = match self.classes.is_record(class) {
-            false => self.ready(&name, class),
-            true => self.constructor(&name, class),
+        let specifier = self.classes.text(class).definition.specifier.clone();
+        let function = match specifier {
+            ClassSpecifier::Derivative(derivative) => {
+                self.partial_derivative(&name, class, &derivative)
+            }
+            _ if self.classes.is_record(class) => self.constructor(&name, class),
+            _ => self.ready(&name, class),
         };
         match function {
             Ok(function) => Ok(Some(self.keep_function(id, name, function))),
@@ -362,6 +357,55 @@ impl Instantiation<'_> {
             impure: false,
             span,
             compiled: Compiled::default(),
+        })
+    }
+
+    /// `function f_x = der(f, x)` (MLS §12.7.2)
+    fn partial_derivative(
+        &mut self,
+        name: &Name,
+        class: ScopeId,
+        derivative: &DerivativeClass,
+    ) -> Result<Function, Diagnostic> {
+        let span = derivative.target.span;
+        let scope = self.classes.scope(class).parent.unwrap_or(ScopeId::TOP);
+        let of = match self.classes.lookup(scope, &derivative.target.name)? {
+            Some(Type::Class(id)) => self.function(id)?,
+            _ => None,
+        };
+        let known = of.as_ref().and_then(|of| self.functions.table.get(of).cloned().flatten());
+        let (Some(of), Some(target)) = (of, known) else {
+            return Err(
+                fault!(UNKNOWN_CLASS, "there is no function `{}`", derivative.target.name).at(span)
+            );
+        };
+        for by in &derivative.variables {
+            let input = target.inputs.iter().find(|input| input.name == by.node);
+            if !input.is_some_and(|i| i.value_type == ValueType::Real && i.dims.is_empty()) {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` is no scalar Real input of `{of}`, so there is no derivative by it",
+                    by.node
+                )
+                .at(by.span));
+            }
+        }
+        if let Some(other) = target.outputs.iter().find(|o| o.value_type != ValueType::Real) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the derivative of `{of}`, whose output `{}` is not Real",
+                other.name
+            )
+            .at(span));
+        }
+        let by = derivative.variables.iter().map(|by| by.node).collect();
+        Ok(Function {
+            name: name.clone(),
+            body: FunctionBody::PartialDerivative { of, by },
+            annotation: Vec::new(),
+            compiled: Compiled::default(),
+            span: self.classes.text(class).span(),
+            ..(*target).clone()
         })
     }
 
@@ -595,6 +639,7 @@ impl Instantiation<'_> {
             StatementKind::For { indices, body } => {
                 let visit =
                     |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                self.check_range_stays(indices, body, context)?;
                 let indices = self.with_ranges(indices, context, local, &visit)?;
                 let (mut indices, inner) = self.iterators(&indices, context, local)?;
                 if self.classes.is_in_model(context) {

@@ -68,6 +68,9 @@ impl Instantiation<'_> {
             if !declared.prefixes.inner {
                 return Ok(outer);
             }
+            if self.is_merged_output(node, declared)? {
+                return Ok(outer);
+            }
             let inner = Box::new(self.built(node, declared)?);
             return Ok(MemberState::Both { inner, outer: Box::new(outer.seen()) });
         }

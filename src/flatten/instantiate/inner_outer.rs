@@ -9,7 +9,7 @@ use super::instance::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::flatten::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
+use crate::flatten::errors::{ILLEGAL_PREFIX, PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
@@ -32,12 +32,22 @@ impl Instantiation<'_> {
             && !declared.modifier.is_empty()
             && let Some(text) = &self.classes.scope(declared.scope).text
         {
+            if self.classes.library.is_strict() {
+                return Err(fault!(ILLEGAL_PREFIX, "the `outer` component `{}` has modifiers",
+                    declared.name;
+                    help: "write them at the `inner` component")
+                .at(declared.span));
+            }
             self.classes.library.meet(&text.name, LegacyConstruct::OuterValue, declared.span);
         }
         let mut holder = self.classes.tree.nodes[node.0].parent;
         while let Some(id) = holder {
             if self.classes.tree.is_inner(id, declared.name) {
-                let state = self.member(id, declared.name)?.map(MemberState::own);
+                let state = self.member(id, declared.name)?.map(|state| match state {
+                    // An output of a state is one variable with the one further out.
+                    MemberState::Outer(same) => *same,
+                    state => state.own(),
+                });
                 if let Some(state) = &state {
                     self.check_same_type(state, declared)?;
                 }

@@ -7,4 +7,5 @@ pub mod inner_outer;
 pub mod instance;
 pub mod instantiation;
 pub mod own_sizes;
+pub mod state_outputs;
 pub mod tree;

@@ -51,6 +51,14 @@ pub struct Tree {
 }
 
 impl Tree {
+    /// Whether an instance or a variable is a connector.
+    pub fn is_connector(&self, node: NodeId) -> bool {
+        match &self.nodes[node.0].kind {
+            NodeKind::Composite(composite) => composite.connector,
+            NodeKind::Variable(leaf) => leaf.connector,
+        }
+    }
+
     /// The node 0 alone, which has no components: the instance of the top scope.
     pub fn new() -> Tree {
         let nowhere = Composite {

@@ -135,10 +135,9 @@ impl Classes<'_> {
             | (R::Record, R::Model | R::Block | R::Class) => true,
             (R::Model, R::Model | R::Class) => true,
             (R::Block, R::Block | R::Model | R::Class) => true,
-            (
-                R::Connector,
-                R::Connector | R::ExpandableConnector | R::Model | R::Block | R::Class,
-            ) => true,
+            (R::Connector, R::Connector | R::ExpandableConnector) => true,
+            // Libraries do it; the table of the specification does not have it.
+            (R::Connector, R::Model | R::Block | R::Class) => !self.library.is_strict(),
             (R::ExpandableConnector, R::ExpandableConnector) => true,
             (one, other) => one == other,
         };

@@ -150,6 +150,14 @@ impl Classes<'_> {
         {
             return self.declared_class(scope, child, name).map(Some);
         }
+        self.inherited_class(scope, name)
+    }
+
+    fn inherited_class(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<Option<Rc<Nested>>, Diagnostic> {
         for base in self.bases(scope)?.iter() {
             if let Some(found) = self.find_class(*base, name)? {
                 return Ok(Some(found));
@@ -176,8 +184,12 @@ impl Classes<'_> {
     ) -> Result<Rc<Nested>, Diagnostic> {
         let prefixes = self.library.class(child).prefixes();
         let outer = self.scope(scope).modifier.elements.get(&name).cloned().unwrap_or_default();
+        let mut text = self.text_of(child);
+        if self.library.class(child).is_class_extends() {
+            text.extended = self.inherited_class(scope, name)?;
+        }
         let mut original = Nested {
-            text: self.text_of(child),
+            text,
             parent: scope,
             // A final redeclaration cannot be replaced; components of the class can be modified.
             modifier: Modifier { redeclaration: None, is_final: false, ..outer.clone() },

@@ -6,6 +6,7 @@
 use super::Operator;
 use super::clocked_equation::ClockedEquation;
 use super::partitions::Partitions;
+use super::state_outputs::{Column, Columns};
 use super::ticks::Ticks;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -17,6 +18,7 @@ use crate::lower::equation::{Assertion, Equation};
 use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
 use crate::source::Span;
 use crate::symbolic::{Expr, Substitution, VarId, solve};
+use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 
 /// How many variables and equations a message names.
@@ -28,6 +30,7 @@ impl Builder<'_> {
     /// Replaces all that is clocked by equations at events.
     pub(super) fn write_clocked(&mut self, partitions: Partitions) -> Result<(), Diagnostic> {
         let (mut clocked, asserted) = self.take_clocked(&partitions);
+        self.check_states(&partitions, &clocked)?;
         let mut ticks = self.ticks(&partitions)?;
         clocked.extend(self.discretized(&partitions, &mut ticks)?);
         let values = self.values_of_operators(&partitions, &mut ticks);
@@ -58,7 +61,8 @@ impl Builder<'_> {
         for occurrence in self.clocks.occurrences.clone() {
             let variable = occurrence.variable;
             let value = match occurrence.operator {
-                Operator::Previous(of) | Operator::Sample(of, _) => {
+                Operator::Previous(of) => self.previous_or_start(of),
+                Operator::Sample(of, _) => {
                     let previous = self.previous_variable(of);
                     self.dae.pool.variable(previous)
                 }
@@ -213,35 +217,71 @@ impl Builder<'_> {
         ticks: &Ticks,
         clocked: &[ClockedEquation],
     ) -> Result<(), Diagnostic> {
-        let is_unknown = |dae: &Dae, v: VarId| dae.variable(v).kind == Kind::Discrete;
-        let unknowns: Vec<VarId> = (0..self.dae.variables.len() as u32)
-            .map(VarId)
-            .filter(|v| partitions.of(*v).is_some() && is_unknown(&self.dae, *v))
-            .collect();
-        let column: FxHashMap<VarId, usize> =
-            unknowns.iter().enumerate().map(|(at, v)| (*v, at)).collect();
+        let columns = self.columns(partitions)?;
         let mut rows = Vec::with_capacity(clocked.len());
         for clocked in clocked {
-            rows.push(self.row(partitions, *clocked, &column));
+            rows.push(self.row(partitions, *clocked, &columns));
         }
-        let matching = match_equations(&Bipartite::new(unknowns.len(), rows));
+        let matching = match_equations(&Bipartite::new(columns.list.len(), rows));
         if !matching.is_perfect() {
-            return Err(self.unbalanced(clocked, &unknowns, &matching));
+            return Err(self.unbalanced(clocked, &columns, &matching));
         }
+        let mut merged: IndexMap<VarId, Vec<(Expr, Expr, ClockedEquation)>> = IndexMap::new();
         for (clocked, unknown) in clocked.iter().zip(&matching.equation_to_unknown) {
             let ClockedEquation { equation, sub, .. } = clocked;
-            let Some(variable) = unknown.map(|at| unknowns[at]) else { continue };
+            let Some(Column { variable, output_of }) = unknown.map(|at| columns.list[at]) else {
+                continue;
+            };
             let Some((way, value)) = self.value_by(*clocked, variable) else { continue };
             if way == Way::Difference {
                 self.check_difference(*clocked, variable)?;
             }
-            let previous = self.previous_variable(variable);
-            let pool = &mut self.dae.pool;
-            let (left, before) = (pool.variable(variable), pool.variable(previous));
-            let right = pool.if_then_else(ticks.active(*sub), value, before);
-            self.dae.events.equations.push(Equation { left, right, ..*equation });
+            let state = self.state_of_instance(equation.instance);
+            let state = state.or_else(|| self.state_of_variable(variable));
+            let guard = state.map(|state| {
+                let active = self.clocks.machines.states[state].active;
+                self.dae.pool.variable(active)
+            });
+            if let (Some(guard), Some(_)) = (guard, output_of) {
+                merged.entry(variable).or_default().push((guard, value, *clocked));
+                continue;
+            }
+            let active = match guard {
+                Some(guard) => self.dae.pool.and(ticks.active(*sub), guard),
+                None => ticks.active(*sub),
+            };
+            self.assign_when(variable, active, value, *equation);
+        }
+        for (variable, values) in merged {
+            self.assign_merged(variable, ticks, &values);
         }
         Ok(())
+    }
+
+    /// `v = if active then value else pre(v)`
+    fn assign_when(&mut self, variable: VarId, active: Expr, value: Expr, equation: Equation) {
+        let previous = self.previous_variable(variable);
+        let pool = &mut self.dae.pool;
+        let (left, before) = (pool.variable(variable), pool.variable(previous));
+        let right = pool.if_then_else(active, value, before);
+        self.dae.events.equations.push(Equation { left, right, ..equation });
+    }
+
+    /// A variable that states of state machines determine in turn (MLS §17.3.5).
+    fn assign_merged(
+        &mut self,
+        variable: VarId,
+        ticks: &Ticks,
+        values: &[(Expr, Expr, ClockedEquation)],
+    ) {
+        let Some((_, _, first)) = values.first() else { return };
+        // `last(v)`: a reset of the state that declares it comes first.
+        let mut merged = self.previous_or_start(variable);
+        for (guard, value, _) in values.iter().rev() {
+            merged = self.dae.pool.if_then_else(*guard, *value, merged);
+        }
+        let equation = Equation { instance: None, ..first.equation };
+        self.assign_when(variable, ticks.active(first.sub), merged, equation);
     }
 
     /// The variables that an equation may determine, by their columns, the best first.
@@ -249,8 +289,9 @@ impl Builder<'_> {
         &mut self,
         partitions: &Partitions,
         clocked: ClockedEquation,
-        column: &FxHashMap<VarId, usize>,
+        columns: &Columns,
     ) -> Vec<usize> {
+        let state = self.state_of_instance(clocked.equation.instance);
         let mut variables = Vec::new();
         let sides = [clocked.equation.left, clocked.equation.right];
         self.dae.pool.visit_variables(&sides, |v| variables.push(v));
@@ -260,10 +301,10 @@ impl Builder<'_> {
         let mut row: Vec<(Way, usize)> = Vec::new();
         for v in variables {
             if partitions.of(v) == Some(clocked.sub)
-                && let Some(at) = column.get(&v)
+                && let Some(at) = self.column_of(columns, v, state)
                 && let Some((way, _)) = self.value_by(clocked, v)
             {
-                row.push((way, *at));
+                row.push((way, at));
             }
         }
         row.sort_unstable();
@@ -329,16 +370,21 @@ impl Builder<'_> {
     fn unbalanced(
         &self,
         clocked: &[ClockedEquation],
-        unknowns: &[VarId],
+        columns: &Columns,
         matching: &Matching,
     ) -> Diagnostic {
         let mut fault = fault!(UNBALANCED_MODEL,
-            "the clocked equations do not determine the clocked variables: {} equations, {}              variables", clocked.len(), unknowns.len())
+            "the clocked equations do not determine the clocked variables: {} equations, {}              variables", clocked.len(), columns.list.len())
         .at(clocked.first().map_or(Span::NONE, |first| first.equation.span));
-        let open = matching.unknown_to_equation.iter().zip(unknowns);
+        let open = matching.unknown_to_equation.iter().zip(&columns.list);
         for (_, v) in open.filter(|(equation, _)| equation.is_none()).take(MAX_SHOWN) {
-            let variable = self.dae.variable(*v);
-            let words = format!("no equation determines {}", self.name_for_message(*v));
+            let variable = self.dae.variable(v.variable);
+            let mut words = format!("no equation determines {}", self.name_for_message(v.variable));
+            if let Some((path, _)) =
+                v.output_of.and_then(|at| self.clocks.machines.states.get_index(at))
+            {
+                words.push_str(&format!(", an output of the state `{path}`, there"));
+            }
             fault = fault.related(variable.span, words);
         }
         let left = matching.equation_to_unknown.iter().zip(clocked);

@@ -18,11 +18,15 @@ mod assignments;
 mod clocked_equation;
 mod conversion;
 mod intervals;
+mod machine_equations;
 mod operators;
 mod partitioning;
 mod partitions;
 mod recognition;
 mod solver_methods;
+mod state_machines;
+mod state_operators;
+mod state_outputs;
 mod ticks;
 mod when;
 
@@ -30,6 +34,7 @@ use super::equation::{Assertion, Equation};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use conversion::Conversion;
+use state_machines::StateMachines;
 use std::sync::Arc;
 
 pub(super) use recognition::is_clock;
@@ -44,6 +49,14 @@ pub(super) struct Clocks {
     on_clock: Vec<(VarId, Equation)>,
     /// Assertions and calls in clocked when-clauses, with their clocks.
     asserted: Vec<(VarId, Assertion)>,
+    machines: StateMachines,
+}
+
+impl Clocks {
+    /// Whether nothing is clocked.
+    fn is_empty(&self) -> bool {
+        self.occurrences.is_empty() && self.on_clock.is_empty() && self.machines.states.is_empty()
+    }
 }
 
 /// A clocked operator in an expression.

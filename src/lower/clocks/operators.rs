@@ -28,10 +28,10 @@ impl Builder<'_> {
         call: ClockedCall<Expr>,
         span: Span,
     ) -> Result<Lowered<Expr>, Diagnostic> {
-        let number = |builder: &mut Self, at, name, default| {
-            builder.known_argument(entry, &call, at, name, default, span)
-        };
         let of_scalar: OfScalar<Self> = match operator {
+            Clocked::State(operator) => {
+                return self.state_operator(operator, &call, span).map(Lowered::scalar);
+            }
             Clocked::Constructor => return self.clock(&call, span).map(Lowered::scalar),
             Clocked::Interval | Clocked::FirstTick => {
                 return self.about_ticks(operator, &call, span).map(Lowered::scalar);
@@ -52,32 +52,48 @@ impl Builder<'_> {
             }
             Clocked::Hold => Box::new(move |builder, u| builder.held(u, span)),
             Clocked::Previous => Box::new(move |builder, u| builder.previous_of_clocked(u, span)),
-            Clocked::SubSample => {
-                let factor = number(self, 1, "factor", 0)?;
-                let conversion = Conversion::Sub((factor > 0).then_some(factor));
+            Clocked::SubSample
+            | Clocked::SuperSample
+            | Clocked::ShiftSample
+            | Clocked::BackSample
+            | Clocked::NoClock => {
+                let conversion = self.conversion(entry, operator, &call, span)?;
                 Box::new(move |builder, u| builder.converted(u, conversion, span))
-            }
-            Clocked::SuperSample => {
-                let factor = number(self, 1, "factor", 0)?;
-                let conversion = Conversion::Super((factor > 0).then_some(factor));
-                Box::new(move |builder, u| builder.converted(u, conversion, span))
-            }
-            Clocked::ShiftSample | Clocked::BackSample => {
-                let is_shift = operator == Clocked::ShiftSample;
-                let name = if is_shift { "shiftCounter" } else { "backCounter" };
-                let counter = i128::from(number(self, 1, name, 0)?);
-                let resolution = i128::from(number(self, 2, "resolution", 1)?.max(1));
-                let by = Rational::new(counter, resolution);
-                let conversion =
-                    if is_shift { Conversion::Shift(by) } else { Conversion::Back(by) };
-                Box::new(move |builder, u| builder.converted(u, conversion, span))
-            }
-            Clocked::NoClock => {
-                Box::new(move |builder, u| builder.converted(u, Conversion::Any, span))
             }
         };
         let u = call.at(0, "u").ok_or_else(|| missing(entry, span))?.clone();
         self.each_scalar(entry, u, &*of_scalar, span)
+    }
+
+    /// How an operator converts one clock into another of the same base.
+    fn conversion(
+        &mut self,
+        entry: &Builtin,
+        operator: Clocked,
+        call: &ClockedCall<Expr>,
+        span: Span,
+    ) -> Result<Conversion, Diagnostic> {
+        let mut number =
+            |at, name, default| self.known_argument(entry, call, at, name, default, span);
+        let is_shift = operator == Clocked::ShiftSample;
+        Ok(match operator {
+            Clocked::SubSample | Clocked::SuperSample => {
+                let factor = number(1, "factor", 0)?;
+                let factor = (factor > 0).then_some(factor);
+                match operator {
+                    Clocked::SubSample => Conversion::Sub(factor),
+                    _ => Conversion::Super(factor),
+                }
+            }
+            Clocked::ShiftSample | Clocked::BackSample => {
+                let name = if is_shift { "shiftCounter" } else { "backCounter" };
+                let counter = i128::from(number(1, name, 0)?);
+                let resolution = i128::from(number(2, "resolution", 1)?.max(1));
+                let by = Rational::new(counter, resolution);
+                if is_shift { Conversion::Shift(by) } else { Conversion::Back(by) }
+            }
+            _ => Conversion::Any,
+        })
     }
 
     fn each_scalar(

@@ -6,9 +6,10 @@ use crate::lower::builder::Builder;
 impl Builder<'_> {
     /// Makes equations at events of all that is clocked.
     pub(in crate::lower) fn partition_clocks(&mut self) -> Result<(), Diagnostic> {
-        if self.clocks.occurrences.is_empty() && self.clocks.on_clock.is_empty() {
+        if self.clocks.is_empty() {
             return Ok(());
         }
+        self.add_state_machines()?;
         let made = std::mem::take(&mut self.clocks.equations);
         self.dae.equations.extend(made);
         let mut partitions = self.clock_partitions()?;

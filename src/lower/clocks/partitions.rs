@@ -185,6 +185,7 @@ impl Builder<'_> {
             variables.push(*clock);
             both(&variables);
         }
+        self.variables_of_states().iter().for_each(|variables| both(variables));
         for occurrence in &self.clocks.occurrences {
             let variable = occurrence.variable;
             match &occurrence.operator {
@@ -217,6 +218,9 @@ impl Builder<'_> {
         let mut clocked: FxHashMap<u32, Span> = FxHashMap::default();
         for (clock, equation) in &self.clocks.on_clock {
             clocked.entry(bases.root(*clock)).or_insert(equation.span);
+        }
+        for state in self.clocks.machines.states.values() {
+            clocked.entry(bases.root(state.active)).or_insert(state.span);
         }
         let mut unclocked: Vec<(VarId, Span)> = Vec::new();
         for occurrence in &self.clocks.occurrences {

@@ -68,7 +68,7 @@ impl Builder<'_> {
     }
 
     /// A discrete variable of the system, with its value at events.
-    fn at_events(&mut self, name: &str, base: BaseType, span: Span) -> (VarId, Expr) {
+    pub(super) fn at_events(&mut self, name: &str, base: BaseType, span: Span) -> (VarId, Expr) {
         let number = self.dae.variables.len();
         let mut variable = scalar_of_nothing(&format!("{name}[{number}]"), Kind::Discrete, span);
         variable.base = base;
@@ -81,7 +81,7 @@ impl Builder<'_> {
         self.dae.events.equations.push(Equation::new(variable, value, span));
     }
 
-    fn pre(&mut self, of: VarId) -> Expr {
+    pub(super) fn pre(&mut self, of: VarId) -> Expr {
         let previous = self.previous_variable(of);
         self.dae.pool.variable(previous)
     }

@@ -31,7 +31,7 @@ impl<T: Target> Lowering<'_, T> {
         self.chosen_by(a, choices, span)
     }
 
-    fn chosen_by(
+    pub(super) fn chosen_by(
         &mut self,
         a: Array<T::Scalar>,
         choices: Vec<Choice<T::Scalar>>,

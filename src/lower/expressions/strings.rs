@@ -118,7 +118,8 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// The texts that subscripts choose; positions must be known.
+    /// The texts that subscripts choose; a single one at a position that is not known is chosen by
+    /// its number.
     pub(super) fn text_elements(
         &mut self,
         texts: Texts,
@@ -127,16 +128,22 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let mut dims = Vec::new();
         let mut positions = vec![0];
-        let mut choices = self.choices(&texts.dims, subscripts, span)?.into_iter();
+        let choices = self.choices(&texts.dims, subscripts, span)?;
+        if choices.iter().any(|choice| matches!(choice, Choice::Computed(_)))
+            && let Some(numbers) = self.numbers_of_texts(&texts)
+        {
+            let chosen = self.chosen_by(numbers, choices, span)?;
+            return match chosen.elements.as_slice() {
+                [number] if chosen.dims.is_empty() => Ok(Lowered::Numbered(*number)),
+                _ => Err(unknown_subscript(span)),
+            };
+        }
+        let mut choices = choices.into_iter();
         for size in &texts.dims {
             let (chosen, keeps) = match choices.next() {
                 Some(Choice::Known { positions, keeps }) => (positions, keeps),
                 Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
-                    return Err(fault!(
-                        NO_CONSTANT_VALUE,
-                        "a subscript of an array of Strings must be known at translation"
-                    )
-                    .at(span));
+                    return Err(unknown_subscript(span));
                 }
                 None => ((0..*size).collect(), true),
             };
@@ -146,6 +153,15 @@ impl<T: Target> Lowering<'_, T> {
         }
         let chosen = positions.into_iter().map(|at| texts.texts[at].clone()).collect();
         Ok(of_texts(Texts { dims, texts: chosen }))
+    }
+
+    /// The numbers of texts, if all are known and the texts of the model have numbers.
+    fn numbers_of_texts(&mut self, texts: &Texts) -> Option<Array<T::Scalar>> {
+        if texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
+            return None;
+        }
+        let elements = texts.texts.iter().map(|text| self.target.text_number(text));
+        Some(Array { dims: texts.dims.clone(), elements: elements.collect::<Option<_>>()? })
     }
 
     /// What a reference stands for, if that is known.
@@ -229,6 +245,11 @@ impl<T: Target> Lowering<'_, T> {
         let elements = numbers.into_iter().map(|number| self.target.constant(number)).collect();
         Some(Lowered::Array(Array { dims, elements }))
     }
+}
+
+fn unknown_subscript(span: Span) -> Diagnostic {
+    fault!(NO_CONSTANT_VALUE, "a subscript of an array of Strings must be known at translation")
+        .at(span)
 }
 
 /// Answers the interpreter while a model is compiled.

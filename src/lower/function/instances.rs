@@ -175,6 +175,13 @@ impl Instances {
         }
         let statements = match &function.body {
             FunctionBody::Algorithm(statements) => statements.as_slice(),
+            FunctionBody::PartialDerivative { .. } => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "`{name}`, a partial derivative, in a function that is not inlined"
+                )
+                .at(span));
+            }
             FunctionBody::External(_) | FunctionBody::RecordConstructor => &[],
         };
         if self.depth >= MAX_DEPTH || self.finished.len() >= MAX_INSTANCES {

@@ -14,6 +14,7 @@ mod external;
 mod external_kinds;
 mod instances;
 mod inverse;
+mod partial_derivative;
 mod place;
 mod printing;
 mod repeated;
@@ -32,7 +33,7 @@ use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED
 use super::expressions::{Lowered, field_of};
 use super::inline::{MAX_INLINED, inline};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -48,6 +49,9 @@ pub(super) fn call(
     arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if let FunctionBody::PartialDerivative { of, by } = &function.body {
+        return partial_derivative::call(builder, function, (of, by), arguments, span);
+    }
     if builder.calls.functions.may_write {
         // Carried out on expressions, a function would write whatever its branches are.
         return compiled_call(builder, function, arguments, span);

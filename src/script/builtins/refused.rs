@@ -112,7 +112,7 @@ pub(super) const FAMILY: Family = Family {
             getDefinitions listFile;
         "get elements with getComponents":
             getElements getElementsInfo;
-        "state machines are not supported":
+        "listing the transitions of state machines is not supported":
             getInitialStates getTransitions;
         "the instance tree cannot be written as JSON: get the flat model with instantiateModel":
             getModelInstance;

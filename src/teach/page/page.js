@@ -96,7 +96,7 @@ function show() {
   at("slider").value = place + 1;
   at("step").textContent = (place + 1) + " of " + stepsOf(step.g);
   at("generation").value = at("generations").value = step.g + 1;
-  at("title").textContent = "Generation " + (step.g + 1) + " of " + DATA.of + ": " + step.title;
+  at("title").textContent = (DATA.generations[step.g].call ? "Call " : "Generation ") + (step.g + 1) + " of " + DATA.of + ": " + step.title;
   at("text").textContent = step.text;
   at("link").href = "#step=" + (current + 1);
   at("first").disabled = at("back").disabled = current === 0;

@@ -34,6 +34,7 @@ function cameAs(origin) {
   if (origin.random) return "drawn at random";
   if (origin.elite !== undefined) return "elite, was " + (origin.elite + 1);
   const changed = origin.mutated.length ? ", mutated in " + origin.mutated.map(name).join(", ") : "";
+  if (origin.was !== undefined) return "was " + (origin.was + 1) + changed;
   return "child of " + (origin.of[0] + 1) + " and " + (origin.of[1] + 1) + changed;
 }
 
@@ -127,10 +128,11 @@ function child(generation, row, mutated) {
   const n = generation.n, elites = generation.elites || 0, rank = row - elites, order = generation.order;
   const values = genome(mutated ? generation.after : generation.children, n, row);
   const crown = rank < 0;
-  const from = crown ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
+  const alone = !generation.points;
+  const from = crown || alone ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
   const u = mutated && !crown ? genome(generation.u, n, row) : [];
   const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
-  const origin = crown ? { elite: from[0] } : { of: from, mutated: changed };
+  const origin = crown ? { elite: from[0] } : alone ? { was: from[0], mutated: changed } : { of: from, mutated: changed };
   const genes = values.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
   return { number: row, values, from, crown, changed, text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
 }

@@ -2,7 +2,7 @@
 
 use super::{Screen, View, compare, inspect, step_panel};
 use crate::teach::explain::explain;
-use crate::teach::plain::title;
+use crate::teach::plain::{place_in_run, title};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -57,8 +57,8 @@ fn heading(screen: &Screen) -> Line<'static> {
     let walk = &screen.walk;
     let (at, of) = walk.progress();
     let text = format!(
-        "Generation {} of {}, step {} of {of}: {}",
-        walk.number() + 1,
+        "{} of {}, step {} of {of}: {}",
+        place_in_run(walk),
         walk.trace().generations.len(),
         at + 1,
         title(walk.step())
