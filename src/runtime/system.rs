@@ -308,7 +308,7 @@ impl System {
     /// Whether a value is a number; it need not be where a parameter has no value.
     fn is_a_number(&self, value: f64) -> Result<(), Failure> {
         match &self.lacking {
-            Some(failure) if value.is_nan() => Err(failure.clone()),
+            Some(failure) if value.is_nan() => Err(*failure),
             _ => Ok(()),
         }
     }
