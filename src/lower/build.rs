@@ -60,6 +60,9 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let functions = builder.calls.functions.finish();
     for (function, code) in functions.codes.iter().enumerate() {
         for (input, inverse) in &code.inverses {
+            if !super::function::inverts(&functions, function as u32, *input, inverse) {
+                continue;
+            }
             builder.dae.pool.declare_inverse(function as u32, *input, inverse.clone());
         }
     }

@@ -25,6 +25,7 @@ mod target;
 
 pub(super) use external_kinds::prints;
 pub(super) use instances::Instances;
+pub(super) use inverse::inverts;
 pub(super) use results::CallResults;
 
 use super::builder::{Builder, MAX_STATEMENTS};
