@@ -350,7 +350,7 @@ fn what_libraries_do_is_refused_only_where_all_must_conform() {
         "illegal-prefix",
     );
     refused_if_strict(
-        "connector C Real e; flow Real f; end C; model M extends C; equation e = 1; f = 2; end M;",
+        "connector C Real e; flow Real f; end C; model M extends C(f = 2); equation e = 1; end M;",
         "type-mismatch",
     );
     refused_if_strict(

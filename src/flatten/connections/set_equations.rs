@@ -128,7 +128,9 @@ impl Classes<'_> {
     ) {
         let in_connector = in_connector || self.tree.is_connector(node);
         if let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind {
-            if in_connector && leaf.connection == Some(ConnectionPrefix::Flow) {
+            // A flow variable outside of connectors that has a value is a variable like others.
+            let is_open = in_connector || leaf.modifier.binding.is_none();
+            if is_open && leaf.connection == Some(ConnectionPrefix::Flow) {
                 let count = self.tree.variables[leaf.variable].0.len();
                 let sides =
                     (0..count).map(|element| ConnectorSide { leaf: node, element, outside: false });
