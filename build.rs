@@ -1,4 +1,5 @@
-//! Puts the packages of `models/` into the program: writes the table that `src/models.rs` reads.
+//! Puts the packages of `models/` and the lessons of `scripts/lessons/` into the program: writes the
+//! tables that `src/models.rs` and `src/lessons/shipped.rs` read.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,26 +7,32 @@ use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=models");
-    let folder = |variable| env::var_os(variable).map(PathBuf::from).ok_or(io::ErrorKind::NotFound);
-    let models = folder("CARGO_MANIFEST_DIR")?.join("models");
+    embed("models", "models.rs")?;
+    embed("scripts/lessons", "lessons.rs")
+}
+
+/// Writes a table of the files below a folder of the project: their paths below it, and their bytes.
+fn embed(folder: &str, table_name: &str) -> io::Result<()> {
+    println!("cargo::rerun-if-changed={folder}");
+    let variable = |name| env::var_os(name).map(PathBuf::from).ok_or(io::ErrorKind::NotFound);
+    let root = variable("CARGO_MANIFEST_DIR")?.join(folder);
     let mut files = Vec::new();
-    collect(&models, &mut files)?;
+    collect(&root, &mut files)?;
     files.sort();
     let mut table = String::from("&[\n");
     for file in &files {
-        let parts = file.strip_prefix(&models).unwrap_or(file).iter();
+        let parts = file.strip_prefix(&root).unwrap_or(file).iter();
         let name: Vec<_> = parts.map(|part| part.to_string_lossy()).collect();
         let name = name.join("/");
         // Where the project is now, not where it was when this ran: it may be moved.
-        let path = format!("/models/{name}");
+        let path = format!("/{folder}/{name}");
         let _ = writeln!(
             table,
             "({name:?}, include_bytes!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {path:?}))),"
         );
     }
     table.push(']');
-    fs::write(folder("OUT_DIR")?.join("models.rs"), table)
+    fs::write(variable("OUT_DIR")?.join(table_name), table)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {

@@ -7,12 +7,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// tenths of a second.
 pub const DEFAULT_INSTRUCTIONS: u64 = 20_000_000;
 
+/// The same for whoever simulates models of others on the command line: the multipoles of a borehole
+/// with four pipes (IBPSA) take 400 million, half a second.
+pub const LONG_CALL_INSTRUCTIONS: u64 = 1_000_000_000;
+/// Statements of the interpreter in place of so many instructions.
+const INSTRUCTIONS_A_STATEMENT: u64 = 5;
+
 static LIMIT: AtomicU64 = AtomicU64::new(DEFAULT_INSTRUCTIONS);
+static STEPS: AtomicU64 = AtomicU64::new(DEFAULT_INSTRUCTIONS / INSTRUCTIONS_A_STATEMENT);
 
 /// Says how many instructions one call of a function may take, in the whole process: the person who
 /// starts the program knows whether a function that takes longer is worth it.
 pub fn limit_instructions(limit: u64) {
     LIMIT.store(limit, Ordering::Relaxed);
+    STEPS.store(limit / INSTRUCTIONS_A_STATEMENT, Ordering::Relaxed);
+}
+
+/// Lets one call take [`LONG_CALL_INSTRUCTIONS`]; what is done at translation keeps its limit.
+pub fn allow_long_calls() {
+    LIMIT.store(LONG_CALL_INSTRUCTIONS, Ordering::Relaxed);
 }
 
 /// The most instructions of one call of a function.
@@ -23,7 +36,7 @@ pub fn instruction_limit() -> u64 {
 /// The most statements and iterations of loops that the interpreter runs to find the values that one model
 /// needs at translation: one takes as long as some instructions of compiled functions.
 pub(crate) fn step_limit() -> u64 {
-    instruction_limit() / 5
+    STEPS.load(Ordering::Relaxed)
 }
 
 /// What a function says that exceeds the limit.

@@ -65,8 +65,12 @@
 //! - [`units`]: units of measurement and their conversion;
 //! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
 //! - [`models`]: the Modelica packages that are part of the program;
-//! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
+//! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks; [`cli`]: the command line, the only door outside.
 
+#![cfg_attr(
+    not(all(feature = "jit", feature = "xlsx", feature = "hdf5", feature = "pictures")),
+    allow(dead_code, unused_imports, reason = "what only the parts that are left out use")
+)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
 
 pub mod bibliography;
@@ -88,6 +92,7 @@ pub mod functions;
 pub mod ga;
 pub mod graph;
 pub mod identify;
+pub mod lessons;
 pub mod lower;
 pub mod mat;
 pub mod page;
@@ -103,4 +108,5 @@ pub mod teach;
 pub mod units;
 pub mod value;
 
+#[cfg(feature = "cli")]
 pub mod cli;

@@ -177,7 +177,7 @@ fn memory_stays_the_same_over_many_simulations() {
     let names = ["RL1.R", "T", "act_layer1.Aioref", "act_layer1.B", "mem_layer1.D2"];
     let parameters =
         names.map(|name| program.find_parameter(name).unwrap_or_else(|_| panic!("{name}")));
-    let settings = Settings { max_steps: 2_000, ..settings("dassl", 1e-4) };
+    let settings = Settings { max_steps: 2_000, max_total_steps: 2_000, ..settings("dassl", 1e-4) };
     let (mut simulator, mut trajectory) = (Simulator::new(), Trajectory::default());
     let (mut seed, mut failures, mut after_some) = (1, 0, None);
     for run in 0..runs {

@@ -4,7 +4,7 @@ use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use crate::external::{Contents, Entry, Objects, Slot};
 use crate::source::Span;
-use crate::symbolic::RelationOperator;
+use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
 
 /// A register of a frame.
@@ -96,6 +96,8 @@ pub struct Code {
     pub may_lack: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
+    /// Inputs, and how equations are solved for them, `annotation(inverse(…))` (MLS §12.8).
+    pub inverses: Vec<(u32, Inverse)>,
 }
 
 impl Code {

@@ -7,7 +7,7 @@ use super::causalized::Alias;
 use crate::lower::{Dae, Equation, Kind, Variable};
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, Pool, Substitution, VarId};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Removes alias equations; returns every variable's representative.
 pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
@@ -68,15 +68,21 @@ pub(super) fn alias(pool: &Pool, equation: Equation) -> Option<(VarId, VarId, bo
 struct Memory {
     start: Option<Expr>,
     fixed: bool,
+    /// Whether an initial equation has `pre` of this variable, such as `pre(u) = false`.
+    given: bool,
 }
 
 /// Start values of `pre` of discrete variables.
 fn memories(dae: &Dae) -> Vec<Option<Memory>> {
+    let sides = dae.initial_equations.iter().flat_map(|e| [e.left, e.right]);
+    let initial: FxHashSet<VarId> = sides.flat_map(|e| dae.pool.variables(e)).collect();
     let mut memory = vec![None; dae.variables.len()];
-    for variable in &dae.variables {
+    for (position, variable) in (0..).zip(&dae.variables) {
         if let Kind::Previous(of) = variable.kind {
             let &Variable { start, fixed, kind, .. } = dae.variable(of);
-            memory[of.0 as usize] = (kind == Kind::Discrete).then_some(Memory { start, fixed });
+            let given = initial.contains(&VarId(position));
+            let remembers = kind == Kind::Discrete;
+            memory[of.0 as usize] = remembers.then_some(Memory { start, fixed, given });
         }
     }
     memory
@@ -131,11 +137,13 @@ impl Sets {
     }
 
     /// A discrete variable is no state, and two equations at events determine two variables. The
-    /// fixed start of one is the value of its own `pre` (MLS §8.6), not of that of another.
+    /// fixed start of one, and what initial equations say of `pre` of it, hold for its own `pre`
+    /// (MLS §8.6), not for that of another.
     fn must_stay_apart(&self, a: usize, b: usize, negated: bool) -> bool {
         if let (Some(one), Some(other)) = (self.memory[a], self.memory[b])
-            && (one.fixed || other.fixed)
-            && (one != other || negated)
+            && (one.given
+                || other.given
+                || ((one.fixed || other.fixed) && (one != other || negated)))
         {
             return true;
         }

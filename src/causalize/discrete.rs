@@ -5,9 +5,10 @@ use super::causalized::Alias;
 use super::used_variables::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
 use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Kind, is_real};
+use crate::lower::{Dae, Equation, Kind, Variable, is_real};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
 
@@ -50,6 +51,7 @@ pub(super) fn separate_discrete(
             variable.name; help: "write an equation `{} = …` for it", variable.name)
         .labelled(variable.span, "no equation determines this"));
     }
+    let mut determining: Vec<(VarId, Equation)> = Vec::new();
     for (equation, unknown) in
         std::mem::take(&mut dae.equations).into_iter().zip(&matching.equation_to_unknown)
     {
@@ -59,10 +61,30 @@ pub(super) fn separate_discrete(
         };
         let left = dae.pool.variable(open[*unknown]);
         let right = if equation.left == left { equation.right } else { equation.left };
-        check_constant_between_events(dae, open[*unknown], right, equation)?;
-        dae.events.equations.push(Equation { left, right, ..equation });
+        determining.push((open[*unknown], Equation { left, right, ..equation }));
     }
+    leave_varying(dae, aliases, &mut determining)?;
+    dae.events.equations.extend(determining.into_iter().map(|(_, equation)| equation));
     Ok(())
+}
+
+/// Leaves to the continuous equations what follows from Integers that change between events: the
+/// phase of a medium that another record passes on.
+fn leave_varying(
+    dae: &mut Dae,
+    aliases: &[Option<Alias>],
+    determining: &mut Vec<(VarId, Equation)>,
+) -> Result<(), Diagnostic> {
+    loop {
+        let varying = determining.iter().position(|(_, equation)| varies(dae, equation.right));
+        let Some(at) = varying else { return Ok(()) };
+        let (variable, equation) = determining.remove(at);
+        if !may_vary(dae, aliases, (variable, equation)) {
+            return Err(not_constant(dae, variable, equation));
+        }
+        dae.variables[variable.0 as usize].kind = Kind::Unknown;
+        dae.equations.push(equation);
+    }
 }
 
 fn drop_unused_previous(dae: &mut Dae) {
@@ -74,20 +96,31 @@ fn drop_unused_previous(dae: &mut Dae) {
     }
 }
 
-fn check_constant_between_events(
-    dae: &Dae,
-    variable: VarId,
-    value: Expr,
-    equation: Equation,
-) -> Result<(), Diagnostic> {
-    let varies =
-        |v: VarId| dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed);
-    match dae.pool.any_variable(value, varies) {
-        false => Ok(()),
-        true => Err(fault!(NOT_DISCRETE,
-            "`{}` is discrete, but its equation may change between events",
-            dae.variable(variable).name;
-            help: "do not use relations inside `noEvent` or inside functions")
-        .at(equation.span)),
-    }
+/// Whether a value may change between events.
+fn varies(dae: &Dae, value: Expr) -> bool {
+    dae.pool.any_variable(value, |v| is_varying(dae, v))
+}
+
+fn is_varying(dae: &Dae, v: VarId) -> bool {
+    dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed)
+}
+
+/// Whether a variable may change between events: it is another name of an Integer that may, or
+/// follows from such; and nothing asks for its value before an event.
+fn may_vary(dae: &Dae, aliases: &[Option<Alias>], (variable, equation): (VarId, Equation)) -> bool {
+    let is_other_name = |(alias, own): (&Option<Alias>, &Variable)| {
+        own.kind == Kind::Unknown && alias.is_some_and(|alias| alias.of == variable)
+    };
+    let is_real = |v: VarId| is_varying(dae, v) && dae.variable(v).base == BaseType::Real;
+    let may_vary = aliases.iter().zip(&dae.variables).any(is_other_name)
+        || !dae.pool.any_variable(equation.right, is_real);
+    may_vary && !dae.variables.iter().any(|v| v.kind == Kind::Previous(variable))
+}
+
+fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {
+    fault!(NOT_DISCRETE,
+        "`{}` is discrete, but its equation may change between events",
+        dae.variable(variable).name;
+        help: "do not use relations inside `noEvent` or inside functions")
+    .at(equation.span)
 }

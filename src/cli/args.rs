@@ -55,7 +55,7 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Step through the genetic algorithm of a script
     Teach(TeachArgs),
-    /// Learn how the genetic algorithm works, in twelve short lessons
+    /// Learn how the genetic algorithm works, in 18 short exercises
     Lesson(LessonArgs),
     /// Estimate the parameters of a problem file
     Identify(IdentifyArgs),

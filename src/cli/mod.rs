@@ -9,6 +9,7 @@ mod comparison;
 mod completions;
 mod device;
 mod disk;
+mod effort;
 mod explain;
 mod help;
 mod identify;
@@ -49,6 +50,7 @@ const STACK: usize = 256 << 20;
 /// Runs the command that the process was started with. Exit code 2 for a wrong command line; what
 /// the other codes mean stands in the help of each command.
 pub fn main() -> ExitCode {
+    crate::budget::allow_long_calls();
     let cli = Cli::parse();
     #[cfg(unix)]
     signals::survive_large_files();

@@ -73,7 +73,7 @@ pub(super) struct Limits {
     /// Evaluate models without machine code: slower, with identical results
     #[arg(long)]
     pub interpret: bool,
-    /// Maximum number of instructions of one function call, in millions [default: 20]
+    /// Maximum number of instructions of one function call, in millions [default: 1000]
     #[arg(long, value_name = "MILLIONS", value_parser = clap::value_parser!(u32).range(1..))]
     pub instruction_limit: Option<u32>,
 }

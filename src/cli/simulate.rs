@@ -1,5 +1,6 @@
 //! `gapi simulate`: one simulation of one model.
 
+use super::effort;
 use super::options::{Global, Limits};
 use super::terminal::Terminal;
 use super::{limits, session};
@@ -74,7 +75,8 @@ pub(super) struct SimulateArgs {
     /// Print the system after a compiler pass instead of simulating it
     #[arg(long, value_name = "PASS", value_parser = pass_names())]
     pub dump: Option<String>,
-    /// Print statistics of the simulation
+    /// Print statistics of the simulation and what made it work: the variables that limit its
+    /// steps, the relations that cause its events, its algebraic loops
     #[arg(long)]
     pub stats: bool,
     /// Stop at chattering and Zeno behaviour, instead of sliding or resting there
@@ -176,6 +178,7 @@ fn run(
     session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
+        session.print(&simulated.hardest.as_ref().map(effort::table).unwrap_or_default());
     }
     if !arguments.plot.is_empty() {
         draw(session, class, (arguments, picture), &simulated.table).map_err(one)?;
@@ -258,6 +261,7 @@ fn options(arguments: &SimulateArgs) -> SimulationOptions {
         tolerance: arguments.tolerance,
         method: arguments.method.clone(),
         stops_at_chattering: arguments.no_sliding,
+        counts_effort: arguments.stats,
         ..SimulationOptions::default()
     }
 }

@@ -7,8 +7,9 @@ use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
-use crate::script::{Echo, Options, Session};
+use crate::script::{Echo, Options, Reporting, Session};
 use crate::source::Span;
+use crate::teach::bands::{self, Repeated};
 use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
 use crate::teach::screen::Screen;
@@ -25,8 +26,9 @@ Examples:
   gapi teach scripts/GAPILib.mos
   gapi teach scripts/GAPILib.mos --generation 100 --count 2
   gapi teach scripts/twin/GAPILib.mos --html steps.html
-  gapi teach scripts/lessons/07_elites.mos --quiz
+  gapi teach lessons/04_selection.mos --quiz
   gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
+  gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0\" --what-if \"F_Mut := 1\" --runs 20
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
     /// A script (.mos), which is run first, or a trace written by `gapi run --trace`
@@ -38,15 +40,18 @@ pub(super) struct TeachArgs {
     /// Quiz: ask for the outcome of each step first, and count the correct answers
     #[arg(long, conflicts_with = "html")]
     pub quiz: bool,
-    /// Run again with this statement executed at the first generation shown, and compare
+    /// Run again with this statement executed at the first generation shown, and compare; repeat the option for several statements
     #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
-    pub what_if: Option<String>,
+    pub what_if: Vec<String>,
+    /// Compare over this number of runs, each with another seed
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one, requires = "what_if")]
+    pub runs: usize,
     /// The first generation to show
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,
-    /// Number of generations to print as text
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
-    pub count: usize,
+    /// Number of generations to print as text [default: 1; all calls of a script that only calls operators]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub count: Option<usize>,
     /// Write a figure of the first generation shown and the next one (SVG), instead of text
     #[arg(long, value_name = "FILE", conflicts_with_all = ["html", "quiz", "what_if"], value_hint = ValueHint::FilePath)]
     pub svg: Option<PathBuf>,
@@ -63,6 +68,14 @@ pub(super) struct TeachArgs {
 
 /// What changes a run: from which generation on, counted from 1, and the statement.
 type Change<'a> = (usize, &'a str);
+
+/// How a script is run again.
+#[derive(Debug, Clone, Copy, Default)]
+struct Again<'a> {
+    change: Option<Change<'a>>,
+    /// Which of the runs with different seeds it is, from 0; `None` where there is one.
+    run: Option<usize>,
+}
 
 /// Runs the script, or reads the trace, and shows its steps.
 pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
@@ -85,11 +98,15 @@ enum Trouble {
 
 fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
+    if arguments.runs > 1 || arguments.what_if.len() > 1 {
+        return compare_many(arguments, global);
+    }
     let (trace, session) = match is_script {
-        true => recorded(arguments, global, None).map(|(trace, session)| (trace, Some(session)))?,
+        true => recorded(arguments, global, &Again::default())
+            .map(|(trace, session)| (trace, Some(session)))?,
         false => (read(&arguments.input)?, None),
     };
-    if let Some(statement) = &arguments.what_if {
+    if let Some(statement) = arguments.what_if.first() {
         return compare(arguments, global, &trace, statement);
     }
     if let Some(file) = &arguments.svg {
@@ -128,17 +145,23 @@ fn results(arguments: &TeachArgs) -> Result<PathBuf, Trouble> {
 fn recorded(
     arguments: &TeachArgs,
     global: &Global,
-    change: Option<Change<'_>>,
+    again: &Again<'_>,
 ) -> Result<(Trace, Session), Trouble> {
+    let change = again.change;
     let output = output(arguments)?;
-    let output = if change.is_some() { output.within("what_if") } else { output };
+    let is_other = change.is_some() || again.run.is_some_and(|run| run > 0);
+    let output = if is_other { output.within("what_if") } else { output };
     let out = output.folder.clone();
-    let terminal = Terminal::new(global.color, true);
+    let mut terminal = Terminal::new(global.color, false);
+    terminal.show_progress_only();
     let world = SystemWorld::for_results(terminal, output, None)
         .map_err(|error| Trouble::Message(error.to_string()))?;
     world.catch_interrupts();
-    let options = Options { echo: Echo::Nothing, ..Options::default() };
+    let reporting = if again.run.is_some() { Reporting::Off } else { Reporting::Usual };
+    // A quiet session reports errors only.
+    let options = Options { echo: Echo::Nothing, quiet: true, reporting, ..Options::default() };
     let mut session = session::open(global, world).with_options(options);
+    session.use_stream(again.run.unwrap_or(0) as u64);
     let file = out.join("run.trace");
     let prepared = session.trace_to(&file).map_err(|fault| fault.at(Span::NONE));
     let prepared = prepared.and_then(|()| match change {
@@ -183,7 +206,37 @@ fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<
         let message = "a recorded run cannot be changed; give the script instead";
         return Err(Trouble::Message(message.to_owned()));
     }
-    recorded(arguments, global, Some(change)).map(|(trace, _)| trace)
+    let again = Again { change: Some(change), run: None };
+    recorded(arguments, global, &again).map(|(trace, _)| trace)
+}
+
+/// Runs the script as it is and with each change, with many seeds, and shows the bands of all.
+fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+    if arguments.input.extension().is_none_or(|extension| extension != "mos") {
+        let message = "a recorded run cannot be repeated; give the script instead";
+        return Err(Trouble::Message(message.to_owned()));
+    }
+    let changes = arguments.what_if.iter().map(|statement| Some(statement.as_str()));
+    let repeated = [None].into_iter().chain(changes).map(|statement| {
+        let curves = (0..arguments.runs).map(|run| {
+            let change = statement.map(|statement| (arguments.generation, statement));
+            let again = Again { change, run: Some(run) };
+            recorded(arguments, global, &again).map(|(trace, _)| bands::curve(&trace))
+        });
+        let name = statement.unwrap_or("original script").to_owned();
+        Ok(Repeated { name, curves: curves.collect::<Result<_, Trouble>>()? })
+    });
+    let repeated = repeated.collect::<Result<Vec<_>, Trouble>>()?;
+    let figure = bands::figure(&repeated);
+    let file = shown(&output(arguments)?.folder.join("what_if.svg"));
+    terminal::print(&format!(
+        "{}\n{}\n",
+        bands::summary(&repeated),
+        bands::medians(&repeated).text(64, 14)
+    ));
+    write(&file, &figure.svg())?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
@@ -258,7 +311,8 @@ fn show(
 }
 
 fn print(mut walk: Walk, arguments: &TeachArgs) {
-    let last = arguments.generation + arguments.count - 1;
+    let all = if walk.generation().is_call { walk.trace().generations.len() } else { 1 };
+    let last = arguments.generation + arguments.count.unwrap_or(all) - 1;
     let mut score = Score::default();
     loop {
         if arguments.quiz {

@@ -22,6 +22,8 @@ pub(super) struct Terminal {
     interrupt: Arc<AtomicBool>,
     /// Whether runs may be drawn.
     draws: bool,
+    /// Whether what scripts print is left out, and progress is shown all the same.
+    silent: bool,
     /// What is said while a run is drawn: for standard output or not, and the text.
     kept: Vec<(bool, String)>,
 }
@@ -38,7 +40,16 @@ impl Terminal {
         let interrupt = Arc::new(AtomicBool::new(false));
         let live = Live::new(Arc::clone(&interrupt));
         let draws = !quiet && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
-        Terminal { colour, quiet, bar: None, live, interrupt, draws, kept: Vec::new() }
+        Terminal {
+            colour,
+            quiet,
+            bar: None,
+            live,
+            interrupt,
+            draws,
+            silent: false,
+            kept: Vec::new(),
+        }
     }
 
     /// What becomes true when the user presses Ctrl-C.
@@ -49,6 +60,12 @@ impl Terminal {
     /// Runs are not drawn.
     pub(super) fn forbid_view(&mut self) {
         self.draws = false;
+    }
+
+    /// What scripts print is left out; a bar shows the progress of the run.
+    pub(super) fn show_progress_only(&mut self) {
+        self.draws = false;
+        self.silent = true;
     }
 
     /// Whether a run would be drawn now.
@@ -97,7 +114,7 @@ impl Terminal {
 
     /// Writes to standard output. A reader that went away (`| head`) is not an error.
     pub(super) fn print(&mut self, text: &str) {
-        if self.quiet {
+        if self.quiet || self.silent {
             return;
         }
         if self.live.is_shown() && std::io::stdout().is_terminal() {

@@ -19,7 +19,9 @@ use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::diag::Diagnostic;
+use crate::fault;
 use crate::flatten::BaseType;
+use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
 use crate::lower::{Assertion, Kind, Level, Variable};
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, Pool, VarId};
@@ -93,7 +95,8 @@ impl Program {
 
     /// Default values and bounds, computed with the default parameters.
     fn fill_defaults(&mut self) {
-        let values = default_values(self);
+        let (values, warnings) = default_values(self);
+        self.sorted.dae.warnings.extend(warnings);
         let dae = &self.sorted.dae;
         let number = |e: Option<Expr>, otherwise: f64| match e {
             None => otherwise,
@@ -413,15 +416,34 @@ fn depend_on_time(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> boo
     values.any(|value| pool.depends_on(value, VarId(0)))
 }
 
-/// Values of all variables that parameters have by default; NaN where none can be computed.
-fn default_values(program: &Program) -> Vec<f64> {
+/// Values of all variables that parameters have by default; NaN where none can be computed. A
+/// warning where a function gives none.
+fn default_values(program: &Program) -> (Vec<f64>, Vec<Diagnostic>) {
     let mut registers = Memory::new(&program.registers);
+    let mut warnings = Vec::new();
     for (parameter, tape) in &program.parameter_tapes {
-        if tape.run(&mut registers).is_err() {
+        if let Err(failed) = tape.run(&mut registers) {
             registers[parameter.0 as usize] = f64::NAN;
+            if let Some(function) = tape.lacking(failed) {
+                let warning = lacking(program, *parameter, function);
+                // Once for all components of one type.
+                if warnings.iter().all(|other: &Diagnostic| other.span() != warning.span()) {
+                    warnings.push(warning);
+                }
+            }
         }
     }
-    registers.registers
+    (registers.registers, warnings)
+}
+
+fn lacking(program: &Program, parameter: VarId, function: u32) -> Diagnostic {
+    let variable = program.sorted.dae.variable(parameter);
+    let function = &program.registers.functions().codes[function as usize].name;
+    fault!(PARAMETER_WITHOUT_VALUE,
+        "the parameter `{}` has no value: the function `{function}` gives it none", variable.name;
+        help: "assign it in the function, at least for the case that it is not used")
+    .at(variable.span)
+    .warning()
 }
 
 /// Entries of a Jacobian by columns.

@@ -21,11 +21,16 @@ pub(crate) mod instruction;
 mod iteration_variables;
 pub(crate) mod jacobian;
 pub(crate) mod linear_system;
+#[cfg(feature = "jit")]
+mod machine_code;
+#[cfg(not(feature = "jit"))]
+#[path = "without_machine_code.rs"]
 mod machine_code;
 pub(crate) mod memory;
 pub(crate) mod noevent_relations;
 pub(crate) mod program;
 mod queries;
+#[cfg(feature = "jit")]
 mod regions;
 mod registers;
 mod relation_groups;
@@ -34,7 +39,9 @@ pub(crate) mod sensitivity;
 pub(crate) mod sequence;
 pub(crate) mod tape;
 pub(crate) mod tape_builder;
+#[cfg(feature = "jit")]
 mod translation;
+#[cfg(feature = "jit")]
 mod upcalls;
 
 pub use machine_code::interpret;

@@ -8,8 +8,10 @@ use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{Experiment, Variability};
 use crate::lower::Kind;
+use crate::source::Span;
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
+use std::sync::Arc;
 
 /// Names that a message lists at most.
 const MOST_NAMES: usize = 8;
@@ -43,6 +45,23 @@ impl Program {
     /// What deserves a warning.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.sorted.dae.warnings
+    }
+
+    /// The name of an unknown of the integrator.
+    pub fn unknown_name(&self, unknown: usize) -> Option<&Arc<str>> {
+        self.unknowns.get(unknown).map(|v| &self.sorted.dae.variable(*v).name)
+    }
+
+    /// Where the relation or rounding of a crossing function is written.
+    pub fn crossing_place(&self, crossing: usize) -> Option<Span> {
+        let dae = &self.sorted.dae;
+        match self.crossing_relations.get(crossing) {
+            Some(relation) => dae.relations.get(*relation).map(|relation| relation.span),
+            None => {
+                let rounding = crossing.checked_sub(self.crossing_relations.len())?;
+                dae.events.roundings.get(rounding).map(|rounding| rounding.span)
+            }
+        }
     }
 
     /// Position of a variable in [`Program::variables`].

@@ -23,6 +23,19 @@ pub(crate) struct Tape {
 }
 
 impl Tape {
+    /// The function whose output is all that the tape computes, where the run failed because the
+    /// function gives that output no value.
+    pub(crate) fn lacking(&self, failed: u32) -> Option<u32> {
+        let (at, rest) = self.code.get(failed as usize..)?.split_first()?;
+        match at {
+            Instruction::Given { function, .. } => rest
+                .iter()
+                .all(|instruction| matches!(instruction, Instruction::Move { .. }))
+                .then_some(*function),
+            _ => None,
+        }
+    }
+
     /// Runs it; on failure the number of the instruction without a finite value. Where an overflow
     /// was passed on, [`Memory::overflow`] has its number, and every variable is finite.
     pub(crate) fn run(&self, memory: &mut Memory) -> Result<(), u32> {

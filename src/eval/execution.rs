@@ -1,8 +1,10 @@
 //! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
 
+use super::errors::MODEL_ONLY;
 use super::variable::Variable;
 use super::{Compiled, Evaluator, Function, FunctionBody, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
+use crate::fault;
 use crate::source::Span;
 use crate::value::{RecordValue, Value};
 use indexmap::IndexMap;
@@ -51,6 +53,7 @@ impl Evaluator<'_> {
         }
         match &function.body {
             FunctionBody::RecordConstructor => return self.constructed(function),
+            FunctionBody::PartialDerivative { .. } => return Err(partial_derivative(function)),
             FunctionBody::External(external) => self.external(function, external)?,
             FunctionBody::Algorithm(statements) => {
                 for component in function.outputs.iter().chain(&function.locals) {
@@ -94,6 +97,16 @@ impl Evaluator<'_> {
         }
         Ok(records)
     }
+}
+
+/// A partial derivative has no body to carry out: equations differentiate that of its function.
+fn partial_derivative(function: &Function) -> Diagnostic {
+    fault!(
+        MODEL_ONLY,
+        "`{}` is a partial derivative of a function, which has values in equations of models only",
+        function.name
+    )
+    .at(function.span)
 }
 
 /// The most calls that a trace shows.

@@ -72,6 +72,14 @@ pub enum FunctionBody {
     Algorithm(Vec<ast::Statement>),
     /// `external` with language, function and call.
     External(ast::External),
+    /// The partial derivatives of the outputs of another function by some of its inputs, one after
+    /// the other (MLS §12.7.2).
+    PartialDerivative {
+        /// The function, by its full name.
+        of: Name,
+        /// The inputs; one may come several times.
+        by: Vec<Ident>,
+    },
     /// A record's constructor: the inputs are the fields of the single output (MLS §12.6).
     RecordConstructor,
 }

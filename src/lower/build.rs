@@ -57,7 +57,13 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     }
     builder.move_to_start(asserted);
     builder.partition_clocks()?;
-    builder.dae.functions = Arc::new(builder.calls.functions.finish());
+    let functions = builder.calls.functions.finish();
+    for (function, code) in functions.codes.iter().enumerate() {
+        for (input, inverse) in &code.inverses {
+            builder.dae.pool.declare_inverse(function as u32, *input, inverse.clone());
+        }
+    }
+    builder.dae.functions = Arc::new(functions);
     Ok(builder.dae)
 }
 
@@ -416,6 +422,7 @@ impl<'a> Builder<'a> {
         };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
+        let is_initial = super::when::is_initial(condition);
         let condition = lowering.scalar(condition)?;
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
@@ -441,13 +448,13 @@ impl<'a> Builder<'a> {
             )
             .at(span));
         }
-        // Integers and Booleans need an equation each that gives them a value; Reals do not: the
-        // solution is the same. With all equations paired so, the loops of the hysteresis models of
-        // the standard library become linear, and chatter at their turning points.
-        let second = match first.iter().any(|equation| self.determines_discrete(equation)) {
-            true => in_order_of(&first, second),
-            false => second,
-        };
+        // Paired by position, equations for different variables would be one, and the variables of
+        // all branches one loop: the compressors of IBPSA, off with k = 1 and on with k/(k - 1).
+        // The branch of `initial()` keeps its order unless a variable needs an equation of its own:
+        // paired otherwise, the loops of the hysteresis models of the standard library become
+        // linear, and chatter at their turning points.
+        let reorders = !is_initial || first.iter().any(|e| self.determines_discrete(e));
+        let second = if reorders { in_order_of(&first, second) } else { second };
         let pool = &mut self.dae.pool;
         let merged = first.into_iter().zip(second).map(|(a, b)| {
             if a.left == b.left {

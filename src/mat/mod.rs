@@ -20,11 +20,14 @@ pub mod errors;
 mod matrix;
 mod number;
 mod reader;
+mod signatures;
+#[cfg(feature = "xlsx")]
 mod spreadsheet;
 mod table;
 mod text;
 mod v4;
 mod v5;
+#[cfg(feature = "hdf5")]
 mod v73;
 mod write;
 
@@ -33,6 +36,11 @@ pub use number::Storage;
 pub use table::read_csv;
 pub use v5::MAX_INFLATED;
 pub use write::{append_v4, write_v4, write_v5};
+
+#[cfg(feature = "xlsx")]
+use spreadsheet::read as read_spreadsheet;
+#[cfg(feature = "hdf5")]
+use v73::read as read_hdf5;
 
 use crate::diag::Fault;
 use crate::fault;
@@ -47,8 +55,8 @@ use crate::fault;
 /// # Ok::<(), gapilib::diag::Fault>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
-    if v73::looks_like(bytes) {
-        return v73::read(bytes);
+    if signatures::is_hdf5(bytes) {
+        return read_hdf5(bytes);
     }
     if text::looks_like(bytes) {
         return text::read(bytes);
@@ -63,13 +71,31 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     }
 }
 
+#[cfg(not(feature = "hdf5"))]
+fn read_hdf5(_: &[u8]) -> Result<MatFile, Fault> {
+    Err(fault!(
+        errors::UNSUPPORTED_MAT_FILE,
+        "MAT files of version 7.3 (HDF5) are not read by this build, which lacks the feature `hdf5`"
+    )
+    .help("save it with `save -v7 file.mat`"))
+}
+
+#[cfg(not(feature = "xlsx"))]
+fn read_spreadsheet(_: &[u8]) -> Result<MatFile, Fault> {
+    Err(fault!(
+        errors::BAD_TABLE,
+        "spreadsheets are not read by this build, which lacks the feature `xlsx`"
+    )
+    .help("save the table as CSV"))
+}
+
 /// Reads a data file: text in columns by the ending of its name, anything else by its content.
 /// Faults name the file.
 pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
     let read = if is_table(file_name, bytes) {
         table::read_text(bytes, false)
-    } else if spreadsheet::looks_like(bytes) {
-        spreadsheet::read(bytes)
+    } else if signatures::is_zip(bytes) {
+        read_spreadsheet(bytes)
     } else {
         read(bytes)
     };
@@ -94,7 +120,7 @@ const TABLES: [&str; 12] =
 fn is_table(file_name: &str, bytes: &[u8]) -> bool {
     let lower = file_name.to_lowercase();
     let ending = lower.rsplit_once('.').map_or("", |(_, ending)| ending);
-    let binary = spreadsheet::looks_like(bytes) || v73::looks_like(bytes);
+    let binary = signatures::is_zip(bytes) || signatures::is_hdf5(bytes);
     let is_delimited = ["csv", "tsv"].contains(&ending);
     TABLES.contains(&ending) && !binary && (is_delimited || !text::looks_like(bytes))
 }

@@ -14,11 +14,6 @@ const MOST_CELLS: usize = 10_000_000;
 /// Days from the zero of the dates of spreadsheets to 1970-01-01.
 const DAYS_TO_1970: f64 = 25_569.0;
 
-/// Whether the bytes are those of a zip archive, as XLSX files are.
-pub fn looks_like(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"PK\x03\x04")
-}
-
 /// Reads the first sheet. Empty cells are missing values, NaN; formulas without a stored value are
 /// faults of their column.
 ///

@@ -15,16 +15,9 @@ use crate::{bail, fault};
 use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
 use std::collections::HashMap;
 
-const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 const MAX_DEPTH: usize = 32;
 /// Datasets and groups of one file.
 const MAX_OBJECTS: usize = 100_000;
-
-/// Whether the bytes are HDF5, by themselves or behind the head of a MAT file.
-pub fn looks_like(bytes: &[u8]) -> bool {
-    let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(SIGNATURE));
-    signed(0) || signed(512) || bytes.starts_with(b"MATLAB 7.3 MAT-file")
-}
 
 pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let file = File::from_bytes(bytes.to_vec()).map_err(|error| damaged("the file", &error))?;

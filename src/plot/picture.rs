@@ -7,10 +7,12 @@ use super::Figure;
 use super::errors::UNKNOWN_PICTURE;
 use crate::diag::Fault;
 use crate::fault;
+#[cfg(feature = "pictures")]
 use resvg::{tiny_skia, usvg};
 use std::path::Path;
 
 /// Pixels of a PNG for each pixel of the SVG: 1280 across.
+#[cfg(feature = "pictures")]
 const ENLARGED: f32 = 2.0;
 
 /// A format of pictures.
@@ -52,9 +54,21 @@ impl Figure {
     ///
     /// A picture that is too large to be drawn.
     pub fn picture(&self, format: Picture) -> Result<Vec<u8>, Fault> {
-        if format == Picture::Svg {
-            return Ok(self.svg().into_bytes());
+        match format {
+            Picture::Svg => Ok(self.svg().into_bytes()),
+            Picture::Png | Picture::Pdf => self.drawn(format),
         }
+    }
+
+    #[cfg(not(feature = "pictures"))]
+    fn drawn(&self, _: Picture) -> Result<Vec<u8>, Fault> {
+        Err(fault!(UNKNOWN_PICTURE,
+            "this build draws neither PNG nor PDF: it lacks the feature `pictures`";
+            help: "write an `.svg`"))
+    }
+
+    #[cfg(feature = "pictures")]
+    fn drawn(&self, format: Picture) -> Result<Vec<u8>, Fault> {
         let failed = |why: &dyn std::fmt::Display| {
             fault!(UNKNOWN_PICTURE, "the figure cannot be drawn: {why}")
         };

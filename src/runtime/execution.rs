@@ -6,6 +6,7 @@ use crate::codegen::instruction::Instruction;
 use crate::codegen::memory::Memory;
 use crate::codegen::tape::Tape;
 use crate::sim::Failure;
+use crate::symbolic::VarId;
 use crate::symbolic::function::{self, Function, FunctionId};
 
 /// Computes the outputs of code that computes nothing else.
@@ -74,6 +75,23 @@ pub fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> 
     match registers.overflow {
         Some(at) => Err(failure(tape, registers, at)),
         None => Ok(()),
+    }
+}
+
+/// Computes a parameter. One that a function leaves without value is not a number, and the failure
+/// that it is to who reads it is returned: records are passed of which the case at hand needs a part.
+pub fn run_parameter(
+    parameter: VarId,
+    tape: &Tape,
+    registers: &mut Memory,
+) -> Result<Option<Failure>, Failure> {
+    match tape.run(registers) {
+        Err(at) if tape.lacking(at).is_some() => {
+            registers[parameter.0 as usize] = f64::NAN;
+            Ok(Some(failure(tape, registers, at)))
+        }
+        Err(at) => Err(failure(tape, registers, at)),
+        Ok(()) => registers.overflow.map_or(Ok(None), |at| Err(failure(tape, registers, at))),
     }
 }
 

@@ -69,15 +69,15 @@ impl System {
         let (mut moved, mut nominal) = (y.to_vec(), vec![1.0; n]);
         self.nominal(&mut nominal);
         self.rhs(t, y, &mut before)?;
-        let program = self.program.clone();
+        let pattern = self.pattern().clone();
         for j in 0..n {
             quotient(y[j], nominal[j], &before, &mut column, |x, out| {
                 moved[j] = x;
                 self.rhs(t, &moved, out)
             })?;
             moved[j] = y[j];
-            for at in program.pattern.column(j) {
-                values[at] = column[program.pattern.rows[at]];
+            for at in pattern.column(j) {
+                values[at] = column[pattern.rows[at]];
             }
         }
         self.load(t, y);

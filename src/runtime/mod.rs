@@ -4,7 +4,8 @@
 //! ```text
 //! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
 //! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
-//! newton                 torn loops: Newton, then global_newton and levenberg_marquardt
+//! newton                 torn loops: Newton, then global_newton and levenberg_marquardt; zeros that
+//!                        are isolated though the Jacobian is singular: multiple_roots
 //! delay_buffer           the past of delayed expressions
 //! state_selection        dynamic state selection
 //! sliding                both sides of relations that chatter
@@ -23,8 +24,10 @@ mod instants;
 mod levenberg_marquardt;
 mod linearization;
 mod log_messages;
+mod loop_effort;
 mod mode_search;
 mod modes;
+mod multiple_roots;
 mod newton;
 mod noevent_relations;
 mod profile;
@@ -39,6 +42,7 @@ mod system;
 mod transport_record;
 mod transports;
 
+pub use loop_effort::LoopEffort;
 pub use modes::Treated;
 pub use simulation_log::LogMessage;
 pub use singular_systems::Undetermined;

@@ -5,21 +5,28 @@
 //!     Newton's method
 //!     otherwise Levenberg and Marquardt's method, then Newton's again
 //!     otherwise Newton's method without damping, which leaps over kinks
+//!     otherwise the same from beside the guess, where the Jacobian may be less singular
 //!     otherwise the same from zero, if the guess is outside the domain
 //!     otherwise the global Newton method, where a jump is no error
 //! ```
 //!
-//! A loop whose Jacobian is singular at the solution need not have only this one. At the start the one
-//! nearest to the start values is taken, with a warning; later it is an error.
+//! A loop whose Jacobian is singular at an isolated solution is solved. Otherwise it need not have
+//! only this one: at the start the one nearest to the start values is taken, with a warning; later it
+//! is an error.
 
 use super::difference_quotients::quotient;
 use super::execution::run;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
+use super::multiple_roots::is_isolated;
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure};
 use std::sync::Arc;
+
+/// How far beside the guess another attempt begins, relative to its magnitude: small
+/// enough to stay on the branch of the solution, and large enough for a slope of its own.
+const DISPLACEMENT: f64 = 1e-3;
 
 /// The workspace of one loop.
 #[derive(Debug, Clone)]
@@ -34,6 +41,9 @@ pub(super) struct LoopSolver {
     x: Vec<f64>,
     /// Whether the Jacobian is singular at the last solution.
     pub(super) is_singular: bool,
+    /// How often it was solved, and its residuals evaluated.
+    pub(super) solutions: u64,
+    pub(super) evaluations: u64,
 }
 
 impl LoopSolver {
@@ -49,6 +59,8 @@ impl LoopSolver {
             start: vec![0.0; n],
             x: vec![0.0; n],
             is_singular: false,
+            solutions: 0,
+            evaluations: 0,
         }
     }
 
@@ -65,13 +77,19 @@ impl LoopSolver {
         }
         self.x.copy_from_slice(&self.guess);
         let nominal = self.nominal.clone();
-        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false };
+        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false, count: 0 };
         let mut outcome = self.attempt(&mut equations, initial);
-        if outcome.is_err() && initial && self.guess.contains(&0.0) {
-            for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal) {
-                *x = if *guess == 0.0 { *nominal } else { *guess };
+        if initial {
+            outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
+        }
+        for side in [1.0, -1.0] {
+            if matches!(outcome, Err(Failure::Singular { .. } | Failure::Newton { .. })) {
+                for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal)
+                {
+                    *x = guess + side * DISPLACEMENT * guess.abs().max(*nominal);
+                }
+                outcome = self.attempt(&mut equations, initial).or(outcome);
             }
-            outcome = self.attempt(&mut equations, initial).or(outcome);
         }
         if may_jump && matches!(outcome, Err(Failure::Domain { .. })) {
             // The guess may lie a little outside the domain, as -1e-8 for a root.
@@ -84,10 +102,34 @@ impl LoopSolver {
             let found = self.continuation.solve(newton, &mut equations, &mut self.x, nominal);
             outcome = if found.is_ok() { Ok(()) } else { outcome };
         }
+        if !initial {
+            // A fan that starts needs half of its speed at once: the solution at rest has ended.
+            outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
+        }
         let solution = if outcome.is_ok() { &self.x } else { &self.guess };
         // What follows from the unknowns is computed from the values they end with.
         let evaluated = equations.evaluate(solution);
+        self.solutions += 1;
+        self.evaluations += equations.count;
         outcome.and(evaluated)
+    }
+
+    /// Where everything else failed: with zeros replaced by nominal values.
+    fn attempt_from_nominal(
+        &mut self,
+        equations: &mut Evaluation,
+        initial: bool,
+        outcome: Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let is_zero = |x: f64, nominal: f64| x.abs() <= DISPLACEMENT * nominal;
+        let mut pairs = self.guess.iter().zip(&*self.nominal);
+        if outcome.is_ok() || !pairs.any(|(guess, nominal)| is_zero(*guess, *nominal)) {
+            return outcome;
+        }
+        for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal) {
+            *x = if is_zero(*guess, *nominal) { *nominal } else { *guess };
+        }
+        self.attempt(equations, initial).or(outcome)
     }
 
     fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
@@ -102,6 +144,12 @@ impl LoopSolver {
             self.start.copy_from_slice(&self.x);
             match self.newton.solve(equations, &mut self.x, &self.nominal) {
                 Ok(()) => return Ok(()),
+                Err(NewtonFailure::Singular)
+                    if is_isolated(equations, &self.start, &self.nominal) =>
+                {
+                    self.x.copy_from_slice(&self.start);
+                    return Ok(());
+                }
                 Err(NewtonFailure::Singular) if !initial => {
                     return Err(Failure::Singular { block });
                 }
@@ -132,6 +180,8 @@ struct Evaluation<'a> {
     nominal: Arc<[f64]>,
     /// Whether the registers hold the Jacobian at the unknowns that they hold.
     has_jacobian: bool,
+    /// How often it was evaluated.
+    count: u64,
 }
 
 impl Evaluation<'_> {
@@ -140,6 +190,7 @@ impl Evaluation<'_> {
         for (unknown, value) in self.torn.unknowns.iter().zip(x) {
             self.r[*unknown as usize] = *value;
         }
+        self.count += 1;
         let done = run(&self.torn.tape, self.r);
         self.has_jacobian = done.is_ok();
         match done {

@@ -1,7 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run, run_strictly};
+use super::execution::{read, run, run_parameter, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
@@ -19,7 +19,7 @@ use crate::flatten::BaseType;
 use crate::lower::Homotopy;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::VarId;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
 const CONSISTENT: f64 = 1e-6;
@@ -49,6 +49,8 @@ pub struct System {
     pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
+    /// What reads a parameter that a function has left without value fails with.
+    lacking: Option<Failure>,
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
     /// Relations that keep changing in the round at hand.
@@ -73,12 +75,14 @@ pub struct System {
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     pub(super) initial_solvers: Vec<LoopSolver>,
-    solvers: Vec<LoopSolver>,
-    event_solvers: Vec<LoopSolver>,
+    pub(super) solvers: Vec<LoopSolver>,
+    pub(super) event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
     pub(super) choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
     pub(super) solves_loops: bool,
+    /// That of the Jacobian of the states alone, where loops are solved inside: full.
+    full_pattern: OnceLock<Pattern>,
     /// The samples.
     pub(super) clocks: Vec<Clock>,
     /// Values that discrete variables had before an event.
@@ -126,6 +130,7 @@ impl System {
             observed: None,
             observed_variables: None,
             switches: vec![None; program.relations.len()],
+            lacking: None,
             has_changed: vec![false; program.relations.len()],
             inconsistent: vec![false; program.relations.len()],
             is_idle: vec![false; program.relations.len()],
@@ -143,6 +148,7 @@ impl System {
             event_solvers: Vec::new(),
             choices: Vec::new(),
             solves_loops: false,
+            full_pattern: OnceLock::new(),
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
             previous_iterate: vec![0.0; program.events.iterated.len()],
@@ -245,10 +251,15 @@ impl System {
         }
     }
 
+    /// Whether loops are solved inside, and there are some.
+    fn has_inner_loops(&self) -> bool {
+        self.solves_loops && !self.program.iteration.is_empty()
+    }
+
     /// Loads y, and solves for the iteration variables that it does not hold.
     fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.load(t, y);
-        if !self.solves_loops || self.program.iteration.is_empty() {
+        if !self.has_inner_loops() {
             return Ok(());
         }
         self.solve(Stage::Continuous)?;
@@ -294,8 +305,17 @@ impl System {
         }
     }
 
+    /// Whether a value is a number; it need not be where a parameter has no value.
+    fn is_a_number(&self, value: f64) -> Result<(), Failure> {
+        match &self.lacking {
+            Some(failure) if value.is_nan() => Err(*failure),
+            _ => Ok(()),
+        }
+    }
+
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
+        self.lacking = None;
         self.registers.calls.restart();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
@@ -313,7 +333,10 @@ impl System {
             };
             match set {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
-                None => run_strictly(tape, &mut self.registers)?,
+                None => match run_parameter(*parameter, tape, &mut self.registers)? {
+                    Some(failure) => self.lacking = Some(failure),
+                    None => self.is_a_number(self.registers[parameter.0 as usize])?,
+                },
             }
         }
         run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
@@ -537,10 +560,16 @@ impl DaeSystem for System {
     }
 
     fn pattern(&self) -> &Pattern {
-        &self.program.pattern
+        if !self.has_inner_loops() {
+            return &self.program.pattern;
+        }
+        self.full_pattern.get_or_init(|| Pattern::full(self.n_differential()))
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        if self.has_inner_loops() {
+            return self.difference_jacobian(t, y, values);
+        }
         self.load(t, y);
         match read(&self.program.jacobian, &mut self.registers, values) {
             // A derivative may have no value where the right-hand side has one.
@@ -744,6 +773,7 @@ impl DaeSystem for System {
         }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        out.iter().try_for_each(|value| self.is_a_number(*value))?;
         self.note_open(t);
         Ok(())
     }

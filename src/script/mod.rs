@@ -23,7 +23,7 @@ pub use access::permissions::Permissions;
 pub use language::execution::RunStatus;
 pub use language::messages::Messages;
 pub use language::transcript::{Exchange, Transcript};
-pub use options::{Dialect, Echo, Journaling, Options, Strictness};
+pub use options::{Dialect, Echo, Journaling, Options, Reporting, Strictness};
 pub use session::Session;
 
 pub use crate::eval::with_stack;

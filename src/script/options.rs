@@ -50,6 +50,16 @@ pub enum Strictness {
     Lenient,
 }
 
+/// Whether a run of scripts ends with the report of its identification.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reporting {
+    /// A table is printed, and files are written.
+    #[default]
+    Usual,
+    /// Neither.
+    Off,
+}
+
 /// How a session behaves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
@@ -67,6 +77,8 @@ pub struct Options {
     pub journaling: Journaling,
     /// What ends an identification behind the script's own search.
     pub probe: Probe,
+    /// Whether an identification is reported at the end.
+    pub reporting: Reporting,
 }
 
 /// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it

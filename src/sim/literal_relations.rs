@@ -23,8 +23,9 @@ impl Run<'_> {
         if self.progress.looks > 0 {
             return self.look_at_literal_relations();
         }
-        let (begin, before) = *self.progress.begin.get_or_insert((self.t, self.attempts()));
-        let attempts = self.attempts() - before;
+        let (begin, before) =
+            *self.progress.begin.get_or_insert((self.t, self.problem.statistics.attempts()));
+        let attempts = self.problem.statistics.attempts() - before;
         if attempts < WINDOW {
             return Ok(());
         }
@@ -34,11 +35,6 @@ impl Run<'_> {
             true => self.look_at_literal_relations(),
             false => Ok(()),
         }
-    }
-
-    fn attempts(&self) -> u64 {
-        let statistics = &self.problem.statistics;
-        statistics.steps + statistics.error_failures + statistics.newton_failures
     }
 
     fn look_at_literal_relations(&mut self) -> Result<(), SimErrorKind> {

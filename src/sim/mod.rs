@@ -55,8 +55,10 @@
 mod accumulation;
 mod chattering;
 mod displacement;
+mod effort;
 mod error;
 mod event;
+mod inner_loops;
 mod instants;
 mod integrators;
 mod linear;
@@ -70,12 +72,14 @@ mod settings;
 mod simulator;
 mod sliding;
 mod statistics;
+mod step_budget;
 mod switches;
 mod system;
 #[cfg(test)]
 mod tests;
 mod trajectory;
 
+pub use effort::Effort;
 pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use instants::{AT_ONCE, same_time};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};

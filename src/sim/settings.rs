@@ -28,8 +28,13 @@ pub struct Settings {
     /// Whether the simulation goes on where events would follow each other without end: relations
     /// are evaluated between steps, the solution slides or rests. If not, it fails there.
     pub treats_chattering: bool,
-    /// Steps, rejected ones included, after which the simulation is given up.
+    /// Steps, rejected ones included, after which the simulation is given up unless it gets on.
     pub max_steps: u64,
+    /// Steps after which it is given up in any case: it gets on where it would end within these at
+    /// its pace.
+    pub max_total_steps: u64,
+    /// Whether the [`Effort`](super::Effort) is counted.
+    pub counts_effort: bool,
     /// The time on the clock that the simulation may take.
     pub time_budget: Option<TimeBudget>,
     /// Looked at before every step: whoever sets it to true ends the simulation.
@@ -71,6 +76,8 @@ impl Default for Settings {
             max_step: f64::INFINITY,
             treats_chattering: true,
             max_steps: 1_000_000,
+            max_total_steps: 1_000_000,
+            counts_effort: false,
             time_budget: None,
             cancel: None,
             reached: None,

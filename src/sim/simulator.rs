@@ -6,10 +6,11 @@ use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
+use super::step_budget::StepBudget;
 use super::switches::Watch;
 use super::{
-    DaeSystem, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind, Statistics,
-    Trajectory,
+    DaeSystem, Effort, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind,
+    Statistics, Trajectory,
 };
 use crate::registry::Options;
 use std::cell::OnceCell;
@@ -47,26 +48,36 @@ pub struct Simulator {
     nominals: Nominals,
     y: Vec<f64>,
     observed: Vec<f64>,
+    effort: Effort,
 }
 
 /// Nominal values of y, without and with shares of surfaces.
 #[derive(Default)]
 pub struct Nominals {
     plain: Vec<f64>,
-    with_shares: [OnceCell<Vec<f64>>; MOST_SURFACES],
+    /// Those of the states alone, once loops are solved inside.
+    states: OnceCell<Vec<f64>>,
+    /// For both.
+    with_shares: [[OnceCell<Vec<f64>>; MOST_SURFACES]; 2],
     /// That of a share.
     share: f64,
 }
 
 impl Nominals {
     pub fn plain(&self) -> &[f64] {
-        &self.plain
+        self.states.get().unwrap_or(&self.plain)
+    }
+
+    /// Leaves out those of algebraic unknowns from now on.
+    pub fn show_states(&self, n: usize) {
+        self.states.get_or_init(|| self.plain[..n].to_vec());
     }
 
     /// With so many shares at a place.
     pub fn with_shares(&self, place: usize, k: usize) -> &[f64] {
-        self.with_shares[k - 1].get_or_init(|| {
-            let (before, behind) = self.plain.split_at(place);
+        let slots = &self.with_shares[usize::from(self.states.get().is_some())];
+        slots[k - 1].get_or_init(|| {
+            let (before, behind) = self.plain().split_at(place);
             [before, &vec![self.share; k], behind].concat()
         })
     }
@@ -91,6 +102,11 @@ impl Simulator {
         Simulator::default()
     }
 
+    /// The effort of the last run, if its settings asked for it.
+    pub fn effort(&self) -> &Effort {
+        &self.effort
+    }
+
     /// Simulates a system. The observed variables at the output points and at both sides of every
     /// event become the rows of `out`, which keeps what was computed until a failure.
     ///
@@ -102,17 +118,7 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        system.begin();
-        // Explicit methods see no algebraic variables if the system can do without; and without
-        // states there is nothing to integrate, only equations to solve at every point.
-        let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
-        let solves_loops = is_explicit || system.n_differential() == 0;
-        system.solve_loops(solves_loops);
-        let n = system.n_differential() + system.n_algebraic();
-        self.resize(system, n);
-        self.y.resize(n * (1 + system.n_directions()), 0.0);
-        self.set_nominals(system, settings.tolerance);
-        out.reset(system.n_observed());
+        let (n, is_explicit, solves_loops) = self.prepare(system, settings, out);
         let integrator: &mut dyn Integrator = if n == 0 {
             &mut self.without_unknowns
         } else {
@@ -128,6 +134,11 @@ impl Simulator {
                 system: &mut system,
                 nominal: self.nominals.plain(),
                 settings,
+                budget: StepBudget::new(
+                    settings.start,
+                    settings.max_steps,
+                    settings.max_total_steps,
+                ),
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut statistics,
             },
@@ -140,6 +151,7 @@ impl Simulator {
             nominals: &self.nominals,
             y: &mut self.y,
             observed: &mut self.observed,
+            effort: &mut self.effort,
             out,
             t: settings.start,
             output_number: 0,
@@ -154,6 +166,32 @@ impl Simulator {
         let ended = run.run();
         ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
         Ok(statistics)
+    }
+
+    /// Sets up the workspace; the number of unknowns, whether the method is explicit, and whether the
+    /// system solves its loops itself.
+    fn prepare(
+        &mut self,
+        system: &mut dyn DaeSystem,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> (usize, bool, bool) {
+        system.begin();
+        // Explicit methods see no algebraic variables if the system can do without; and without
+        // states there is nothing to integrate, only equations to solve at every point.
+        let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
+        let solves_loops = is_explicit || system.n_differential() == 0;
+        system.solve_loops(solves_loops);
+        let n = system.n_differential() + system.n_algebraic();
+        self.resize(system, n);
+        self.y.resize(n * (1 + system.n_directions()), 0.0);
+        self.set_nominals(system, settings.tolerance);
+        out.reset(system.n_observed());
+        self.effort = Effort::default();
+        if settings.counts_effort {
+            self.effort.reset(n, system.n_crossings());
+        }
+        (n, is_explicit, solves_loops)
     }
 
     fn resize(&mut self, system: &dyn DaeSystem, n: usize) {
@@ -171,7 +209,8 @@ impl Simulator {
             *nominal = 1.0;
         }
         nominals.share = nominal_share(tolerance);
-        nominals.with_shares.iter_mut().for_each(|with| drop(with.take()));
+        nominals.states.take();
+        nominals.with_shares.iter_mut().flatten().for_each(|with| drop(with.take()));
     }
 }
 
@@ -204,7 +243,7 @@ fn integrator<'a>(
 
 /// Whether the simulation goes on after an event.
 #[derive(PartialEq)]
-enum After {
+pub enum After {
     /// The step still holds.
     Resume,
     /// The integrator was restarted.
@@ -228,6 +267,7 @@ pub struct Run<'a> {
     pub(super) nominals: &'a Nominals,
     pub(super) y: &'a mut Vec<f64>,
     observed: &'a mut [f64],
+    effort: &'a mut Effort,
     out: &'a mut Trajectory,
     pub(super) t: f64,
     /// The next output point and its number.
@@ -247,13 +287,18 @@ impl Run<'_> {
         self.initialize()?;
         while self.t < self.problem.settings.stop {
             let after = match self.step() {
-                Ok(time_event) => self.advance_to_end_of_step(time_event)?,
-                Err(kind) => self.jump(kind)?,
+                Ok(time_event) => {
+                    self.count_step();
+                    self.advance_to_end_of_step(time_event)?
+                }
+                Err(kind) => self.jump(kind).or_else(|kind| self.take_loops_inside(kind))?,
             };
             if after == After::Terminated {
                 break;
             }
             self.watch_progress()?;
+            let Problem { settings, budget, statistics, .. } = &mut self.problem;
+            budget.extend(self.t, settings.stop, statistics.attempts());
         }
         self.end_slide();
         let finished = self.problem.system.finish(self.t, self.y);
@@ -271,7 +316,9 @@ impl Run<'_> {
         }
         // Steps no longer than a delay that is all but zero would come to no end.
         let (longest, way) = (system.longest_step(), self.problem.settings.stop - self.t);
-        if way > 0.0 && (longest <= 0.0 || way / longest > self.problem.settings.max_steps as f64) {
+        if way > 0.0
+            && (longest <= 0.0 || way / longest > self.problem.settings.max_total_steps as f64)
+        {
             return Err(SimErrorKind::StepBudget);
         }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
@@ -289,6 +336,12 @@ impl Run<'_> {
 
     pub fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    fn count_step(&mut self) {
+        if self.problem.settings.counts_effort {
+            Effort::count(&mut self.effort.unknowns, self.integrator.dominant());
+        }
     }
 
     /// Makes a step; whether it ended at a time event.
@@ -452,6 +505,7 @@ impl Run<'_> {
                     self.remember(begin, event)?;
                     self.record_before(event)?;
                     self.problem.statistics.state_events += 1;
+                    Effort::count(&mut self.effort.crossings, self.crossings.last());
                     self.count_switches(begin, event)?;
                     let after = self.handle_event(event, true)?;
                     if after != After::Terminated && self.treat_chattering()? {

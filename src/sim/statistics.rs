@@ -28,3 +28,10 @@ pub struct Statistics {
     /// Accumulations of impacts behind which the solution rests.
     pub accumulations: u64,
 }
+
+impl Statistics {
+    /// Steps, rejected ones included.
+    pub fn attempts(&self) -> u64 {
+        self.steps + self.error_failures + self.newton_failures
+    }
+}

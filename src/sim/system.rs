@@ -206,6 +206,16 @@ pub struct Pattern {
 }
 
 impl Pattern {
+    /// That of a full matrix of n rows and columns.
+    #[must_use]
+    pub fn full(n: usize) -> Pattern {
+        Pattern {
+            n,
+            column_starts: (0..=n).map(|column| column * n).collect(),
+            rows: (0..n).flat_map(|_| 0..n).collect(),
+        }
+    }
+
     /// The nonzeros of a column: positions in `rows` and in the values.
     pub fn column(&self, column: usize) -> std::ops::Range<usize> {
         self.column_starts[column]..self.column_starts[column + 1]

@@ -396,8 +396,19 @@ fn failures_say_when_and_why() {
         let bad = Settings { stop, tolerance, ..settings.clone() };
         assert_eq!(failure(&mut problems::decay(), &bad).kind, SimErrorKind::Settings);
     }
-    let short = Settings { max_steps: 10, ..settings.clone() };
+    let short = Settings { max_steps: 10, max_total_steps: 10, ..settings.clone() };
     assert_eq!(failure(&mut problems::oscillator(), &short).kind, SimErrorKind::StepBudget);
+    // As long as it gets on, it may take more, but not without end.
+    let within = |max_total_steps| Settings { max_total_steps, ..short.clone() };
+    let run = Simulator::new().run(
+        &mut problems::oscillator(),
+        &within(10_000),
+        &mut Trajectory::default(),
+    );
+    assert!(run.expect("it gets on").attempts() > 20);
+    let ended = failure(&mut problems::oscillator(), &within(20));
+    assert_eq!(ended.kind, SimErrorKind::StepBudget);
+    assert!(ended.time < 0.5, "{ended}");
     let cancelled = Settings { cancel: Some(Arc::new(AtomicBool::new(true))), ..settings };
     assert_eq!(failure(&mut problems::decay(), &cancelled).kind, SimErrorKind::Cancelled);
 }

@@ -32,7 +32,7 @@ mod tests;
 pub use collect::collect_terms;
 pub use derivative::{derivative, differentiate, differentiate_all};
 pub use evaluate::{Environment, evaluate};
-pub use node::{Arguments, Expr, Node, Number, RelationOperator, VarId};
+pub use node::{Arguments, Expr, Inverse, Node, Number, RelationOperator, VarId};
 pub use pool::{Containing, Pool, VariableCollection};
 pub use print::print;
 pub use solve::{Linear, Solution, linear_in, solve};

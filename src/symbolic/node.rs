@@ -112,6 +112,15 @@ impl RelationOperator {
     }
 }
 
+/// How an equation `y = f(…)` is solved for one input of a user function with one output.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Inverse {
+    /// The function that gives the input.
+    pub function: u32,
+    /// For each of its inputs the input of `f` that it is given; `None` stands for y.
+    pub arguments: Box<[Option<u32>]>,
+}
+
 /// A node of an expression.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Node {

@@ -1,21 +1,33 @@
 //! Keeps every node once.
 
 use super::function::{self, FunctionId};
-use super::node::{Expr, Node, Number, VarId};
+use super::node::{Expr, Inverse, Node, Number, VarId};
 use indexmap::IndexSet;
-use rustc_hash::FxBuildHasher;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::cell::RefCell;
 
 /// All nodes of all expressions of a model. The constructors ([`Pool::add`] …) simplify locally.
 #[derive(Debug, Clone, Default)]
 pub struct Pool {
     nodes: IndexSet<Node, FxBuildHasher>,
+    /// By function and input.
+    inverses: FxHashMap<(u32, u32), Inverse>,
 }
 
 impl Pool {
     /// An empty pool.
     pub fn new() -> Pool {
         Pool::default()
+    }
+
+    /// Lets equations be solved for an input of a user function.
+    pub fn declare_inverse(&mut self, function: u32, input: u32, inverse: Inverse) {
+        self.inverses.insert((function, input), inverse);
+    }
+
+    /// How equations are solved for an input of a user function.
+    pub(super) fn inverse(&self, function: u32, input: u32) -> Option<&Inverse> {
+        self.inverses.get(&(function, input))
     }
 
     /// Number of nodes.

@@ -108,8 +108,8 @@ fn linear_node(
 }
 
 /// Solves `left = right` for `variable` if it occurs linearly, or if inverting sums, products,
-/// quotients, `exp` and `log` from the outside in isolates it. `None` otherwise: nothing is solved
-/// that could have a second solution or lose one.
+/// quotients, `exp`, `log` and user functions with declared inverses from the outside in isolates
+/// it. `None` otherwise: nothing is solved that could have a second solution or lose one.
 pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Option<Solution> {
     let one = pool.constant(1.0);
     let (left_has, right_has) = (pool.depends_on(left, variable), pool.depends_on(right, variable));
@@ -175,7 +175,31 @@ fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option
         Node::Apply(id, arguments) if Some(id) == function::find("log") => {
             (arguments.first(), pool.function("exp", &[other]))
         }
+        Node::Call { function, output: 0, arguments } => {
+            inverted(pool, function, arguments, other, variable)?
+        }
         _ => return None,
     };
     Some((inner, Solution { value, ..moved }))
+}
+
+/// The argument of a call that holds the variable, and its value by the declared inverse of the
+/// function; `None` if several hold it.
+fn inverted(
+    pool: &mut Pool,
+    function: u32,
+    arguments: Expr,
+    value: Expr,
+    variable: VarId,
+) -> Option<(Expr, Expr)> {
+    let entries = pool.entries(arguments).to_vec();
+    let mut holding = (0..entries.len()).filter(|at| pool.depends_on(entries[*at], variable));
+    let (at, None) = (holding.next()?, holding.next()) else { return None };
+    let inverse = pool.inverse(function, u32::try_from(at).ok()?)?.clone();
+    let given: Vec<Expr> = inverse
+        .arguments
+        .iter()
+        .map(|source| source.map_or(value, |input| entries[input as usize]))
+        .collect();
+    Some((entries[at], pool.call(inverse.function, 0, &given)))
 }

@@ -150,4 +150,9 @@ pub enum Event {
     },
     /// The trace has reached the size it may have; what follows is not recorded.
     Full,
+    /// Operators are called before any simulation, on individuals that a script has made.
+    Alone {
+        /// Number of genes of each of them.
+        n_genes: u32,
+    },
 }

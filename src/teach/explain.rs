@@ -108,13 +108,15 @@ fn sort(generation: &Generation) -> String {
 
 fn elite(generation: &Generation) -> String {
     let Some(crossed) = &generation.crossed else { return String::new() };
-    let best = generation.best().map_or(f64::NAN, |(_, fitness)| fitness);
+    let best = match generation.best() {
+        Some((_, fitness)) => format!(", {},", short(fitness)),
+        None => String::new(),
+    };
     format!(
-        "The best {} (N_Elitism) {} unchanged (elitism), so the best fitness, {}, never gets \
+        "The best {} (N_Elitism) {} unchanged (elitism), so the best fitness{best} never gets \
          worse.",
         crossed.elites,
         if crossed.elites == 1 { "survives" } else { "survive" },
-        short(best)
     )
 }
 
@@ -191,6 +193,9 @@ fn renew(walk: &Walk) -> String {
 }
 
 fn stop(walk: &Walk) -> String {
+    if walk.generation().is_call {
+        return "The operator leaves all individuals as they are.".to_owned();
+    }
     let why = match (walk.trace().full, walk.trace().cut) {
         (true, _) => "The trace reached its maximum size and ends here; the run continued",
         (_, true) => "The run was interrupted here",

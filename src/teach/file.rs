@@ -8,7 +8,7 @@ use crate::bail;
 use crate::diag::Fault;
 
 /// The first bytes of every trace; the number changes when the events do.
-const MAGIC: &[u8] = b"gapilib trace 2\n";
+const MAGIC: &[u8] = b"gapilib trace 3\n";
 /// No event is longer than this; a longer one is a damaged file.
 const LONGEST: usize = 1 << 30;
 

@@ -90,6 +90,8 @@ pub struct Drawn {
 /// One generation: who was simulated, how good they are, and what became of them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Generation {
+    /// Whether nothing was simulated: operators were called on individuals that the script made.
+    pub is_call: bool,
     /// The random numbers drawn before it was simulated and after the one before was mutated: the
     /// initial population, or its random completion.
     pub drawn: Vec<Drawn>,
@@ -128,6 +130,13 @@ impl Generation {
         self.genes.is_empty()
     }
 
+    /// Whether some of them came out of the generation before.
+    pub fn has_parents(&self) -> bool {
+        let is_offspring =
+            |origin: &Origin| matches!(origin, Origin::Elite { .. } | Origin::Child { .. });
+        self.origins.iter().any(is_offspring)
+    }
+
     /// The genes of individual `k`, from 0.
     pub fn genome(&self, k: usize) -> &[f64] {
         &self.genes[k * self.n_genes..(k + 1) * self.n_genes]
@@ -149,6 +158,8 @@ impl Generation {
     pub fn order(&self) -> Vec<usize> {
         let order = match &self.sorted {
             Some(sorted) => sorted.order.clone(),
+            // `Cross` alone is given individuals that are sorted already.
+            None if self.is_call => (0..self.len()).collect(),
             None => crate::ga::order(&self.fitness),
         };
         // A script may have judged others than those of this generation.

@@ -6,8 +6,9 @@
 //! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
 //! makes a page of them all, [`picture`] a picture of one generation, [`screen`] a terminal's full
 //! of each step. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have
-//! been.
+//! been, [`bands`] does so over many seeds.
 
+pub mod bands;
 pub mod branches;
 pub mod errors;
 mod event;
@@ -15,6 +16,7 @@ pub mod explain;
 pub mod family;
 mod file;
 mod generation;
+mod kept;
 pub mod page;
 pub mod picture;
 pub mod plain;
@@ -22,6 +24,7 @@ mod produced;
 pub mod quiz;
 #[cfg(test)]
 mod sample;
+#[cfg(feature = "cli")]
 pub mod screen;
 mod step;
 mod stop_test;

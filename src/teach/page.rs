@@ -1,13 +1,15 @@
 //! A trace as one [`Page`] that needs nothing else: the data as JSON, the drawing as a script of the
 //! page's own.
 //!
-//! A long run would make a page that no browser opens: the page has the steps of the first
-//! generations only, as many as `MOST_GENES` allows, and the curve of convergence of all.
+//! A long run would make a page that no browser opens: the page has the steps of some generations
+//! only, those that [`kept`] names, and the curve of convergence of all.
 
 use super::explain::explain;
 use super::family::{Member, family};
 use super::generation::{Generation, Origin};
+use super::kept::kept;
 use super::plain::title;
+use super::quiz;
 use super::step::Step;
 use super::trace::Trace;
 use super::walk::Walk;
@@ -19,8 +21,6 @@ const STYLE: &str = include_str!("page/style.css");
 const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
 const CHARTS: &str = include_str!("page/charts.js");
-/// More genes than this are not stepped through on one page.
-const MOST_GENES: usize = 120_000;
 /// Points of the curve of convergence.
 const CURVE_POINTS: usize = 1000;
 
@@ -28,13 +28,21 @@ const CURVE_POINTS: usize = 1000;
 pub fn page(trace: Trace, result: Option<&str>) -> String {
     let result = result.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(Value::Null);
     let page = Page {
-        title: &format!("{} - step by step", trace.subject.model),
+        title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
         scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();")],
         data: &[("data", data(trace, result).to_string())],
         body: body(),
     };
     page.document()
+}
+
+/// The model, or the script where no model is simulated.
+fn subject_name(trace: &Trace) -> &str {
+    match (trace.subject.model.as_str(), trace.scripts.first()) {
+        ("", Some(script)) => &script.name,
+        (model, _) => model,
+    }
 }
 
 fn body() -> Markup {
@@ -47,15 +55,17 @@ fn body() -> Markup {
         section id="story" aria-live="polite" {
             h2 id="title" {}
             p id="text" {}
+            form id="prediction" hidden {
+                label { "Your answer " input id="answer" autocomplete="off"; } " "
+                button id="predict" { "Answer" }
+                " " span id="score" {}
+            }
         }
+        nav.position aria-label="Position" { (position()) }
         main {
             div.column {
-                section id="script-panel" {
-                    h3 { "The script" }
-                    p id="script-name" {}
-                    pre id="script" tabindex="0" {}
-                }
                 (panel("drawing", "This step"))
+                (script_panel())
                 (panel("fit", "Measured and simulated"))
                 section id="landscape-panel" {
                     h3 { "The landscape of the fitness" }
@@ -73,7 +83,7 @@ fn body() -> Markup {
                     p.legend { (LEGEND) }
                     p id="individual" aria-live="polite" { "\u{a0}" }
                 }
-                (panel("curve", "Best fitness over the generations"))
+                (curve_panel())
                 section id="family-panel" {
                     h3 { "The family of the best" }
                     p {
@@ -89,6 +99,28 @@ fn body() -> Markup {
                 }
                 (panel("tell", "Can the data tell?"))
             }
+        }
+    }
+}
+
+/// The script with the line of this step.
+fn script_panel() -> Markup {
+    html! {
+        section id="script-panel" {
+            h3 { "The script" }
+            p id="script-name" {}
+            pre id="script" tabindex="0" {}
+        }
+    }
+}
+
+/// The curve up to now, and the switch for the rest.
+fn curve_panel() -> Markup {
+    html! {
+        section id="curve-panel" {
+            h3 { "Best fitness over the generations" }
+            p { label { input id="future" type="checkbox"; " show how it continues" } }
+            div id="curve" {}
         }
     }
 }
@@ -139,6 +171,13 @@ fn controls() -> Markup {
                 option value="3" { "every generation" }
             }
         }
+    }
+}
+
+/// Which step it is, and how the page asks.
+fn position() -> Markup {
+    html! {
+        label { input id="predicting" type="checkbox"; " predict first" }
         a id="link" href="#" { "link to this step" }
         div.sliders {
             label.slide {
@@ -171,19 +210,17 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
 }
 
 fn data(trace: Trace, result: Value) -> Value {
-    let shown = shown(&trace.generations);
+    let kept = kept(&trace.generations);
     let mut walk = Walk::new(trace);
-    let mut steps = vec![step(&walk)];
-    while walk.forward() && walk.number() < shown {
-        steps.push(step(&walk));
-    }
+    let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(&mut walk, &kept, g)).collect();
     let trace = walk.trace();
     let subject = &trace.subject;
     let (minima, maxima) = ranges(&trace.generations);
     let scripts: Vec<Value> =
         trace.scripts.iter().map(|s| json!({"name": s.name, "lines": s.lines})).collect();
-    let generations: Vec<Value> = trace.generations[..shown].iter().map(generation).collect();
-    let (families, family_of, winner) = families(&trace.generations, shown);
+    let generations: Vec<Value> =
+        kept.iter().map(|&at| generation(at, &trace.generations[at])).collect();
+    let (families, family_of, winner) = families(&trace.generations, &kept);
     json!({
         "model": subject.model,
         "parameters": subject.parameters,
@@ -208,7 +245,7 @@ fn data(trace: Trace, result: Value) -> Value {
 
 /// The families of the best of the generations that are shown and of the best of all, each once;
 /// which of them belongs to which generation; which belongs to the best of all.
-fn families(generations: &[Generation], shown: usize) -> (Vec<Value>, Vec<Value>, Value) {
+fn families(generations: &[Generation], kept: &[usize]) -> (Vec<Value>, Vec<Value>, Value) {
     let mut found: Vec<Vec<Member>> = Vec::new();
     let mut place = |generation: usize, number: usize| {
         let family = family(generations, generation, number);
@@ -219,7 +256,7 @@ fn families(generations: &[Generation], shown: usize) -> (Vec<Value>, Vec<Value>
         })
     };
     let best = |generation: usize| generations[generation].best();
-    let of = (0..shown).map(|g| json!(best(g).map(|(number, _)| place(g, number)))).collect();
+    let of = kept.iter().map(|&g| json!(best(g).map(|(number, _)| place(g, number)))).collect();
     let all = (0..generations.len()).filter_map(|g| best(g).map(|(number, f)| (g, number, f)));
     let winner = all.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(g, number, _)| place(g, number));
     let told = |family: &Vec<Member>| {
@@ -240,17 +277,25 @@ fn relative(member: &Member, generation: &Generation) -> Value {
     })
 }
 
-/// How many generations the page steps through.
-fn shown(generations: &[Generation]) -> usize {
-    let mut genes = 0;
-    let fits = |generation: &&Generation| {
-        genes += generation.genes.len();
-        genes <= MOST_GENES
-    };
-    generations.iter().take_while(fits).count().max(1)
+/// The steps of the kept generation `g`. Where the one after it is not on the page, how that came to
+/// be is not shown.
+fn steps(walk: &mut Walk, kept: &[usize], g: usize) -> Vec<Value> {
+    let number = kept[g];
+    walk.go_to(number);
+    let of = walk.trace().generations.len();
+    let has_next = kept.get(g + 1) == Some(&(number + 1)) || number + 1 == of;
+    let mut steps = Vec::new();
+    while walk.number() == number {
+        let is_shown = has_next || !matches!(walk.step(), Step::Complete(_) | Step::Renew);
+        steps.extend(is_shown.then(|| step(walk, g)));
+        if !walk.forward() {
+            break;
+        }
+    }
+    steps
 }
 
-fn step(walk: &Walk) -> Value {
+fn step(walk: &Walk, g: usize) -> Value {
     let step = walk.step();
     let place = walk.place();
     let of = match step {
@@ -258,32 +303,39 @@ fn step(walk: &Walk) -> Value {
         _ => None,
     };
     json!({
-        "g": walk.number(),
+        "g": g,
         "title": title(step),
         "of": of,
         "place": place.map(|place| (place.script, place.line)),
         "text": explain(walk),
+        "question": quiz::question(walk).map(|question| json!(question)),
     })
 }
 
-fn generation(generation: &Generation) -> Value {
+fn generation(at: usize, generation: &Generation) -> Value {
     let origins: Vec<Value> = generation.origins.iter().map(origin).collect();
-    let sorted = generation.sorted.as_ref();
+    let (sorted, crossed) = (generation.sorted.as_ref(), generation.crossed.as_ref());
+    let mutated = generation.mutated.as_ref();
+    // An operator alone has what it was given.
+    let children = crossed.map(|c| &c.rows).or(mutated.map(|m| &m.before));
+    let elites = sorted.map(|s| s.elites).or(crossed.map(|c| c.elites));
     json!({
+        "number": at + 1,
         "n": generation.n_genes,
+        "call": generation.is_call,
         "genes": rounded(&generation.genes),
         "fitness": rounded(&generation.fitness),
         "origins": origins,
         "failures": generation.failures,
         "order": generation.order(),
-        "parents": sorted.map(|sorted| sorted.parents),
-        "elites": sorted.map(|sorted| sorted.elites),
+        "parents": sorted.map(|s| s.parents).or(crossed.map(|c| c.parents)),
+        "elites": elites.or(mutated.map(|m| m.elites)),
         "best": rounded(&generation.best_simulated),
-        "points": generation.crossed.as_ref().map(|crossed| &crossed.points),
-        "children": generation.crossed.as_ref().map(|crossed| rounded(&crossed.rows)),
-        "u": generation.mutated.as_ref().map(|mutated| rounded(&mutated.numbers)),
-        "after": generation.mutated.as_ref().map(|mutated| rounded(&mutated.after)),
-        "factor": generation.mutated.as_ref().map(|mutated| mutated.factor),
+        "points": crossed.map(|c| &c.points),
+        "children": children.map(|rows| rounded(rows)),
+        "u": mutated.map(|m| rounded(&m.numbers)),
+        "after": mutated.map(|m| rounded(&m.after)),
+        "factor": mutated.map(|m| m.factor),
     })
 }
 

@@ -19,7 +19,7 @@ const SUMMED: usize = 4;
 pub fn step(walk: &Walk) -> String {
     let (at, of) = walk.progress();
     let title = title(walk.step());
-    let heading = format!("Generation {}, step {} of {of}: {title}", walk.number() + 1, at + 1);
+    let heading = format!("{}, step {} of {of}: {title}", place_in_run(walk), at + 1);
     let mut text = format!("{heading}\n{}\n", "-".repeat(heading.chars().count()));
     if let Some((script, line)) = walk.line() {
         let code = script.lines.get(line - 1).map_or("", |line| line.trim());
@@ -28,6 +28,12 @@ pub fn step(walk: &Walk) -> String {
     text.push_str(&wrapped(&explain(walk)));
     text.push_str(&table(walk));
     text
+}
+
+/// Which generation it is, or which call of operators where nothing is simulated.
+pub fn place_in_run(walk: &Walk) -> String {
+    let what = if walk.generation().is_call { "Call" } else { "Generation" };
+    format!("{what} {}", walk.number() + 1)
 }
 
 /// What a step is called.
@@ -51,6 +57,9 @@ pub fn summary(walk: &Walk) -> String {
     let mut text =
         format!("{:>10}  {:>12}  {:>12}  {:>8}\n", "generation", "best", "mean", "failed");
     let generations = &walk.trace().generations;
+    if generations.iter().all(|generation| generation.is_call) {
+        return String::new();
+    }
     for (number, generation) in generations.iter().enumerate() {
         if !is_shown(number, generations.len()) {
             continue;
@@ -258,7 +267,7 @@ fn mutation(walk: &Walk, row: usize) -> String {
 }
 
 fn heading(walk: &Walk, first: &[&str; 2], last: &str) -> String {
-    let names = walk.trace().subject.parameters.iter();
+    let names = walk.trace().subject.parameters.iter().take(walk.generation().n_genes);
     let names: String = names.map(|name| format!(" {:>10}", shortened(name))).collect();
     let line = format!("{:>5} {:>10}{names}  {last}", first[0], first[1]);
     format!("{}\n", line.trim_end())

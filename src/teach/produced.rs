@@ -132,6 +132,10 @@ impl Produced {
                 self.mutated = mutated(crossed, self.n_genes, &numbers, *elites, *factor, ranges)?;
                 self.ended = true;
             }
+            Event::Alone { n_genes } => {
+                let (n_genes, numbers) = (*n_genes as usize, std::mem::take(&mut self.numbers));
+                *self = Produced { n_genes, numbers, ended: true, ..Produced::default() };
+            }
             Event::Script { .. } | Event::Subject(_) | Event::Measured { .. } | Event::Full => {}
         }
         Some(())

@@ -7,19 +7,20 @@ use super::explain::short;
 use super::generation::{Generation, mate};
 use super::step::Step;
 use super::walk::Walk;
+use serde::Serialize;
 
 /// Up to so many parents the learner names all of them.
 const MOST_NAMED: usize = 8;
 
 /// A question, and what is right.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Question {
     /// The question, with all that is needed to answer it.
     pub text: String,
     answer: Answer,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 enum Answer {
     Individuals(Vec<usize>),
     Letters(String),

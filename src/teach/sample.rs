@@ -42,7 +42,7 @@ pub(super) fn run(generations: usize, seed: f64) -> Run {
         tracer.rated(place(5), &fitness, &rows, &Y);
         tracer.sorted(place(6), (population.values(), &fitness), (PARENTS, ELITES));
         let (sorted, _) = crate::ga::sort_by_fitness(&population, &fitness).expect("same sizes");
-        tracer.crossed(place(7), sorted.values(), (PARENTS, ELITES), &[1]);
+        tracer.crossed(place(7), (sorted.values(), 2), (PARENTS, ELITES), &[1]);
         let mut parents = Genomes::with_capacity(2, PARENTS);
         sorted.rows().take(PARENTS).for_each(|row| parents.push(row));
         let children = crossover::cross_adjacent(&parents, &[1]);

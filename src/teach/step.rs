@@ -79,12 +79,12 @@ impl Step {
 /// The steps of `generation` number `number`, which `next` follows.
 pub fn steps(number: usize, generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
     let mut steps = Vec::new();
-    if number == 0 && !generation.drawn.is_empty() {
+    if number == 0 && !generation.drawn.is_empty() && !generation.is_call {
         steps.push(Step::Draw);
     }
-    steps.push(Step::Simulate);
-    if !generation.fitness.is_empty() {
-        steps.push(Step::Rate);
+    if !generation.is_call {
+        steps.push(Step::Simulate);
+        steps.extend((!generation.fitness.is_empty()).then_some(Step::Rate));
     }
     if generation.sorted.is_some() {
         steps.push(Step::Sort);
@@ -99,6 +99,10 @@ pub fn steps(number: usize, generation: &Generation, next: Option<&Generation>) 
         steps.extend((mutated.elites..rows).map(Step::Mutate));
     }
     match next {
+        // Calls end with what they do; one that does nothing has this step all the same.
+        _ if generation.is_call && !next.is_some_and(Generation::has_parents) => {
+            steps.extend(steps.is_empty().then_some(Step::Stop));
+        }
         None => steps.push(Step::Stop),
         Some(next) => {
             let random = |k: &usize| next.origins[*k] == Origin::Random;

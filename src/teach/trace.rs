@@ -1,7 +1,7 @@
 //! A trace that was read: the scripts, what is identified, and the generations.
 
 use super::errors::BAD_TRACE;
-use super::event::{Event, Numbers, Subject};
+use super::event::{Event, Genes, Numbers, Subject};
 use super::file;
 use super::generation::{Crossed, Drawn, Generation, Mutated, Origin, Sorted};
 use super::produced::Produced;
@@ -49,9 +49,14 @@ impl Trace {
         trace.cut = !whole;
         if trace.generations.iter().all(Generation::is_empty) {
             bail!(
-                BAD_TRACE, "the trace contains no generation: no individual was simulated";
-                help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`"
+                BAD_TRACE, "the trace contains no generation: no individual was simulated, and no operator was called";
+                help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`, or an \
+                       operator such as `Cross`"
             );
+        }
+        if trace.subject.parameters.is_empty() {
+            let most = trace.generations.iter().map(|g| g.n_genes).max().unwrap_or(0);
+            trace.subject.parameters = (1..=most).map(|j| format!("gene {j}")).collect();
         }
         Ok(trace)
     }
@@ -63,6 +68,8 @@ struct Reading {
     produced: Produced,
     /// Draws that no generation has used yet.
     drawn: Vec<Drawn>,
+    /// Whether something was simulated.
+    is_run: bool,
 }
 
 impl Reading {
@@ -71,9 +78,43 @@ impl Reading {
         if matches!(event, Event::Simulate { n_genes: 0, .. }) {
             return;
         }
+        self.is_run |= matches!(event, Event::Simulate { .. });
+        if !self.is_run {
+            self.begin_call(&event);
+        }
         self.note(&event);
         self.produced.follow(&event);
         self.complete(&event);
+    }
+
+    /// Begins a generation of individuals that were not simulated, where an operator is called on
+    /// others than those that the operator before has given.
+    fn begin_call(&mut self, event: &Event) {
+        let produced = &self.produced;
+        let last = self.trace.generations.last();
+        let (genes, expected, continues) = match event {
+            Event::Sort { genes, .. } => (genes, &produced.simulated, false),
+            Event::Cross { genes, .. } => {
+                let sorted = last.is_some_and(|l| l.sorted.is_some() && l.crossed.is_none());
+                (genes, &produced.sorted, sorted)
+            }
+            Event::Mutate { genes, .. } => {
+                let crossed = last.is_some_and(|l| l.crossed.is_some() && l.mutated.is_none());
+                (genes, &produced.crossed, crossed)
+            }
+            _ => return,
+        };
+        if continues && *genes == Genes::Expected {
+            return;
+        }
+        let n_genes = produced.n_genes;
+        let Some(genes) = genes.resolve(expected, n_genes).filter(|_| n_genes > 0) else { return };
+        let origins = match last {
+            Some(before) if before.n_genes == n_genes => before.origins_of(&genes),
+            _ => vec![Origin::Script; genes.len() / n_genes],
+        };
+        let call = Generation { is_call: true, n_genes, genes, origins, ..Generation::default() };
+        self.trace.generations.push(call);
     }
 
     /// What must be taken from what was produced before the event.
@@ -94,6 +135,7 @@ impl Reading {
             Event::Simulate { place, n_genes, .. } => {
                 let n_genes = *n_genes as usize;
                 let begins = self.produced.ended
+                    || self.trace.generations.last().is_some_and(|last| last.is_call)
                     || self.trace.generations.last().is_none_or(|last| last.n_genes != n_genes);
                 if begins {
                     let drawn = std::mem::take(&mut self.drawn);
@@ -104,7 +146,8 @@ impl Reading {
                 }
             }
             Event::Full => self.trace.full = true,
-            Event::Rate { .. }
+            Event::Alone { .. }
+            | Event::Rate { .. }
             | Event::Sort { .. }
             | Event::Cross { .. }
             | Event::Mutate { .. } => {}
@@ -159,7 +202,7 @@ impl Reading {
                 generation.genes = produced.simulated.clone();
                 let count = generation.len();
                 generation.origins = match before.last() {
-                    Some(before) if before.n_genes == generation.n_genes => {
+                    Some(before) if before.n_genes == generation.n_genes && !before.is_call => {
                         before.origins_of(&generation.genes)
                     }
                     None if !generation.drawn.is_empty() => vec![Origin::Random; count],

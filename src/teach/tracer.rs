@@ -17,6 +17,8 @@ pub struct Tracer {
     /// Where the model was asked for its Y, and what was measured there.
     points: (Vec<f64>, Vec<f64>),
     produced: Produced,
+    /// Whether something was simulated.
+    is_run: bool,
     unwritten: Vec<u8>,
     size: usize,
     largest: usize,
@@ -55,6 +57,7 @@ impl Tracer {
             subject: None,
             points: (Vec::new(), Vec::new()),
             produced: Produced::default(),
+            is_run: false,
             size: unwritten.len(),
             unwritten,
             largest,
@@ -99,6 +102,7 @@ impl Tracer {
         genes: &[f64],
         failures: Vec<(u32, String)>,
     ) {
+        self.is_run = true;
         if self.subject.as_ref() != Some(subject) {
             self.push(&Event::Subject(subject.clone()));
             self.subject = Some(subject.clone());
@@ -133,20 +137,22 @@ impl Tracer {
         (genes, fitness): (&[f64], &[f64]),
         (parents, elites): (usize, usize),
     ) {
+        self.alone(genes.len().checked_div(fitness.len()).unwrap_or(0));
         let genes = Genes::of(genes, &self.produced.simulated, self.produced.n_genes);
         let fitness = Numbers::of(fitness, &self.produced.fitness);
         let (parents, elites) = (parents as u32, elites as u32);
         self.push(&Event::Sort { place, genes, fitness, parents, elites });
     }
 
-    /// `Cross` has made children.
+    /// `Cross` has made children of individuals with `n_genes` genes each.
     pub fn crossed(
         &mut self,
         place: Place,
-        genes: &[f64],
+        (genes, n_genes): (&[f64], usize),
         (parents, elites): (usize, usize),
         points: &[usize],
     ) {
+        self.alone(n_genes);
         let genes = Genes::of(genes, &self.produced.sorted, self.produced.n_genes);
         let points = points.iter().map(|&point| point as u32).collect();
         let (parents, elites) = (parents as u32, elites as u32);
@@ -155,6 +161,7 @@ impl Tracer {
 
     /// `Mutation` has changed genes.
     pub fn mutated(&mut self, place: Place, call: &MutationCall) {
+        self.alone(call.minima.len());
         let genes = Genes::of(call.genes, &self.produced.crossed, self.produced.n_genes);
         let numbers = Numbers::of(call.numbers, &self.produced.numbers);
         self.push(&Event::Mutate {
@@ -166,6 +173,14 @@ impl Tracer {
             minima: call.minima.to_vec(),
             maxima: call.maxima.to_vec(),
         });
+    }
+
+    /// An operator is called on individuals with so many genes. In a run the simulations say how many
+    /// these are.
+    fn alone(&mut self, n_genes: usize) {
+        if !self.is_run && n_genes != self.produced.n_genes {
+            self.push(&Event::Alone { n_genes: n_genes as u32 });
+        }
     }
 
     fn push(&mut self, event: &Event) {

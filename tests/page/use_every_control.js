@@ -57,10 +57,43 @@
     check("all measured points are drawn", all("fit", "circle").length === data.x.length, all("fit", "circle").length);
     check("the sum is told", /sum of the squared distances.*: [\d.]+/.test(at("fit").textContent), at("fit").textContent);
     check("the fitness stands behind each row", all("population", ".row").every(row => row.querySelectorAll("text").length === 2));
-    check("convergence is drawn", all("curve", "path").length === 1);
-    check("the generation is marked on it", all("curve", "line[stroke-dasharray]").length === 1);
-    check("every parameter is judged", !data.result || all("tell", "tr").length === data.parameters.length + 1, all("tell", "tr").length);
+    future();
+    visit(find("fitness", 0));
     landscapeAndFamily();
+  }
+  function future() {
+    const length = () => all("curve", "path").map(p => p.getAttribute("d").split("L").length);
+    check("nothing of the future is drawn at first", length().length === 0, length());
+    choose("generation", "4"); key("End"); click("first"); choose("generation", "4");
+    while (data.steps[step() - 1].title !== "fitness") click("next");
+    check("convergence ends at this generation", length().join() === "4", length());
+    check("the generation is marked on it", all("curve", "line[stroke-dasharray]").length === 1);
+    at("future").click();
+    check("how it goes on is drawn when asked for", length().length === 2 && length()[0] === data.curve.length - 3, length());
+    at("future").click();
+    check("and not otherwise", length().join() === "4", length());
+    check("the verdict of the data is kept for the end", all("tell", "tr").length === 0);
+    click("last");
+    check("every parameter is judged", !data.result || all("tell", "tr").length === data.parameters.length + 1, all("tell", "tr").length);
+    choose("generation", String(data.of + 50)); check("the box shows a generation that is there", at("generation").value === String(data.of), at("generation").value);
+  }
+  function prediction() {
+    click("first");
+    at("predicting").click();
+    const asked = data.steps.map((s, k) => s.question ? k + 1 : 0).filter(k => k);
+    const say = text => { at("answer").value = text; at("prediction").dispatchEvent(new Event("submit", { cancelable: true })); };
+    const right = answer => answer.Individuals ? answer.Individuals.join(" ") : answer.Letters !== undefined ? answer.Letters : answer.Decision ? "yes" : "no";
+    visit(asked[0]);
+    const question = data.steps[asked[0] - 1].question;
+    check("the question is asked instead of the answer", at("text").textContent === question.text && !at("prediction").hidden, at("text").textContent);
+    check("the answer is not drawn yet", all("population", ".cut").length === 0);
+    say(right(question.answer));
+    check("a right answer counts", at("score").textContent === "Right. 1 of 1 correct", at("score").textContent);
+    check("then the step is shown", at("text").textContent === data.steps[asked[0] - 1].text && all("population", ".cut").length === 1);
+    visit(asked[1]); say("nonsense 99");
+    check("a wrong answer is put right", at("score").textContent.startsWith("No: the answer is") && at("score").textContent.endsWith("1 of 2 correct"), at("score").textContent);
+    at("predicting").click();
+    check("without predictions nothing is asked", at("prediction").hidden);
   }
   function mutation() {
     const first = data.steps.findIndex(s => s.g === 0 && s.title === "mutation" && s.text.includes("becomes"));
@@ -119,7 +152,7 @@
 
   window.addEventListener("error", event => reports.push("WRONG: " + event.message));
   window.addEventListener("load", async () => {
-    try { buttonsAndKeys(); slidersAndLink(); panels(); outside(); rows(); await playing(); outside(); } catch (error) { reports.push("WRONG: " + error.stack); }
+    try { buttonsAndKeys(); slidersAndLink(); panels(); prediction(); outside(); rows(); await playing(); outside(); } catch (error) { reports.push("WRONG: " + error.stack); }
     const told = "[[" + reports.join("\n") + "\nwidth " + innerWidth + "]]";
     if (parent !== window) return parent.postMessage(told, "*");
     document.body.replaceChildren(told);

@@ -432,6 +432,28 @@ fn libraries_are_verified_against_collections() {
     assert_eq!(gapi(&here, &["verify", "Lib.mo", "--references", "nowhere"]).0, 1);
 }
 
+/// The variable that limits the steps, the relation that causes the events and the loop are named.
+#[test]
+fn simulations_tell_what_made_them_work() {
+    let model = "model M Real slow(start = 1, fixed = true); Real fast(start = 1, fixed = true);
+      Real h(start = 1, fixed = true); Real v(fixed = true); Real q;
+      equation der(slow) = -1e-3*slow; der(fast) = -100*(fast - sin(30*time));
+      der(h) = v; der(v) = -9.81; when h < 0 then reinit(v, -0.5*pre(v)); end when;
+      q = sin(q)/2 + 1; end M;";
+    let here = folder(&[("M.mo", model)]);
+    let arguments = ["simulate", "M.mo", "--model", "M", "--stop-time", "0.8", "--stats"];
+    let (code, out, said) = gapi(&here, &arguments);
+    assert_eq!((code, &*said), (0, ""));
+    let below = |title: &str| {
+        let mut lines = out.lines().skip_while(|line| !line.contains(title));
+        lines.nth(1).unwrap_or_default().to_owned()
+    };
+    assert!(below("largest part of the error").ends_with("`fast`"), "{out}");
+    assert!(below("caused events").ends_with("2 events  `h < 0` (M.mo:4)"), "{out}");
+    assert!(below("algebraic loops").ends_with("{q}"), "{out}");
+    assert!(!out.contains("`slow`"), "{out}");
+}
+
 #[test]
 fn simulations_tell_their_cost_and_draw() {
     let here = folder(&[("Decay.mo", DECAY)]);

@@ -149,6 +149,9 @@ fn function(model: &mut FlatModel, class: &ClassDefinition) {
             Section::External(external) => {
                 function.body = FunctionBody::External(external.clone());
             }
+            Section::Annotation(annotation) => {
+                function.annotation.extend(annotation.arguments.clone());
+            }
             _ => {}
         }
     }

@@ -425,6 +425,20 @@ fn the_second_derivative_function_is_used() {
     assert!((column("a") - second).abs() < 1e-9, "{} is not {second}", column("a"));
 }
 
+#[test]
+fn the_declared_inverse_is_used_as_written() {
+    // It is only nearly an inverse: whoever iterates finds 1 instead.
+    let model = "model Main \
+        function rate input Real u; input Real k; output Real y; \
+        algorithm y := k*(u + u^3); annotation(Inline = false, inverse(u = drop(y, k = k))); \
+        end rate; function drop input Real y; input Real k; output Real u; \
+        algorithm u := y/k/3; annotation(Inline = false, inverse(y = rate(u, k))); end drop; \
+        parameter Real k = 2; Real x; Real y; \
+        equation 3*rate(x, k) + 1 = 13; drop(y, k) = 2; end Main;";
+    let run = simulated(model, 1.0);
+    assert_eq!((run.column("x")[0], run.column("y")[0]), (2.0 / 3.0, 20.0));
+}
+
 /// A table as an external object, with the derivative that its library declares.
 const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
     input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
@@ -501,6 +515,31 @@ fn components_without_value_are_faults_of_who_reads_them() {
     assert_eq!(run(&text("a")), Ok(()));
     let expected = "a variable has no value in the function `P.part` (at t = 0)";
     assert_eq!(run(&text("b")).unwrap_err(), expected);
+}
+
+/// A parameter that a function leaves without value is a fault of the equations that read it.
+#[test]
+fn parameters_without_value_are_faults_of_who_reads_them() {
+    let text = |value: &str| {
+        format!(
+            "model M record R Real a; Real b; end R; \
+             function part input Real u; output R r; algorithm r.a := u; \
+             if u > 5 then r.b := 2; end if; end part; \
+             function chosen input R r; input Boolean c; output Real y; algorithm y := r.a; \
+             if c then y := y + r.b; end if; end chosen; \
+             parameter Real u = 1; final parameter R r = part(u); Real y = {value}; end M;"
+        )
+    };
+    let run = simulated(&text("time + chosen(r, false)"), 1.0);
+    assert_eq!(run.at("y", 1.0), 2.0);
+    for reading in ["chosen(r, true)", "time + r.b", "chosen(r, time > 0.5)"] {
+        let (program, _, _, ended) = super::hybrid::attempt(&text(reading), 1.0);
+        let message = program.explain(&ended.expect_err(reading)).message.clone();
+        assert!(message.contains("a variable has no value in the function `M.part`"), "{message}");
+        let warnings: Vec<&str> = program.warnings().iter().map(|w| w.message.as_str()).collect();
+        let expected = "the parameter `r.b` has no value: the function `M.part` gives it none";
+        assert!(warnings.contains(&expected), "{warnings:?}");
+    }
 }
 
 #[test]
@@ -589,24 +628,56 @@ fn arrays_that_grow_are_run_for_known_arguments() {
     assert_eq!((status.code, streams.errors().as_str()), (0, ""));
 }
 
-/// A partial derivative of a function is refused by its name (MLS §12.7.2).
+/// `der(f, x)` is a function, of loops, of several inputs and inside of others (MLS §12.7.2).
 #[test]
-fn partial_derivatives_are_refused() {
-    let model = "model M
-      function g
-        input Real p;
-        input Real t;
-        output Real y;
-      algorithm
-        y := p - t;
-      end g;
-      function g_t = der(g, t);
-      Real h = g_t(time, 1);
+fn partial_derivatives_are_functions() {
+    let text = "model M
+      function f input Real x; input Real y; output Real z;
+      algorithm assert(x >= 0, \"negative\"); z := x^2*y + sin(x); end f;
+      function fx = der(f, x);
+      function fxy = der(f, x, y);
+      function s input Real x; input Integer n; output Real s;
+      algorithm s := 0; for i in 1:n loop s := s + x^i; end for; annotation(Inline = false); end s;
+      function sx = der(s, x);
+      function root input Real x; output Real s;
+      algorithm s := 1; while s*s < x loop s := s + 0.5*x; end while; end root;
+      function root_x = der(root, x);
+      function total input Real x; output Real y;
+      algorithm y := 0; for i in 1:3 loop y := y + fx(x, i); end for; end total;
+      Real a = fx(time, 3);
+      Real b = fxy(time, 2);
+      Real c = sx(time, 4);
+      Real d = total(time);
+      Real e = root_x(5 + time);
     end M;";
-    let world = MemoryWorld::new().with_file("M.mo", model);
-    let streams = world.streams();
-    Session::new(Box::new(world)).run_text("s.mos", "openModel(\"M.mo\"); checkModel(\"M\");");
-    assert!(streams.errors().contains("`M.g_t` is a partial derivative"), "{}", streams.errors());
+    let run = simulated(text, 1.0);
+    for t in [0.0, 0.4, 1.0_f64] {
+        let expected = [
+            ("a", 6.0 * t + t.cos()),
+            ("b", 2.0 * t),
+            ("c", 1.0 + 2.0 * t + 3.0 * t * t + 4.0 * t.powi(3)),
+            ("d", 12.0 * t + 3.0 * t.cos()),
+            ("e", 0.5),
+        ];
+        for (name, value) in expected {
+            assert!((run.at(name, t) - value).abs() < 1e-9, "{name} = {} at {t}", run.at(name, t));
+        }
+    }
+    let negative = text.replace("fx(time, 3)", "fx(-time - 1, 3)");
+    let error = super::hybrid::attempt(&negative, 1.0).3.expect_err("the assertion of f");
+    assert!(format!("{error:?}").contains("Assert"), "{error:?}");
+}
+
+#[test]
+fn partial_derivatives_need_scalar_real_inputs() {
+    for (input, by) in [("Integer k", "k"), ("Real k[2]", "k"), ("Real x", "other")] {
+        let text = format!(
+            "model M function f input {input}; output Real z; algorithm z := 2; end f; \
+             function g = der(f, {by}); Real a = g(1); end M;"
+        );
+        let error = super::hybrid::compiled(&text).map(|_| ()).expect_err("no derivative");
+        assert!(error.message.contains("is no scalar Real input of `M.f`"), "{}", error.message);
+    }
 }
 
 /// What a partial application binds need not be the last inputs (MLS §12.4.2.1).

@@ -52,9 +52,11 @@ fn carry_out(here: &TempDir, chapter: &str, block: &str) {
     let mut said = String::new();
     for line in block.lines() {
         match line.strip_prefix("$ gapi ") {
-            Some(command) => {
+            Some(line) => {
+                let (command, expected) = line.split_once("# exit code ").unwrap_or((line, "0"));
                 let (code, out, errors) = gapi(here, &words(command));
-                assert_eq!(code, 0, "{chapter}: gapi {command}\n{out}{errors}");
+                let code = code.to_string();
+                assert_eq!(code, expected.trim(), "{chapter}: gapi {command}\n{out}{errors}");
                 said = out + &errors;
             }
             None => assert!(said.contains(line), "{chapter}: `{line}` is not in\n{said}"),

@@ -266,6 +266,8 @@ fn an_integer_of_a_record_may_change_between_events() {
         let phase = |h: f64| if h > 0.51 { 2.0 } else { 1.0 };
         near(run.at("bound.phase", t), phase(t), 0.0);
         near(run.at("equal.phase", t), phase(2.0 * t), 0.0);
+        near(run.at("passed[1].phase", t), phase(2.0 * t), 0.0);
+        near(run.at("passed[2].phase", t), phase(t), 0.0);
         near(run.at("density", t), if t > 0.51 { 10.0 } else { 1000.0 }, 0.0);
     }
 }

@@ -258,6 +258,11 @@ fn the_limit_of_instructions_can_be_changed() {
     assert!(errors.contains("more than 1 million instructions"), "{errors}");
     let (code, _, errors) = run("100");
     assert_eq!(code, 0, "{errors}");
+    // Unless it says otherwise, the command allows more than the library does.
+    let here = folder(&[("Fib.mo", &fibonacci("", "30 + integer(time)"))]);
+    assert!(gapi(&here, &[&arguments[..], &["--instruction-limit", "20"]].concat()).0 == 1);
+    let (code, _, errors) = gapi(&here, &arguments);
+    assert_eq!(code, 0, "{errors}");
 }
 
 #[test]

@@ -59,6 +59,7 @@ mod modelica_models;
 mod models;
 mod moving_surfaces;
 mod msl;
+mod multiple_roots;
 #[path = "../nist/mod.rs"]
 mod nist;
 mod nist_problems;

@@ -46,8 +46,7 @@ fn every_control_of_the_page_does_what_it_should() {
         eprintln!("skipped: no Chromium; GAPILIB_CHROMIUM names one");
         return;
     };
-    let lesson = std::fs::read_to_string(project("scripts/lessons/07_elites.mos")).unwrap();
-    let here = folder(&[("search.mos", &lesson)]);
+    let here = folder(&[("search.mos", crate::teach::SEARCH)]);
     let (code, _, errors) = gapi(&here, &["teach", "search.mos", "--html", "steps.html"]);
     assert_eq!(code, 0, "{errors}");
     let page = std::fs::read_to_string(here.path().join("steps.html")).unwrap();

@@ -1,12 +1,13 @@
 //! `gapi teach` and `gapi run --trace` as a user starts them.
 
 use crate::cli::{folder, gapi};
-use crate::shipped::project;
 
-/// A folder with lesson 7: two searches of thirty generations with twelve individuals.
+/// Two searches of thirty generations with twelve individuals, without an elite and with one.
+pub(crate) const SEARCH: &str = include_str!("../teach/search.mos");
+
+/// A folder with it.
 fn with_search() -> tempfile::TempDir {
-    let script = project("scripts/lessons/07_elites.mos");
-    folder(&[("search.mos", &std::fs::read_to_string(script).unwrap())])
+    folder(&[("search.mos", SEARCH)])
 }
 
 #[test]
@@ -38,6 +39,39 @@ fn a_recorded_run_is_walked_through() {
     std::fs::write(here.path().join("cut.trace"), &bytes[..bytes.len() / 2]).unwrap();
     let (code, out, _) = gapi(&here, &["teach", "cut.trace"]);
     assert!(code == 0 && out.contains("Generation 1, step 1 of"), "{out}");
+}
+
+/// Scripts that only call operators have calls where others have generations.
+#[test]
+fn operators_alone_are_watched() {
+    let script = "Seed := {1, 2, 3, 4, 5, 6};\n\
+        (Pop, Fit) := Fit_Order([1, 10; 2, 20; 3, 30], {9.0, 1.0, 4.0}, 3, 2, 1);\n\
+        Crossed := Cross(2, 1, Pop, {1});\n(Ram, Seed) := Ram_Gen_ARENA(Seed, 6);\n\
+        Mutated := Mutation(Crossed, 1, Ram, {0, 0}, {1, 1}, 1);\n\
+        Alone := Cross(2, 0, [5, 6, 7; 8, 9, 10], {2});\n\
+        Alone := Mutation([5, 6; 7, 8], 0, zeros(2, 2), {0, 0}, {9, 9}, 2);\n";
+    let here = folder(&[("calls.mos", script)]);
+    let (code, out, errors) = gapi(&here, &["teach", "calls.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    for part in [
+        // The three calls that belong together are one.
+        "Call 1, step 1 of 5: selection",
+        "    2      1.000      2.000      20.00  elite and parent",
+        "Call 1, step 3 of 5: crossover",
+        "child   1             2.000|     30.00",
+        "Call 1, step 5 of 5: mutation",
+        "Call 2, step 1 of 1: crossover",
+        "child   2             8.000      9.000|     7.000",
+        "Call 3, step 1 of 1: stop",
+        "The operator leaves all individuals as they are.",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+    assert!(!out.contains("Generation") && !out.contains("generation  "), "{out}");
+    let (code, _, errors) = gapi(&here, &["teach", "calls.mos", "--html", "calls.html"]);
+    assert_eq!(code, 0, "{errors}");
+    let page = std::fs::read_to_string(here.path().join("calls.html")).unwrap();
+    assert!(page.contains("calls.mos - step by step") && page.contains("\"call\":true"));
 }
 
 #[test]

@@ -168,7 +168,11 @@ impl Instantiation<'_> {
         let first = reference.parts[0].name;
         let node = self.classes.node_of(scope);
         if self.classes.is_constant(node, first) {
-            return self.walk(node, &reference.parts, reference, context, local);
+            // A function is not part of the model whose constant it uses, and takes its value.
+            let is_whole = reference.parts.iter().all(|part| part.subscripts.is_empty());
+            let values = local.values || (is_whole && !local.types.is_empty());
+            let local = Local { values, ..local.clone() };
+            return self.walk(node, &reference.parts, reference, context, &local);
         }
         let class = &self.classes.text(scope).name;
         Err(fault!(

@@ -19,9 +19,9 @@ use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
-    Expression, ExpressionKind, ForIndex, NamedArgument, Purity, Restriction, Section, Statement,
-    StatementKind, Subscript, Visibility,
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference,
+    DerivativeClass, Element, ElementModification, Expression, ExpressionKind, ForIndex,
+    NamedArgument, Purity, Restriction, Section, Statement, StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
@@ -142,15 +142,6 @@ impl Instantiation<'_> {
         if !is_function {
             return self.object_constructor(class);
         }
-        if let ClassSpecifier::Derivative(derivative) =
-            &self.classes.text(class).definition.specifier
-        {
-            let (name, span) = (self.classes.text(id).name.clone(), derivative.target.span);
-            return Err(fault!(NOT_SUPPORTED,
-                "`{name}` is a partial derivative of a function, which is not supported yet";
-                help: "write the derivative as a separate function")
-            .at(span));
-        }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(id, class);
         self.functions.table.insert(name.clone(), None);
@@ -158,9 +149,13 @@ impl Instantiation<'_> {
         if self.classes.is_record(class) {
             self.functions.record_scopes.insert(name.clone(), class);
         }
-        let function = match self.classes.is_record(class) {
-            false => self.ready(&name, class),
-            true => self.constructor(&name, class),
+        let specifier = self.classes.text(class).definition.specifier.clone();
+        let function = match specifier {
+            ClassSpecifier::Derivative(derivative) => {
+                self.partial_derivative(&name, class, &derivative)
+            }
+            _ if self.classes.is_record(class) => self.constructor(&name, class),
+            _ => self.ready(&name, class),
         };
         match function {
             Ok(function) => Ok(Some(self.keep_function(id, name, function))),
@@ -191,25 +186,53 @@ impl Instantiation<'_> {
         }
     }
 
-    /// Makes the functions of `derivative` annotations ready and writes their full names; those
-    /// that cannot be made ready are left out (MLS §12.7.1).
-    fn derivatives(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
+    /// Makes the functions of `derivative` and `inverse` annotations ready and writes their full
+    /// names; those that cannot be made ready are left out (MLS §12.7.1, §12.8).
+    fn named_functions(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
         let mut kept = Vec::with_capacity(arguments.len());
         for mut argument in arguments {
-            if let Argument::Element(element) = &mut argument
-                && element.name.node.last().is_some_and(|name| name == "derivative")
-                && let Some(modification) = &mut element.modification
-                && let Some(Binding::Expression(e)) = &mut modification.binding
-                && let ExpressionKind::Reference(reference) = &mut e.kind
-            {
-                match self.function_name(&reference.name(), context, e.span) {
-                    Ok(full) => *reference = ComponentReference::from_name(&full, e.span),
-                    Err(_) => continue,
-                }
+            let is_ready = match &mut argument {
+                Argument::Element(element) => match element.name.node.last().map(Ident::as_str) {
+                    Some("derivative") => self.name_function(element, context),
+                    Some("inverse") => self.name_inverses(element, context),
+                    _ => true,
+                },
+                Argument::Redeclaration(_) => true,
+            };
+            if is_ready {
+                kept.push(argument);
             }
-            kept.push(argument);
         }
         kept
+    }
+
+    /// Writes the full name of the function behind `=`, alone or called; whether there is one.
+    fn name_function(&mut self, element: &mut ElementModification, context: ScopeId) -> bool {
+        let Some(modification) = &mut element.modification else { return true };
+        let Some(Binding::Expression(e)) = &mut modification.binding else { return true };
+        let span = e.span;
+        let (ExpressionKind::Reference(reference)
+        | ExpressionKind::Call { function: reference, .. }) = &mut e.kind
+        else {
+            return true;
+        };
+        match self.function_name(&reference.name(), context, span) {
+            Ok(full) => {
+                *reference = ComponentReference::from_name(&full, span);
+                true
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// The same of each input of `inverse(x = f(y), ...)`.
+    fn name_inverses(&mut self, element: &mut ElementModification, context: ScopeId) -> bool {
+        let Some(modification) = &mut element.modification else { return false };
+        modification.arguments.retain_mut(|argument| match argument {
+            Argument::Element(of_input) => self.name_function(of_input, context),
+            Argument::Redeclaration(_) => false,
+        });
+        !modification.arguments.is_empty()
     }
 
     /// The name of a function, with a number if another function has it: the same text in another
@@ -294,7 +317,7 @@ impl Instantiation<'_> {
         let mut annotations = Vec::new();
         for scope in &lineage {
             let own = annotation(self.classes.text(*scope).sections());
-            annotations.extend(self.derivatives(own, *scope));
+            annotations.extend(self.named_functions(own, *scope));
         }
         Ok(Function {
             name: name.clone(),
@@ -334,6 +357,55 @@ impl Instantiation<'_> {
             impure: false,
             span,
             compiled: Compiled::default(),
+        })
+    }
+
+    /// `function f_x = der(f, x)` (MLS §12.7.2)
+    fn partial_derivative(
+        &mut self,
+        name: &Name,
+        class: ScopeId,
+        derivative: &DerivativeClass,
+    ) -> Result<Function, Diagnostic> {
+        let span = derivative.target.span;
+        let scope = self.classes.scope(class).parent.unwrap_or(ScopeId::TOP);
+        let of = match self.classes.lookup(scope, &derivative.target.name)? {
+            Some(Type::Class(id)) => self.function(id)?,
+            _ => None,
+        };
+        let known = of.as_ref().and_then(|of| self.functions.table.get(of).cloned().flatten());
+        let (Some(of), Some(target)) = (of, known) else {
+            return Err(
+                fault!(UNKNOWN_CLASS, "there is no function `{}`", derivative.target.name).at(span)
+            );
+        };
+        for by in &derivative.variables {
+            let input = target.inputs.iter().find(|input| input.name == by.node);
+            if !input.is_some_and(|i| i.value_type == ValueType::Real && i.dims.is_empty()) {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` is no scalar Real input of `{of}`, so there is no derivative by it",
+                    by.node
+                )
+                .at(by.span));
+            }
+        }
+        if let Some(other) = target.outputs.iter().find(|o| o.value_type != ValueType::Real) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the derivative of `{of}`, whose output `{}` is not Real",
+                other.name
+            )
+            .at(span));
+        }
+        let by = derivative.variables.iter().map(|by| by.node).collect();
+        Ok(Function {
+            name: name.clone(),
+            body: FunctionBody::PartialDerivative { of, by },
+            annotation: Vec::new(),
+            compiled: Compiled::default(),
+            span: self.classes.text(class).span(),
+            ..(*target).clone()
         })
     }
 

@@ -188,7 +188,7 @@ impl Classes<'_> {
         if self.library.class(child).is_class_extends() {
             text.extended = self.inherited_class(scope, name)?;
         }
-        let original = Nested {
+        let mut original = Nested {
             text,
             parent: scope,
             // A final redeclaration cannot be replaced; components of the class can be modified.
@@ -198,12 +198,18 @@ impl Classes<'_> {
             inner: prefixes.inner,
             instance: Cell::new(None),
         };
-        let Some(redeclaration) = outer.redeclaration else { return Ok(Rc::new(original)) };
+        let constraint = self.library.class(child).constraint().cloned();
+        let Some(redeclaration) = outer.redeclaration else {
+            // The modifiers of the constraining clause hold for the original class as well.
+            if constraint.is_some() {
+                original.defaults = self.constraining(&original, constraint.as_ref())?;
+            }
+            return Ok(Rc::new(original));
+        };
         if prefixes.is_final {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared")
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
-        let constraint = self.library.class(child).constraint().cloned();
         let defaults = self.constraining(&original, constraint.as_ref())?;
         self.replaced(original, &redeclaration, &defaults)
     }

@@ -7,6 +7,7 @@
 //! `derivative(order = 2)`, whose inputs are its inputs, followed by second derivatives.
 
 use super::instances::{Argument, Instance, Instances, passed};
+use super::inverse::element;
 use crate::bytecode::Derivative;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::flatten::FlatModel;
@@ -165,15 +166,6 @@ fn wanted(argument: &ast::Argument) -> Option<Wanted> {
         }
     }
     Some(wanted)
-}
-
-fn element(argument: &ast::Argument) -> Option<(&'static str, &Modification)> {
-    match argument {
-        ast::Argument::Element(element) => {
-            Some((element.name.node.last()?.as_str(), element.modification.as_ref()?))
-        }
-        ast::Argument::Redeclaration(_) => None,
-    }
 }
 
 /// The name behind `=`.

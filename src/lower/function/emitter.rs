@@ -57,6 +57,7 @@ impl Emitter {
             constants: self.values,
             messages: self.messages,
             places: self.places,
+            inverses: Vec::new(),
             texts: self.texts,
             externals: self.externals,
             impure: false,

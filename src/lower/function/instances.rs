@@ -1,7 +1,7 @@
 //! Functions compiled for certain arguments, each combination once.
 
 use super::statements::Body;
-use crate::budget::instruction_limit;
+use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, ValueType};
@@ -29,7 +29,7 @@ pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
 
 /// Calls of numbers are left to the simulation after so many that took all the instructions that one
 /// may take.
-const MAX_FOLDED: u64 = 5;
+const MAX_FOLDED: u64 = 25;
 
 /// What a function is compiled for.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -175,6 +175,13 @@ impl Instances {
         }
         let statements = match &function.body {
             FunctionBody::Algorithm(statements) => statements.as_slice(),
+            FunctionBody::PartialDerivative { .. } => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "`{name}`, a partial derivative, in a function that is not inlined"
+                )
+                .at(span));
+            }
             FunctionBody::External(_) | FunctionBody::RecordConstructor => &[],
         };
         if self.depth >= MAX_DEPTH || self.finished.len() >= MAX_INSTANCES {
@@ -235,6 +242,7 @@ impl Instances {
             self.known.insert(signature.clone(), instance.clone());
         }
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
+        code.inverses = self.inverses(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
         if self.instructions > MAX_INSTRUCTIONS {
             return Err(fault!(
@@ -254,7 +262,7 @@ impl Instances {
         if !self.is_finished(instance.code) {
             return None;
         }
-        if self.folded > MAX_FOLDED * instruction_limit() {
+        if self.folded > MAX_FOLDED * step_limit() {
             return None;
         }
         let mut machine = Machine::default();

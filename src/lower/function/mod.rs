@@ -13,6 +13,8 @@ mod emitter;
 mod external;
 mod external_kinds;
 mod instances;
+mod inverse;
+mod partial_derivative;
 mod place;
 mod printing;
 mod repeated;
@@ -30,7 +32,7 @@ use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED
 use super::expressions::{Lowered, field_of};
 use super::inline::{MAX_INLINED, inline};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -46,6 +48,9 @@ pub(super) fn call(
     arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if let FunctionBody::PartialDerivative { of, by } = &function.body {
+        return partial_derivative::call(builder, function, (of, by), arguments, span);
+    }
     if builder.calls.functions.may_write {
         // Carried out on expressions, a function would write whatever its branches are.
         return compiled_call(builder, function, arguments, span);
@@ -68,6 +73,11 @@ fn inlined_or_compiled(
     mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if inverse::is_kept(function)
+        && let Ok(outputs) = compiled_call(builder, function, arguments.clone(), span)
+    {
+        return Ok(outputs);
+    }
     let asserted = builder.dae.assertions.len();
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,

@@ -7,7 +7,7 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::errors::{BAD_POPULATION, SIZE_MISMATCH};
-use crate::ga::{self, Gene, Genomes, Mrg32k3a};
+use crate::ga::{self, Gene, Genomes};
 use crate::identify::Question;
 use crate::identify::errors::BAD_DATA;
 use crate::identify::fitness::sum_of_squares;
@@ -111,7 +111,7 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
     if !(0..=MOST_NUMBERS).contains(&count) {
         bail!(SIZE_MISMATCH, "`N_Ram` is {count}; it must be between 0 and {MOST_NUMBERS}");
     }
-    let mut rng = Mrg32k3a::new(&seed)?;
+    let mut rng = session.generator(&seed)?;
     let first = rng.state();
     let numbers = (0..count).map(|_| rng.uniform()).collect();
     let site = session.site_of_call();
@@ -276,7 +276,9 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     };
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
     let pairs = (parents as usize, elites as usize);
-    session.traced(|tracer, place| tracer.crossed(place, old.values(), pairs, &points))?;
+    session.traced(|tracer, place| {
+        tracer.crossed(place, (old.values(), n_genes), pairs, &points);
+    })?;
     let mut chosen = Genomes::with_capacity(n_genes, parents as usize);
     old.rows().take(parents as usize).for_each(|genome| chosen.push(genome));
     let children = ga::crossover::cross_adjacent(&chosen, &points);

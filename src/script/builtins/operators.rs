@@ -132,9 +132,9 @@ struct Draws {
 }
 
 impl Draws {
-    fn take(args: &mut Args) -> Result<Draws, Fault> {
+    fn take(session: &mut Session, args: &mut Args) -> Result<Draws, Fault> {
         let seed: Vec<f64> = args.take("Seed")?;
-        let rng = Mrg32k3a::new(&seed)?;
+        let rng = session.generator(&seed)?;
         Ok(Draws { before: rng.state(), rng })
     }
 
@@ -179,7 +179,7 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         return Err(Fault::new(SIZE_MISMATCH, "the search ranges are empty").into());
     }
     session.identification().recorder.searched(&minima, &maxima);
-    let mut draws = Draws::take(&mut args)?;
+    let mut draws = Draws::take(session, &mut args)?;
     let genomes = match operator.function.clone() {
         None => operators::sampling(operator.choice.clone())
             .and_then(|own| own.sample(&genes, individuals, &mut draws.rng)),
@@ -220,7 +220,7 @@ fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         )
         .into());
     }
-    let mut draws = Draws::take(&mut args)?;
+    let mut draws = Draws::take(session, &mut args)?;
     let places = match operator.function.clone() {
         None => operators::selection(operator.choice.clone())
             .and_then(|own| own.select(&fitness, parents, &mut draws.rng)),
@@ -257,7 +257,7 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let n_genes = parents.n_genes();
     let genes =
         genes(&args.take::<Vec<f64>>("Param_Min")?, &args.take::<Vec<f64>>("Param_Max")?, n_genes)?;
-    let mut draws = Draws::take(&mut args)?;
+    let mut draws = Draws::take(session, &mut args)?;
     let children = match operator.function.clone() {
         None => {
             let mut choice = operator.choice.clone();
@@ -309,7 +309,7 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let maxima: Vec<f64> = args.take("Param_Max")?;
     let genes = genes(&minima, &maxima, n_genes)?;
     session.identification().recorder.searched(&minima, &maxima);
-    let mut draws = Draws::take(&mut args)?;
+    let mut draws = Draws::take(session, &mut args)?;
     let elites = count(&mut args, "Elitism")?;
     let (cycle, cycles) = (count(&mut args, "Cycle")?, count(&mut args, "N_Cycles")?);
     let generation = cycle.saturating_sub(1) as u64;

@@ -3,6 +3,7 @@
 use super::changes::Changes;
 use super::compiled::{Current, End};
 use super::continuation::Continued;
+use super::hardest::{Hardest, hardest};
 pub use super::translated::Translated;
 use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
@@ -43,6 +44,8 @@ pub struct SimulationOptions {
     pub stops_at_chattering: bool,
     /// Which variables the results hold, by their names; all where nothing is said.
     pub only: Option<Regex>,
+    /// Whether [`Simulated::hardest`] is wanted.
+    pub counts_effort: bool,
     /// Where the time reached is written, as the bits of an `f64`.
     pub reached: Option<Arc<AtomicU64>>,
 }
@@ -54,6 +57,8 @@ pub struct Simulated {
     pub table: ResultTable,
     /// What it cost.
     pub statistics: Statistics,
+    /// What made it work, if that was asked for.
+    pub hardest: Option<Hardest>,
 }
 
 /// Translates a model, `Class` or `Class(modification)`: at most once as long as no class changes.
@@ -243,6 +248,9 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
     })
 }
 
+/// A simulation that somebody waits for may take so many steps as long as it gets on.
+pub(super) const MOST_STEPS: u64 = 1_000_000_000;
+
 /// Simulates a model with the parameter values that scripts gave to it.
 ///
 /// # Errors
@@ -256,6 +264,8 @@ pub fn simulate(
     let mut settings = settings(&model.program.experiment(), options).at(call)?;
     settings.cancel = session.world.interrupt_flag();
     settings.reached = options.reached.clone();
+    settings.max_total_steps = MOST_STEPS;
+    settings.counts_effort = options.counts_effort;
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = match &options.only {
@@ -263,7 +273,8 @@ pub fn simulate(
         None => Trajectory::default(),
     };
     system.system.listen();
-    let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
+    let mut simulator = Simulator::new();
+    let run = simulator.run(&mut system, &settings, &mut trajectory);
     report_log(session, &system.system);
     report_treatments(session, &system.system);
     report_undetermined(session, &system.system);
@@ -273,7 +284,10 @@ pub fn simulate(
             written?;
             session.models.end = Some(end(model, &settings, &trajectory));
             let table = result_table(model, &system.system, trajectory, options.only.as_ref());
-            Ok(Simulated { table, statistics })
+            let hardest = settings
+                .counts_effort
+                .then(|| hardest(session, &system.system, simulator.effort()));
+            Ok(Simulated { table, statistics, hardest })
         }
         Err(_) if session.world.interrupted() => {
             Err(Fault::new(INTERRUPTED, "interrupted").at(call))

@@ -130,6 +130,7 @@ fn simulate(
     let mut settings = simulation::settings(&program.experiment(), &options(program, reference))
         .map_err(|fault| fault.at(Span::NONE))?;
     settings.cancel = Some(cancel.clone());
+    settings.max_total_steps = simulation::MOST_STEPS;
     if let Some(reference) = reference {
         let mut times = reference.table.time.clone();
         times.dedup();

@@ -10,9 +10,9 @@ use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
 use crate::registry::BAD_OPTION;
-use crate::script::Session;
 use crate::script::builtins::Failure;
 use crate::script::models::{simulation, static_curve};
+use crate::script::{Reporting, Session};
 use crate::source::Span;
 use crate::{bail, mat};
 use std::path::Path;
@@ -276,6 +276,11 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
+    if session.options.reporting == Reporting::Off {
+        session.world.end_view();
+        return Ok(());
+    }
+    let identification = session.extension::<Identification>();
     let Some(best) = &recorder.best else { return Ok(()) };
     let compared: Vec<_> = best
         .compared

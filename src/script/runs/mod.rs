@@ -7,6 +7,7 @@ pub(in crate::script) mod identification;
 pub(in crate::script) mod journal;
 pub mod problem;
 pub(in crate::script) mod refinement;
+mod reseeding;
 pub(in crate::script) mod tracing;
 pub mod view;
 pub(in crate::script) mod watching;

@@ -464,6 +464,13 @@ impl Integrator for Bdf {
         false
     }
 
+    fn dominant(&self) -> Option<usize> {
+        let shares =
+            self.correction.iter().zip(&self.weights).map(|(e, weight)| (e / weight).abs());
+        let largest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        largest.map(|(at, _)| at)
+    }
+
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
         self.n = problem.nominal.len();

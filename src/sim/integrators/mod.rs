@@ -12,6 +12,7 @@ mod step_control;
 mod without_unknowns;
 
 use super::sliding::Sliding;
+use super::step_budget::StepBudget;
 use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
@@ -61,6 +62,11 @@ pub trait Integrator: Send {
     /// The end of the last step.
     fn time(&self) -> f64;
 
+    /// The unknown with the largest part in the error of the last step, where the method knows.
+    fn dominant(&self) -> Option<usize> {
+        None
+    }
+
     /// Notes that the right-hand side at the end of the last step is another one since, although
     /// there was no event: what is known of it there does not hold any more.
     fn branches_changed(&mut self) {}
@@ -82,6 +88,8 @@ pub struct Problem<'a> {
     pub settings: &'a Settings,
     /// What it cost so far.
     pub statistics: &'a mut Statistics,
+    /// How many steps it may take.
+    pub budget: StepBudget,
     /// When the clock of the time budget ends the simulation.
     pub deadline: Option<f64>,
 }
@@ -123,9 +131,7 @@ impl Problem<'_> {
 
     /// Asks before every attempt of a step whether to go on.
     fn may_continue(&self) -> Result<(), SimErrorKind> {
-        let statistics = &self.statistics;
-        let attempts = statistics.steps + statistics.error_failures + statistics.newton_failures;
-        if attempts >= self.settings.max_steps {
+        if self.statistics.attempts() >= self.budget.allowed {
             return Err(SimErrorKind::StepBudget);
         }
         let late = |(deadline, budget): (f64, TimeBudget)| (budget.clock)() > deadline;

@@ -68,23 +68,29 @@ function drawFit(g) {
   }
   DATA.x.forEach((x, k) => f.image.append(svg("circle", { cx: f.px(x), cy: f.py(DATA.y[k]), r: 3.5, fill: "var(--blue)" })));
   const sum = drawn.reduce((total, y, k) => total + (y - DATA.y[k]) ** 2, 0);
-  const text = drawn.length ? "Dots: measured; line: the best of generation " + (g + 1) + "; sum of the squared distances (red): " + short(sum) : "Dots: measured. Nothing has been compared with them yet.";
+  const text = drawn.length ? "Dots: measured; line: the best of generation " + number(g) + "; sum of the squared distances (red): " + short(sum) : "Dots: measured. Nothing has been compared with them yet.";
   f.image.setAttribute("aria-label", text);
   note("fit", text);
   at("fit").prepend(f.image);
 }
 
+// The curve ends at the generation that is shown, or at the one before while its fitness is not known;
+// how it goes on is drawn in grey when it is asked for.
 function showCurve(step) {
-  once("curve", step.g, () => drawCurve(step));
+  const last = number(step.g) - (known(step, "fitness") ? 0 : 1);
+  once("curve", [step.g, last, at("future").checked].join(), () => drawCurve(step, last));
 }
-function drawCurve(step) {
-  const points = DATA.curve.filter(point => !failed(point[1]) && point[1] > 0);
-  if (points.length < 2) return note("curve", "There is no curve of less than two generations.");
+function drawCurve(step, last) {
+  const future = at("future").checked;
+  const points = DATA.curve.filter(point => !failed(point[1]) && point[1] > 0 && (future || point[0] <= last));
+  if (points.length < 2) return note("curve", "The curve begins with the second generation.");
   const f = frame(points.map(p => p[0]), points.map(p => p[1]), "generation", "best fitness (logarithmic)", false, true);
-  f.image.append(svg("path", { d: path(points.map(p => p[0]), points.map(p => p[1]), f), fill: "none", stroke: "var(--blue)", "stroke-width": 2 }));
-  const x = f.px(step.g + 1);
+  const line = (part, stroke) => part.length && f.image.append(svg("path", { d: path(part.map(p => p[0]), part.map(p => p[1]), f), fill: "none", stroke, "stroke-width": 2 }));
+  if (future) line(points.filter(p => p[0] >= last), "var(--line)");
+  line(points.filter(p => p[0] <= last), "var(--blue)");
+  const x = f.px(Math.min(number(step.g), points[points.length - 1][0]));
   f.image.append(svg("line", { x1: x, y1: 24, x2: x, y2: 260, stroke: "var(--orange)", "stroke-width": 2, "stroke-dasharray": "4 3" }));
-  f.image.setAttribute("aria-label", "best fitness over the generations, generation " + (step.g + 1) + " is marked");
+  f.image.setAttribute("aria-label", "best fitness over the generations, generation " + number(step.g) + " is marked");
   at("curve").replaceChildren(f.image);
 }
 
@@ -125,7 +131,7 @@ function drawLandscape(a, b, last) {
     else f.image.append(svg("circle", { cx: x, cy: y, r: 4, fill: colour(shade(fitness)), stroke: "var(--ink)" }));
   });
   const text = last < 0 ? "Nothing has been simulated yet." :
-    "Each field: the best that was simulated there so far, the lighter, the fitter; empty fields have not been tried or all failed there. Dots: generation " + (last + 1) + "; crosses failed. The other parameters differ from dot to dot.";
+    "Each field: the best that was simulated there so far" + (DATA.of > DATA.generations.length ? " (in the generations on this page)" : "") + ", the lighter, the fitter; empty fields have not been tried or all failed there. Dots: generation " + number(last) + "; crosses failed. The other parameters differ from dot to dot.";
   f.image.setAttribute("aria-label", text);
   note("landscape", text);
   at("landscape").prepend(f.image);
@@ -165,6 +171,10 @@ function drawFamily(which) {
 
 const percent = value => (value < 10 ? value.toPrecision(2) : Math.round(value)) + " %";
 function showTell() {
+  const isEnd = current === DATA.steps.length - 1;
+  once("tell", isEnd, () => isEnd ? drawTell() : note("tell", "What the data can tell is said at the last step."));
+}
+function drawTell() {
   const result = DATA.result;
   if (!result || !Array.isArray(result.parameters) || !result.script) return note("tell", "The run has left no report.");
   const table = document.createElement("table");

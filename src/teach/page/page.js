@@ -52,6 +52,11 @@ function part(value, j) {
 
 // Which steps begin a generation; the sliders are one for the generation and one for its steps.
 const STARTS = DATA.generations.map((_, g) => DATA.steps.findIndex(step => step.g === g));
+// Long runs: not all generations are on the page. Their numbers count from 1.
+const number = g => DATA.generations[g].number;
+const follows = g => g + 1 < DATA.generations.length && number(g + 1) === number(g) + 1 ? DATA.generations[g + 1] : null;
+// The last generation on the page that is not behind the one of this number.
+const upTo = wanted => DATA.generations.reduce((found, generation, g) => generation.number <= wanted ? g : found, 0);
 const stepsOf = g => (g + 1 < STARTS.length ? STARTS[g + 1] : DATA.steps.length) - STARTS[g];
 
 function go(step, keepLink) {
@@ -89,27 +94,63 @@ function once(id, key, draw) {
   shown[id] = key;
   draw();
 }
+// Predictions: which steps were answered, and how many of the answers were right.
+const answered = new Map();
+const waits = () => at("predicting").checked && DATA.steps[current].question && !answered.has(current);
+function isRight(answer, text) {
+  const said = text.trim().toLowerCase();
+  if (answer.Individuals) {
+    const named = [...new Set((said.match(/\d+/g) || []).map(Number))].sort((a, b) => a - b);
+    return named.join() === answer.Individuals.join();
+  }
+  if (answer.Letters !== undefined) return said.replace(/[^a-z]/g, "") === answer.Letters;
+  return said[0] === (answer.Decision ? "y" : "n");
+}
+const solution = answer => answer.Individuals ? answer.Individuals.join(" ") : answer.Letters !== undefined ? answer.Letters : answer.Decision ? "yes" : "no";
+function predict(event) {
+  event.preventDefault();
+  if (!waits() || !at("answer").value.trim()) return;
+  const { answer } = DATA.steps[current].question;
+  answered.set(current, isRight(answer, at("answer").value));
+  at("answer").value = "";
+  show();
+}
+// While a prediction is awaited, the step before is what is drawn.
+function showPrediction(step) {
+  const right = [...answered.values()].filter(Boolean).length;
+  const isWaiting = waits();
+  at("prediction").hidden = !at("predicting").checked || !step.question;
+  at("answer").disabled = at("predict").disabled = !isWaiting;
+  const verdict = !answered.has(current) ? "" : answered.get(current) ? "Right. " : "No: the answer is " + solution(step.question.answer) + ". ";
+  at("score").textContent = verdict + (answered.size ? right + " of " + answered.size + " correct" : "");
+  if (isWaiting) at("text").textContent = step.question.text;
+}
 function show() {
   const step = DATA.steps[current];
   const place = current - STARTS[step.g];
   at("slider").max = stepsOf(step.g);
   at("slider").value = place + 1;
   at("step").textContent = (place + 1) + " of " + stepsOf(step.g);
-  at("generation").value = at("generations").value = step.g + 1;
-  at("title").textContent = "Generation " + (step.g + 1) + " of " + DATA.of + ": " + step.title;
+  at("generation").value = number(step.g);
+  at("generations").value = step.g + 1;
+  at("generations").setAttribute("aria-valuetext", "generation " + number(step.g));
+  at("title").textContent = (DATA.generations[step.g].call ? "Call " : "Generation ") + number(step.g) + " of " + DATA.of + ": " + step.title;
   at("text").textContent = step.text;
   at("link").href = "#step=" + (current + 1);
   at("first").disabled = at("back").disabled = current === 0;
   at("previous-generation").disabled = current === 0;
   at("next").disabled = at("last").disabled = current === DATA.steps.length - 1;
   at("next-generation").disabled = step.g + 1 >= STARTS.length;
+  showPrediction(step);
+  const drawn = waits() && current > 0 ? DATA.steps[current - 1] : step;
   showScript(step);
-  showPopulation(step);
-  showDrawing(step);
-  showFit(step);
-  showCurve(step);
-  showLandscape(step);
-  showFamily(step);
+  showPopulation(drawn);
+  showDrawing(drawn);
+  showFit(drawn);
+  showCurve(drawn);
+  showLandscape(drawn);
+  showFamily(drawn);
+  showTell();
 }
 
 function previousGeneration() {
@@ -139,9 +180,10 @@ function begin() {
     at(KEYS[event.key]).click();
   });
   at("slider").addEventListener("input", event => go(STARTS[DATA.steps[current].g] + Number(event.target.value) - 1));
-  at("generations").max = at("generation").max = DATA.generations.length;
+  at("generations").max = DATA.generations.length;
+  at("generation").max = DATA.of;
   at("generations").addEventListener("input", event => goGeneration(Number(event.target.value) - 1));
-  at("generation").addEventListener("change", event => goGeneration(Number(event.target.value) - 1));
+  at("generation").addEventListener("change", event => goGeneration(upTo(Number(event.target.value))));
   for (const id of ["across", "up"]) {
     DATA.parameters.forEach((_, j) => at(id).append(new Option(name(j), j)));
     at(id).addEventListener("change", () => showLandscape(DATA.steps[current]));
@@ -151,8 +193,10 @@ function begin() {
   at("up").value = Math.min(1, DATA.parameters.length - 1);
   const left = DATA.of - DATA.generations.length;
   at("subject").textContent = DATA.model + ": " + DATA.parameters.map((_, j) => titled(j)).join(", ") +
-    (left > 0 ? " - the steps of the first " + DATA.generations.length + " of " + DATA.of + " generations" : "");
-  showTell();
+    (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, the largest improvements, and the last" : "");
+  at("prediction").addEventListener("submit", predict);
+  at("predicting").addEventListener("change", () => show());
+  at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   follow();
   window.addEventListener("hashchange", follow);
 }

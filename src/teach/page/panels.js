@@ -34,6 +34,7 @@ function cameAs(origin) {
   if (origin.random) return "drawn at random";
   if (origin.elite !== undefined) return "elite, was " + (origin.elite + 1);
   const changed = origin.mutated.length ? ", mutated in " + origin.mutated.map(name).join(", ") : "";
+  if (origin.was !== undefined) return "was " + (origin.was + 1) + changed;
   return "child of " + (origin.of[0] + 1) + " and " + (origin.of[1] + 1) + changed;
 }
 
@@ -49,22 +50,28 @@ function showPopulation(step) {
   const width = made ? WIDE * 0.34 : WIDE - 150;
   const right = WIDE - width - 20;
   const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
-  const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (24 + rows * height + 4), role: "group", "aria-label": "population of generation " + (step.g + 1) });
-  const heading = "generation " + (step.g + 1) + (known(step, "selection") ? ", best first" : "");
+  const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (40 + rows * height + 4), role: "group", "aria-label": "population of generation " + number(step.g) });
+  const heading = "generation " + number(step.g) + (known(step, "selection") ? ", best first" : "");
   image.append(label(44, 14, heading));
-  order.forEach((k, place) => image.append(individual(present(step, generation, k), 44, 20 + place * height, width, height)));
+  // The names of the genes above their columns, where there is room for them.
+  const cell = width / generation.n;
+  for (let j = 0; j < generation.n; j++) {
+    const text = name(j).length * 6.5 > cell ? name(j).slice(-Math.max(1, Math.floor(cell / 6.5))) : name(j);
+    image.append(label(44 + (j + 0.5) * cell, 30, text, { "text-anchor": "middle", "font-size": 11, class: "remark" }));
+  }
+  order.forEach((k, place) => image.append(individual(present(step, generation, k), 44, 36 + place * height, width, height)));
   if (step.title === "selection" && generation.parents < count) {
-    const y = 19.5 + generation.parents * height;
+    const y = 35.5 + generation.parents * height;
     image.append(svg("line", { class: "cut", x1: 20, y1: y, x2: 44 + width + 90, y2: y, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
   }
   if (made) {
-    image.append(label(right, 14, "generation " + (step.g + 2)));
+    image.append(label(right, 14, "generation " + (number(step.g) + 1)));
     made.forEach((child, row) => {
-      const y = 20 + row * height;
+      const y = 36 + row * height;
       const strong = concerns(step, generation, row);
       if (child) child.from.forEach((from, which) => {
         const place = order.indexOf(from);
-        if (place >= 0) image.append(svg("line", { x1: 44 + width + 8, y1: 20 + (place + 0.5) * height, x2: right - 26, y2: y + 0.5 * height,
+        if (place >= 0) image.append(svg("line", { x1: 44 + width + 8, y1: 36 + (place + 0.5) * height, x2: right - 26, y2: y + 0.5 * height,
           stroke: child.from.length < 2 ? "var(--ink)" : which ? "var(--orange)" : "var(--blue)", "stroke-width": strong ? 2.5 : 0.7, "stroke-dasharray": which ? "6 3" : "none", opacity: strong ? 1 : 0.35 }));
       });
       image.append(child ? individual(child, right, y, width, height) : svg("rect", { x: right, y, width: width - 1, height: height - 1, fill: "none", stroke: "var(--line)" }));
@@ -101,7 +108,7 @@ function present(step, generation, k) {
 // The rows of the next generation as far as the step has made them; null where nothing stands yet.
 function offspring(step, generation) {
   const n = generation.n, elites = generation.elites || 0;
-  const next = DATA.generations[step.g + 1];
+  const next = follows(step.g);
   const children = generation.children ? generation.children.length / n : 0;
   const rows = Math.max(children, next ? next.genes.length / n : 0);
   const second = step.title === "crossover" ? mate(step.of, generation.parents) : 0;
@@ -127,10 +134,11 @@ function child(generation, row, mutated) {
   const n = generation.n, elites = generation.elites || 0, rank = row - elites, order = generation.order;
   const values = genome(mutated ? generation.after : generation.children, n, row);
   const crown = rank < 0;
-  const from = crown ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
+  const alone = !generation.points;
+  const from = crown || alone ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
   const u = mutated && !crown ? genome(generation.u, n, row) : [];
   const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
-  const origin = crown ? { elite: from[0] } : { of: from, mutated: changed };
+  const origin = crown ? { elite: from[0] } : alone ? { was: from[0], mutated: changed } : { of: from, mutated: changed };
   const genes = values.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
   return { number: row, values, from, crown, changed, text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
 }

@@ -2,7 +2,7 @@
 
 use super::{Screen, View, compare, inspect, step_panel};
 use crate::teach::explain::explain;
-use crate::teach::plain::title;
+use crate::teach::plain::{place_in_run, title};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -22,8 +22,8 @@ f                 follow an individual through the generations
 i                 inspect the simulation of an individual
 u                 continue until a condition is met
 w                 what if: run again with a change from here on, and compare
+j k               further down in the population, further up
 q                 end
-
 Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
 Each block is a gene: · low, █ high within this generation.";
 
@@ -57,8 +57,8 @@ fn heading(screen: &Screen) -> Line<'static> {
     let walk = &screen.walk;
     let (at, of) = walk.progress();
     let text = format!(
-        "Generation {} of {}, step {} of {of}: {}",
-        walk.number() + 1,
+        "{} of {}, step {} of {of}: {}",
+        place_in_run(walk),
         walk.trace().generations.len(),
         at + 1,
         title(walk.step())
@@ -82,14 +82,23 @@ fn titled(title: &str) -> Block<'_> {
 }
 
 fn step(screen: &Screen, frame: &mut Frame, area: Rect) {
+    let width = panel_width(screen, area.width);
     let [left, right] =
-        Layout::horizontal([Constraint::Min(20), Constraint::Length(42)]).areas(area);
+        Layout::horizontal([Constraint::Min(20), Constraint::Length(width)]).areas(area);
     script(screen, frame, left);
-    let (lines, shown) = step_panel::lines(screen);
+    let (lines, shown) = step_panel::lines(screen, right.width.saturating_sub(2));
     let height = usize::from(right.height.saturating_sub(2));
-    let offset = if shown >= height { shown + 1 - height } else { 0 };
+    let needed = if shown >= height { shown + 1 - height } else { 0 };
+    // No further than to the last row.
+    let offset = (needed + screen.scrolled).min(lines.len().saturating_sub(height));
     let panel = Paragraph::new(lines).block(titled(" population ")).scroll((offset as u16, 0));
     frame.render_widget(panel, right);
+}
+
+/// Columns of the panel: more than 42 where the genes are numbers then and the script keeps 44.
+fn panel_width(screen: &Screen, all: u16) -> u16 {
+    let numbers = step_panel::width_of_numbers(screen) + 2;
+    if numbers + 44 <= all { numbers.max(42) } else { 42 }
 }
 
 /// The lines around the current one.

@@ -84,6 +84,8 @@ pub struct Screen {
     /// Generation and individual that were simulated again, and their curve or why there is none.
     again: Option<(usize, usize, Result<Vec<f64>, String>)>,
     quiz: Option<Quiz>,
+    /// How many rows of the population are above the panel.
+    scrolled: usize,
     /// What the last key has led to, where that is not plain to see.
     message: String,
     colour: bool,
@@ -103,6 +105,7 @@ impl Screen {
             unknown: None,
             again: None,
             quiz: None,
+            scrolled: 0,
             message,
             colour,
         }
@@ -130,6 +133,8 @@ impl Screen {
             Key::Char('q') => return false,
             Key::Char('g' | 'f' | 'i' | 'u' | 'w') => self.prompt = Prompt::of(key),
             Key::Char('?' | 'h') => self.view = View::Help,
+            Key::Char('j') => self.scroll(1),
+            Key::Char('k') => self.scroll(-1),
             _ => self.step(key),
         }
         true
@@ -190,6 +195,12 @@ impl Screen {
             false => (self.walk.trace(), trace),
         };
         Some(Branches { original, changed, generation: *generation, change })
+    }
+
+    /// Moves the panel over the rows of the population.
+    fn scroll(&mut self, rows: isize) {
+        let last = step_panel::lines(self, 0).0.len().saturating_sub(1);
+        self.scrolled = self.scrolled.saturating_add_signed(rows).min(last);
     }
 
     fn step(&mut self, key: Key) {

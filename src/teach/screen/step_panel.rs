@@ -8,13 +8,23 @@ use crate::teach::step::{Phase, Step};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
-/// Lines of the panel, and the one that should be seen.
-pub fn lines(screen: &Screen) -> (Vec<Line<'static>>, usize) {
+/// Columns of a row before its genes, and of one gene as a number.
+const BEFORE: u16 = 18;
+const NUMBER: u16 = 11;
+
+/// Columns of the population with its genes as numbers.
+pub fn width_of_numbers(screen: &Screen) -> u16 {
+    let n = u16::try_from(screen.walk.generation().n_genes).unwrap_or(u16::MAX);
+    NUMBER.saturating_mul(n).saturating_add(BEFORE)
+}
+
+/// Lines of the panel, `width` columns wide, and the one that should be seen.
+pub fn lines(screen: &Screen, width: u16) -> (Vec<Line<'static>>, usize) {
     let walk = &screen.walk;
     match walk.step() {
         Step::Cross(rank) => (crossover(screen, rank), 0),
         Step::Mutate(row) => (mutation(screen, row), 0),
-        _ => population(screen),
+        _ => population(screen, width >= width_of_numbers(screen)),
     }
 }
 
@@ -24,7 +34,7 @@ impl Screen {
     }
 }
 
-fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
+fn population(screen: &Screen, as_numbers: bool) -> (Vec<Line<'static>>, usize) {
     let walk = &screen.walk;
     let renewed = matches!(walk.step(), Step::Renew | Step::Complete(_));
     let generation = match walk.next_generation() {
@@ -40,7 +50,8 @@ fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
     };
     let selects = phase == Phase::Selecting;
     let parents = generation.sorted.as_ref().filter(|_| selects).map(|sorted| sorted.parents);
-    let mut lines = vec![Line::from(format!("  no    fitness  {}", names(screen)))];
+    let names = names(screen, as_numbers);
+    let mut lines = vec![Line::from(format!("  no    fitness  {names}"))];
     let mut shown = 0;
     for (place, &k) in order.iter().enumerate() {
         let followed = !renewed && screen.followed == Some(k);
@@ -58,7 +69,10 @@ fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
         let text = format!("{pointer}{}{:>3} {fitness:>10}  ", mark(generation, k, failed), k + 1);
         let style = if failed { screen.styled(Color::Red) } else { Style::new() };
         let mut spans = vec![Span::styled(text, style)];
-        spans.extend(shades(screen, generation, k));
+        spans.extend(match as_numbers {
+            true => numbers(screen, generation, k),
+            false => shades(screen, generation, k),
+        });
         if parents == Some(place) {
             lines.push(Line::from("- - - no parents from here on - - -"));
         }
@@ -77,18 +91,42 @@ fn mark(generation: &Generation, k: usize, failed: bool) -> char {
     }
 }
 
-/// The first letters of the parameters, over their columns.
-fn names(screen: &Screen) -> String {
-    let names = screen.walk.trace().subject.parameters.iter();
+/// The first letters of the parameters, over their columns; the last ones where there is more room,
+/// since the names of a model often begin alike.
+fn names(screen: &Screen, as_numbers: bool) -> String {
+    let n = screen.walk.generation().n_genes;
+    let names = screen.walk.trace().subject.parameters.iter().take(n);
+    if as_numbers {
+        let last = |name: &String| {
+            let skipped = name.chars().count().saturating_sub(10);
+            format!("{:>10} ", name.chars().skip(skipped).collect::<String>())
+        };
+        return names.map(last).collect();
+    }
     names.map(|name| format!("{:<3}", name.chars().take(2).collect::<String>())).collect()
+}
+
+/// The genes as numbers; changed ones are marked.
+fn numbers(screen: &Screen, generation: &Generation, k: usize) -> Vec<Span<'static>> {
+    let changed = changed(generation, k);
+    let number = |(j, gene): (usize, &f64)| match changed.contains(&j) {
+        true => Span::styled(format!("{:>10}*", short(*gene)), screen.styled(Color::Yellow)),
+        false => Span::raw(format!("{:>10} ", short(*gene))),
+    };
+    generation.genome(k).iter().enumerate().map(number).collect()
+}
+
+/// The genes of an individual that mutated when it came to be.
+fn changed(generation: &Generation, k: usize) -> &[usize] {
+    match generation.origins.get(k) {
+        Some(Origin::Child { mutated, .. }) => mutated,
+        _ => &[],
+    }
 }
 
 /// A block for each gene, fuller the higher it lies within the population; changed genes are marked.
 fn shades(screen: &Screen, generation: &Generation, k: usize) -> Vec<Span<'static>> {
-    let changed: &[usize] = match generation.origins.get(k) {
-        Some(Origin::Child { mutated, .. }) => mutated,
-        _ => &[],
-    };
+    let changed = changed(generation, k);
     let shade = |(j, gene): (usize, &f64)| {
         let column = || generation.genes.iter().skip(j).step_by(generation.n_genes.max(1));
         let low = column().copied().fold(f64::INFINITY, f64::min);

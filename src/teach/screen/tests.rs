@@ -59,6 +59,26 @@ fn keys_move() {
     assert!(first_line(&typed('u', "stop")).starts_with("Generation 3 of 3"));
 }
 
+/// On a wide terminal genes are numbers, and every row can be reached on a low one.
+#[test]
+fn the_population_uses_the_room_there_is() {
+    let text = |screen: &Screen, size: (u16, u16)| {
+        let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
+        terminal.draw(|frame| draw(screen, frame)).unwrap();
+        terminal.backend().to_string()
+    };
+    let mut screen = Screen::new(sample::walk(), false);
+    assert!(screen.press(Key::Right));
+    let genes = screen.walk.generation().genome(5);
+    let last = crate::teach::explain::short(genes[1]);
+    let low = text(&screen, (120, 16));
+    assert!(low.contains("slope") && !low.contains(&last), "{low}");
+    (0..20).for_each(|_| assert!(screen.press(Key::Char('j'))));
+    assert!(text(&screen, (120, 16)).contains(&last), "{}", text(&screen, (120, 16)));
+    (0..20).for_each(|_| assert!(screen.press(Key::Char('k'))));
+    assert_eq!(text(&screen, (120, 16)), low);
+}
+
 #[test]
 fn before_a_step_its_outcome_is_asked() {
     let mut screen = Screen::new(sample::walk(), false).with_quiz();

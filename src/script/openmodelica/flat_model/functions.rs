@@ -37,6 +37,10 @@ pub(super) fn function_text(function: &Function) -> String {
             statements.iter().for_each(|statement| text += &indented(&print::statement(statement)));
         }
         FunctionBody::External(external) => text += &format!("\n  {};\n", external_text(external)),
+        FunctionBody::PartialDerivative { of, by } => {
+            let by: Vec<&str> = by.iter().map(|input| input.as_str()).collect();
+            return format!("function {name} = der({of}, {});\n\n", by.join(", "));
+        }
         FunctionBody::RecordConstructor => {}
     }
     format!("{text}end {name};\n\n")

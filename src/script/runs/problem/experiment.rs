@@ -200,7 +200,7 @@ impl Source<'_> {
 /// What a simulation may cost.
 fn limit(session: &Session, entry: &ExperimentEntry, settings: &mut Settings) -> Result<(), Fault> {
     if let Some(steps) = entry.max_steps {
-        settings.max_steps = steps;
+        (settings.max_steps, settings.max_total_steps) = (steps, steps);
     }
     let Some(seconds) = entry.max_seconds else { return Ok(()) };
     if seconds.is_nan() || seconds <= 0.0 {

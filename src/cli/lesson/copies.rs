@@ -1,0 +1,122 @@
+//! The learner's folder: copies of the lessons, and what is passed.
+
+use crate::cli::{disk, named};
+use crate::lessons::{Lesson, Progress};
+use crate::syntax;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The file that says what is passed.
+const PROGRESS: &str = "progress.toml";
+
+/// The learner's folder.
+pub(super) struct Copies<'a> {
+    /// Where it is.
+    pub folder: &'a Path,
+}
+
+impl Copies<'_> {
+    /// A file of the learner.
+    pub(super) fn file(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// All files of a lesson: their names and how they are shipped.
+    fn shipped(lesson: &Lesson) -> impl Iterator<Item = (&str, &str)> {
+        let companions = lesson.companions.iter().map(|(name, text)| (&**name, &**text));
+        companions.chain([(&*lesson.file, &*lesson.text)])
+    }
+
+    /// Copies the files of a lesson that are not there yet; whether the script was among them.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be written.
+    pub(super) fn make(&self, lesson: &Lesson) -> Result<bool, String> {
+        let is_new = !self.file(&lesson.file).exists();
+        for (name, text) in Self::shipped(lesson) {
+            if !self.file(name).exists() {
+                self.write(name, text)?;
+            }
+        }
+        Ok(is_new)
+    }
+
+    /// Keeps the learner's files under other names and copies the unsolved ones; which is kept
+    /// where. A file without changes is not kept.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be read or written.
+    pub(super) fn reset(&self, lesson: &Lesson) -> Result<Vec<(PathBuf, PathBuf)>, String> {
+        let mut kept = Vec::new();
+        for (name, text) in Self::shipped(lesson) {
+            let file = self.file(name);
+            if file.exists() {
+                let own = named::read(&file).map_err(|error| failed(&file, &error))?;
+                if own != text.as_bytes() {
+                    let beside = self.file(&format!("{name}.old"));
+                    disk::write_named(&beside, &own).map_err(|error| failed(&beside, &error))?;
+                    kept.push((file, beside));
+                }
+            }
+            self.write(name, text)?;
+        }
+        Ok(kept)
+    }
+
+    /// The texts of the learner's files: the script, and the others with their names. As scripts
+    /// are read: in UTF-8 or Latin-1.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be read.
+    pub(super) fn read(&self, lesson: &Lesson) -> Result<(String, Vec<(String, String)>), String> {
+        let text = |name: &str| {
+            let file = self.file(name);
+            let bytes = named::read(&file).map_err(|error| failed(&file, &error))?;
+            Ok::<_, String>(syntax::decode(&bytes).0)
+        };
+        let companions = lesson.companions.iter();
+        let companions = companions.map(|(name, _)| Ok((name.clone(), text(name)?)));
+        Ok((text(&lesson.file)?, companions.collect::<Result<_, String>>()?))
+    }
+
+    /// What is passed; nothing where there is no file yet.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read.
+    pub(super) fn progress(&self) -> Result<Progress, String> {
+        let file = self.file(PROGRESS);
+        if !file.exists() {
+            return Ok(Progress::default());
+        }
+        let read = named::read_text(&file).map_err(|error| error.to_string());
+        let progress = read.and_then(|text| Progress::read(&text));
+        progress.map_err(|error| {
+            let file = file.display();
+            format!("`{file}`: {error}\n = help: correct it, or remove it to begin again")
+        })
+    }
+
+    /// Writes what is passed.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn keep(&self, progress: &Progress) -> Result<(), String> {
+        self.write(PROGRESS, &progress.text())
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<(), String> {
+        let file = self.file(name);
+        let folders = file.parent().map_or(Ok(()), disk::create_named_folders);
+        let written = folders.and_then(|()| disk::write_named(&file, text.as_bytes()));
+        written.map_err(|error| failed(&file, &error))
+    }
+}
+
+fn failed(file: &Path, error: &io::Error) -> String {
+    format!("`{}`: {error}", file.display())
+}

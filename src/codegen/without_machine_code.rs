@@ -1,0 +1,19 @@
+//! In place of machine code where the feature `jit` is left out: tapes are always interpreted.
+
+use super::instruction::Register;
+use super::memory::Memory;
+use crate::codegen::tape::Tape;
+
+/// Tapes do not become machine code in any case.
+pub fn interpret() {}
+
+/// The machine code that a tape never gets.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MachineCode;
+
+impl MachineCode {
+    /// The tape must be run.
+    pub(crate) fn run(&self, _: &Tape, _: &[Register], _: &mut Memory, _: &mut [f64]) -> bool {
+        false
+    }
+}
