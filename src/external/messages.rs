@@ -23,7 +23,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
     Entry::pure("ModelicaIO_readRealMatrix", "ftAnnn", real_matrix),
-    Entry::writing("ModelicaIO_writeRealMatrix", "ttannnt->n", write_matrix),
+    Entry::confirming("ModelicaIO_writeRealMatrix", "ttannnt->n", write_matrix),
 ];
 
 fn error(call: &mut Call<'_>) -> Result<(), Fault> {

@@ -69,6 +69,9 @@ pub struct Entry {
     pub effect: Effect,
     /// Whether its results change in steps only, so that derivatives are zero.
     pub in_steps: bool,
+    /// Whether its result is 1 after every call that does not fail, and says no more than that it was
+    /// carried out.
+    pub confirms: bool,
     /// A file that the declaration must include for this function to be meant, where its name alone
     /// could be anybody's; empty otherwise.
     pub stands_for: &'static str,
@@ -95,7 +98,16 @@ impl Entry {
     /// A function without effects.
     const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
         let effect = Effect::None;
-        Entry { name, signature, effect, in_steps: false, stands_for: "", run, c: None }
+        Entry {
+            name,
+            signature,
+            effect,
+            in_steps: false,
+            confirms: false,
+            stands_for: "",
+            run,
+            c: None,
+        }
     }
 
     /// A function without effects whose results change in steps only.
@@ -111,6 +123,11 @@ impl Entry {
     /// A function that writes.
     pub(crate) const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
         Entry { effect: Effect::Writes, ..Entry::pure(name, signature, run) }
+    }
+
+    /// A function that writes, and whose result says that it has.
+    const fn confirming(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { confirms: true, ..Entry::writing(name, signature, run) }
     }
 
     /// The same for declarations that include a certain file.

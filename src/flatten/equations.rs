@@ -163,7 +163,10 @@ impl Instantiation<'_> {
             // Connections were collected before (see `connections`).
             EquationKind::Connect { .. } => return Ok(()),
             EquationKind::Call(call) if is_graph_statement(call) => return Ok(()),
-            EquationKind::Call(call) => EquationKind::Call(self.resolve(call, context, local)?),
+            EquationKind::Call(call) => {
+                let local = Local { is_equation: true, ..local.clone() };
+                EquationKind::Call(self.resolve(call, context, &local)?)
+            }
         };
         out.push(Equation { kind, comment: Default::default(), span: equation.span });
         Ok(())

@@ -239,6 +239,11 @@ impl Builder<'_> {
         value: &Expression,
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
+        if (self.place.in_when || self.place.initial)
+            && let Some(done) = self.confirmed(value, loops)?
+        {
+            return self.assign(target, Lowered::scalar(done), loops);
+        }
         let value = self.statement_lowering(loops).lower(value)?;
         self.assign(target, value, loops)
     }

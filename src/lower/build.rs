@@ -531,6 +531,10 @@ impl<'a> Builder<'a> {
                 "a call of `{name}` as an equation of a state of a state machine"
             )
             .at(call.span)),
+            _ if !self.place.initial && self.printing(call, loops)?.is_some() => {
+                self.warn_of_telling(&name, call.span);
+                Ok(())
+            }
             _ => self.call_statement(call, loops, self.place.initial),
         }
     }

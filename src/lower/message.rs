@@ -5,7 +5,7 @@ use super::equation::{Assertion, Level, Part};
 use super::errors::NOT_SUPPORTED;
 use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
-use super::function::prints;
+use super::function::{confirms, prints};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
@@ -85,6 +85,31 @@ impl Builder<'_> {
         Ok(Some(()))
     }
 
+    /// Says when a function prints that is called as an equation (not allowed by MLS §12.3, but the
+    /// standard library does it).
+    pub(super) fn warn_of_telling(&mut self, name: &str, span: Span) {
+        let warning = fault!(NOT_SUPPORTED, "`{name}` is called outside of when-clauses: it prints \
+            once at the start, or whenever its branch of an if-equation begins to be taken";
+            help: "call it in a when-clause, such as `when initial()`");
+        self.dae.warnings.push(warning.at(span).warning());
+    }
+
+    /// The value of a call that writes and confirms it, assigned where statements are carried out;
+    /// `None` for other expressions.
+    pub(super) fn confirmed(
+        &mut self,
+        value: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Option<Expr>, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &value.kind else { return Ok(None) };
+        let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
+        if !confirms(&user) {
+            return Ok(None);
+        }
+        self.effect(&user, arguments, value.span, loops)?;
+        Ok(Some(self.dae.pool.constant(1.0)))
+    }
+
     /// The call of a function without use of its value: what it asserts must hold, and where it
     /// `acts`, in when-clauses and initial sections, what it writes is written.
     pub(super) fn call_statement(
@@ -106,12 +131,16 @@ impl Builder<'_> {
         if acts {
             return self.effect(&user, arguments, call.span, loops);
         }
+        if user.impure {
+            return Err(fault!(NOT_SUPPORTED, "the impure function `{name}` is called outside of \
+                when-clauses and initial sections";
+                help: "call it in a when-clause, such as `when initial()`")
+            .at(call.span));
+        }
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         let outputs = lowering.user_call(&user, arguments, call.span)?;
-        if !user.impure {
-            self.unused(&outputs, call.span);
-        }
+        self.unused(&outputs, call.span);
         Ok(())
     }
 

@@ -152,7 +152,7 @@ impl Builder<'_> {
             let before = self.dae.assertions.len();
             match &equation.kind {
                 EquationKind::Equal { left, right } => {
-                    for pair in self.equal(left, right, equation.span, loops)? {
+                    for pair in self.when_equal(left, right, equation.span, loops)? {
                         let Some(variable) = self.dae.pool.as_variable(pair.left) else {
                             return Err(fault!(NOT_SUPPORTED,
                                 "an equation in a when-clause must determine a variable";
@@ -180,6 +180,23 @@ impl Builder<'_> {
             self.move_assertions(before, guard);
         }
         Ok(())
+    }
+
+    /// The scalar equations of `left = right`, of which the right side may be a call that writes.
+    fn when_equal(
+        &mut self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        match self.confirmed(right, loops)? {
+            Some(done) => {
+                let left = self.when_lowering(loops).scalar(left)?;
+                Ok(vec![Equation::new(left, done, span)])
+            }
+            None => self.equal(left, right, span, loops),
+        }
     }
 
     fn when_if(

@@ -157,3 +157,81 @@ fn what_is_written_has_no_value() {
     let (_, output, errors) = after_writer(&model, "");
     assert!(errors.contains("the function `W.write` writes"), "{output}{errors}");
 }
+
+/// The value of such a call says that it was carried out; files grow in the order of the statements.
+#[test]
+fn the_value_of_a_call_that_writes_can_be_assigned() {
+    let model = "model W
+  impure function write
+    input String file;
+    input String name;
+    input Real matrix[:, :];
+    input Boolean append = false;
+    output Boolean done;
+    external \"C\" done = ModelicaIO_writeRealMatrix(
+      file, name, matrix, size(matrix, 1), size(matrix, 2), append, \"4\");
+  end write;
+  Real x(start = 0, fixed = true);
+  discrete Boolean first, second, later(start = false, fixed = true), never(start = false, fixed = true);
+  Boolean other(start = false, fixed = true);
+equation
+  der(x) = 1;
+  when x > 0.5 then
+    other = write(\"other.mat\", \"A\", [x]);
+  end when;
+  when terminal() then
+    assert(first and second and later and other and not never, \"what was written\");
+  end when;
+algorithm
+  when initial() then
+    first := write(\"all.mat\", \"A\", [1]);
+    second := write(\"all.mat\", \"B\", [2], append=true);
+  end when;
+  when x > 0.25 then
+    if x < 10 then
+      later := write(\"all.mat\", \"C\", [x], append=true);
+    else
+      never := write(\"never.mat\", \"A\", [x]);
+    end if;
+  end when;
+end W;";
+    let read = |file: &str, name: &str| format!("readMatrix(\"{file}\", \"{name}\", 1, 1)\n");
+    let all = read("all.mat", "A") + &read("all.mat", "B") + &read("all.mat", "C");
+    let (code, output, errors) = after_writer(model, &(all + &read("other.mat", "A")));
+    assert_eq!((code, errors.as_str()), (0, ""), "{output}");
+    // Events lie closely behind the instants of their relations.
+    for value in ["[1.0]", "[2.0]", "[0.25", "[0.5"] {
+        assert!(output.contains(value), "{value} in {output}");
+    }
+    let (_, _, errors) = after_writer(model, &read("never.mat", "A"));
+    assert!(errors.contains("never.mat"), "a branch that is not taken writes nothing: {errors}");
+    // In a part of an expression nobody could tell when it is carried out.
+    let part = model.replace("other = write(", "other = x > 3 and write(");
+    let (code, _, errors) = after_writer(&part, "");
+    assert!(code != 0 && errors.contains("its value cannot be used"), "{errors}");
+}
+
+/// Not allowed by MLS §12.3, but in the standard library.
+#[test]
+fn what_an_equation_prints_is_told_once_and_warned_of() {
+    let model = MODEL.replace(
+        "  when initial() then\n    tell(\"start\");\n  end when;",
+        "  tell(\"x = \" + String(x + 2));\n  if x > 0.5 then tell(\"high at \" + String(x)); end if;",
+    );
+    let script = "openModel(\"P.mo\");\nsimulateModel(\"P\", stopTime = 1);";
+    let (code, output, errors) = run(&model, script);
+    assert_eq!(code, 0, "{output}{errors}");
+    assert_eq!(output.matches("x = ").count(), 1, "{output}");
+    assert!(output.contains("x = 2\n"), "{output}");
+    assert_eq!(output.matches("high at 0.5").count(), 1, "{output}");
+    assert!(errors.contains("it prints once at the start"), "{errors}");
+    // Files are not written there, and values of impure functions have no instant.
+    let file = model.replace("String(x + 2));", "String(x + 2), \"f.txt\");");
+    let (code, _, errors) = run(&file, script);
+    assert!(code != 0 && errors.contains("outside of when-clauses and initial"), "{errors}");
+    let nested = model.replace("end tell;", "end tell;
+  impure function draw output Real y; external \"C\" y = ModelicaRandom_impureRandom_xorshift1024star(1); end draw;")
+        .replace("String(x + 2)", "String(draw())");
+    let (code, _, errors) = run(&nested, script);
+    assert!(code != 0 && errors.contains("`P.draw` is impure"), "{errors}");
+}

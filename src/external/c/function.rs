@@ -69,6 +69,7 @@ pub fn entry(request: &Request, library: &Arc<dyn CLibrary>) -> &'static Entry {
             signature: Box::leak(declaration.signature().into_boxed_str()),
             effect: declaration.effect,
             in_steps: declaration.effect != Effect::None,
+            confirms: false,
             stands_for: "",
             run: unreachable_in_rust,
             c: Some(Box::leak(Box::new(function))),

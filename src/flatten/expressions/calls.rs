@@ -2,6 +2,7 @@
 //! functions their full names.
 
 use crate::diag::Diagnostic;
+use crate::eval::Function;
 use crate::fault;
 use crate::flatten::errors::NOT_SUPPORTED;
 use crate::flatten::expressions::local::Local;
@@ -12,6 +13,7 @@ use crate::flatten::lookup::types::Type;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// A call as an expression.
@@ -121,9 +123,10 @@ impl Instantiation<'_> {
             }
             _ => name,
         };
-        let impure =
-            self.functions.table.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && !local.impure && in_model {
+        let called = self.functions.table.get(&name).and_then(Option::as_ref);
+        let is_refused =
+            |f: &Arc<Function>| f.impure && !(local.is_equation && f.outputs.is_empty());
+        if called.is_some_and(is_refused) && !local.impure && in_model {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure; calls of impure functions in models \
                                        are not supported yet";

@@ -21,6 +21,8 @@ pub struct Local {
     /// Whether impure functions may be called: in parameters, initial sections and when-clauses
     /// (MLS §12.3).
     pub impure: bool,
+    /// Whether the call at hand is an equation: an impure function without outputs may then be called.
+    pub is_equation: bool,
     /// Whether names are flat paths, to which protected components are no secret.
     pub flat: bool,
 }

@@ -47,6 +47,15 @@ pub(super) fn is_object(component: &FunctionComponent) -> bool {
     matches!(component.value_type, ValueType::ExternalObject(_))
 }
 
+/// Whether a function writes, and its only output says that it has: see [`Entry::confirms`].
+///
+/// [`Entry::confirms`]: crate::external::Entry::confirms
+pub(in crate::lower) fn confirms(function: &Function) -> bool {
+    let FunctionBody::External(clause) = &function.body else { return false };
+    let is_confirmed = c_function::in_rust(function, clause).is_some_and(|entry| entry.confirms);
+    is_confirmed && clause.output.is_some() && function.outputs.len() == 1
+}
+
 /// Whether a function does nothing but to print its first argument.
 pub(in crate::lower) fn prints(function: &Function) -> bool {
     match &function.body {

@@ -23,7 +23,7 @@ mod single_assignment;
 mod statements;
 mod target;
 
-pub(super) use external_kinds::prints;
+pub(super) use external_kinds::{confirms, prints};
 pub(super) use instances::Instances;
 pub(super) use inverse::inverts;
 pub(super) use results::CallResults;
