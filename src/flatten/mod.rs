@@ -90,7 +90,14 @@ pub fn flatten_unbalanced(
         .unwrap_or_else(|error| Err(vec![error]))
 }
 
+/// Where there are no threads (browsers), the stack is the one that the program was linked with.
+#[cfg(target_family = "wasm")]
+fn on_deep_stack<T>(work: impl FnOnce() -> T) -> Result<T, Diagnostic> {
+    Ok(work())
+}
+
 /// Runs work on a thread whose stack holds the deepest nesting of expressions that is accepted.
+#[cfg(not(target_family = "wasm"))]
 fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);

@@ -6,7 +6,7 @@ use crate::diag::Fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
 use crate::registry::BAD_OPTION;
-use crate::{elementary, fault};
+use crate::{bail, elementary};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -38,7 +38,8 @@ pub struct Evaluation {
     /// What residuals are multiplied with, where there is a sum of squares.
     scales: Option<Vec<f64>>,
     n_objectives: usize,
-    pool: rayon::ThreadPool,
+    /// `None` where one thread is wanted and the system has no others (browsers).
+    pool: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Box<dyn Simulate>>>,
     rows: Vec<f64>,
     memory: Memory,
@@ -66,9 +67,11 @@ impl Evaluation {
     /// Those of the simulator's maker; no threads to be had.
     pub fn new(problem: &Problem, threads: usize) -> Result<Evaluation, Fault> {
         let threads = threads.max(1);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool =
-            pool.map_err(|error| fault!(BAD_OPTION, "cannot start {threads} threads: {error}"))?;
+        let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            Ok(pool) => Some(pool),
+            Err(_) if threads == 1 => None,
+            Err(error) => bail!(BAD_OPTION, "cannot start {threads} threads: {error}"),
+        };
         let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
@@ -163,7 +166,7 @@ impl Evaluation {
             return single.map_or(Vec::new(), |one| self.with_jacobians(problem, &one).objectives);
         }
         let mut row = vec![f64::NAN; self.measured.len()];
-        self.pool.install(|| self.one(problem, genome, &mut row).0)
+        self.on_threads(|| self.one(problem, genome, &mut row).0)
     }
 
     fn with_jacobians(&self, problem: &Problem, batch: &Genomes) -> Answered {
@@ -230,7 +233,7 @@ impl Evaluation {
         rows.resize(wanted.len() * points, f64::NAN);
         let mut outcomes: Vec<(Vec<f64>, Option<Failed>)> = Vec::with_capacity(wanted.len());
         let evaluate = |(row, &k): (&mut [f64], &usize)| self.one(problem, batch.row(k), row);
-        self.pool.install(|| {
+        self.on_threads(|| {
             rows.par_chunks_mut(points).zip(&wanted).map(evaluate).collect_into_vec(&mut outcomes);
         });
         for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
@@ -281,7 +284,7 @@ impl Evaluation {
             worker.scale_tolerance(self.tolerance);
             found.map(|()| row)
         };
-        self.pool.install(|| values.par_iter().map(one).collect())
+        self.on_threads(|| values.par_iter().map(one).collect())
     }
 
     /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
@@ -294,7 +297,7 @@ impl Evaluation {
             let mut worker = self.worker();
             job(number, worker.as_mut())
         };
-        self.pool.install(|| (0..count).into_par_iter().map(one).collect())
+        self.on_threads(|| (0..count).into_par_iter().map(one).collect())
     }
 
     /// Whether simulations have been cancelled.
@@ -319,7 +322,15 @@ impl Evaluation {
             }
             Ok(Linearization { simulated, derivatives, exact, refusal, simulations: 1 })
         };
-        self.pool.install(|| places.par_iter().map(one).collect())
+        self.on_threads(|| places.par_iter().map(one).collect())
+    }
+
+    /// Runs work on the threads of the pool.
+    fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 
     /// The simulator of this thread.
