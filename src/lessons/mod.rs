@@ -1,7 +1,7 @@
 //! Exercises about the genetic algorithm: scripts with a gap, hints, solutions, and checks.
 //!
 //! A [`Lesson`] is a script of about one page that a learner completes. [`check`] runs the learner's
-//! copy in memory, once as it is and again with other seeds, inputs or files ([`variant`]), and asks
+//! copy in memory, once as it is and again with other seeds, inputs or files (`variant`), and asks
 //! after each run what must hold. A [`Progress`] remembers what is passed. Nothing here touches files:
 //! the command line and a page give the texts.
 

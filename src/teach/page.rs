@@ -2,7 +2,7 @@
 //! page's own.
 //!
 //! A long run would make a page that no browser opens: the page has the steps of some generations
-//! only, those that [`kept`] names, and the curve of convergence of all.
+//! only, those that `kept` names, and the curve of convergence of all.
 
 use super::explain::explain;
 use super::family::{Member, family};
