@@ -689,7 +689,7 @@ fn partial_derivatives_need_scalar_real_inputs() {
              function g = der(f, {by}); Real a = g(1); end M;"
         );
         let error = super::hybrid::compiled(&text).map(|_| ()).expect_err("no derivative");
-        assert!(error.message.contains("is no scalar Real input of `M.f`"), "{}", error.message);
+        assert!(error.message.contains("is not a scalar Real input of `M.f`"), "{}", error.message);
     }
 }
 

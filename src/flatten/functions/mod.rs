@@ -3,5 +3,6 @@
 
 pub mod declared;
 pub mod defaults;
+mod partial_derivative;
 pub mod specialization;
 pub mod table;
