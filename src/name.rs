@@ -34,6 +34,18 @@ impl Ident {
     }
 }
 
+impl serde::Serialize for Ident {
+    fn serialize<S: serde::Serializer>(&self, target: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(target)
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Ident {
+    fn deserialize<D: serde::Deserializer<'de>>(source: D) -> Result<Ident, D::Error> {
+        <&str>::deserialize(source).map(Ident::new)
+    }
+}
+
 impl PartialEq for Ident {
     fn eq(&self, other: &Ident) -> bool {
         std::ptr::eq(self.0, other.0)
@@ -91,7 +103,18 @@ impl From<&str> for Ident {
 }
 
 /// A dotted name such as `Modelica.Units.SI`, with or without the leading dot of a global one.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[derive(
+    Debug,
+    Clone,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 pub struct Name {
     /// Whether it begins with a dot (MLS §5.3.3: looked up globally).
     pub global: bool,

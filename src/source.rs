@@ -3,6 +3,7 @@
 //! A [`Span`] is a pair of byte offsets into one text of a [`SourceMap`]; line and column are
 //! computed only when somebody looks at them.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Number of a text in its [`SourceMap`].
@@ -14,8 +15,56 @@ impl SourceId {
     pub const NONE: SourceId = SourceId(u32::MAX);
 }
 
+thread_local! {
+    /// The texts that the numbers in a file stand for, while it is read or written.
+    static TEXTS: RefCell<Vec<SourceId>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Writes something with places to a file: the result with the texts that the numbers of texts in
+/// the file stand for, by their positions.
+pub fn noting_texts<T>(write: impl FnOnce() -> T) -> (T, Vec<SourceId>) {
+    let former = TEXTS.take();
+    let result = write();
+    (result, TEXTS.replace(former))
+}
+
+/// Reads something with places from a file: the numbers of texts in it are positions in `texts`.
+pub fn with_texts<T>(texts: Vec<SourceId>, read: impl FnOnce() -> T) -> T {
+    let former = TEXTS.replace(texts);
+    let result = read();
+    TEXTS.set(former);
+    result
+}
+
+/// As a position: see [`noting_texts`].
+impl serde::Serialize for SourceId {
+    fn serialize<S: serde::Serializer>(&self, target: S) -> Result<S::Ok, S::Error> {
+        if *self == SourceId::NONE {
+            return u32::MAX.serialize(target);
+        }
+        let position = TEXTS.with_borrow_mut(|texts| {
+            let known = texts.iter().rposition(|text| text == self);
+            known.unwrap_or_else(|| {
+                texts.push(*self);
+                texts.len() - 1
+            })
+        });
+        (position as u32).serialize(target)
+    }
+}
+
+/// As the number of the text in this process: see [`with_texts`]. A text that is not among them has
+/// no places.
+impl<'de> serde::Deserialize<'de> for SourceId {
+    fn deserialize<D: serde::Deserializer<'de>>(source: D) -> Result<SourceId, D::Error> {
+        let number = u32::deserialize(source)?;
+        let known = TEXTS.with_borrow(|texts| texts.get(number as usize).copied());
+        Ok(known.unwrap_or(SourceId::NONE))
+    }
+}
+
 /// A half-open range of bytes `start..end` in one source text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Span {
     /// The text.
     pub source: SourceId,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub type Register = u32;
 
 /// One instruction; `d` is the register written, `a` and `b` are read.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "the fields are the registers named above")]
 pub enum Instruction {
     /// A number.
@@ -37,9 +37,20 @@ pub enum Instruction {
     /// 1 if the relation holds, otherwise 0.
     Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
     /// A function of one argument.
-    Unary { function: &'static Elementary, d: Register, a: Register },
+    Unary {
+        #[serde(with = "super::elementary::by_number")]
+        function: &'static Elementary,
+        d: Register,
+        a: Register,
+    },
     /// A function of two arguments.
-    Binary { function: &'static Elementary, d: Register, a: Register, b: Register },
+    Binary {
+        #[serde(with = "super::elementary::by_number")]
+        function: &'static Elementary,
+        d: Register,
+        a: Register,
+        b: Register,
+    },
     /// The offset of a subscript (from 1, at most `size`) times `stride` is added to `d`.
     Offset { d: Register, subscript: Register, size: u32, stride: u32 },
     /// The register `base` plus an offset.
@@ -63,7 +74,7 @@ pub enum Instruction {
 }
 
 /// A function for arguments of known sizes.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Code {
     /// Full name of the function.
     pub name: Arc<str>,
@@ -108,9 +119,10 @@ impl Code {
 }
 
 /// A call of an external function; slots are registers of the frame.
-#[derive(Clone)]
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct ExternalCall {
     /// The function.
+    #[serde(with = "crate::external::by_name")]
     pub entry: &'static Entry,
     /// Its arguments.
     pub arguments: Vec<Slot>,
@@ -125,7 +137,7 @@ impl std::fmt::Debug for ExternalCall {
 }
 
 /// A function that computes the derivatives of another.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Derivative {
     /// Its code: inputs are those of the function, followed by derivatives of inputs.
     pub function: u32,
@@ -142,13 +154,14 @@ pub struct Derivative {
 }
 
 /// All functions of a model; calls name them by position.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Functions {
     /// The functions.
     pub codes: Vec<Code>,
     /// Files that external functions read.
     pub files: Contents,
     /// External objects made so far.
+    #[serde(skip)]
     pub objects: Objects,
 }
 

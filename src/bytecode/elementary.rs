@@ -32,6 +32,25 @@ struct Slope {
     positions: Vec<u8>,
 }
 
+/// A function in a file: its number in the table.
+pub(super) mod by_number {
+    use super::{Elementary, FunctionId};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(
+        function: &&'static Elementary,
+        target: S,
+    ) -> Result<S::Ok, S::Error> {
+        function.id.serialize(target)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        source: D,
+    ) -> Result<&'static Elementary, D::Error> {
+        FunctionId::deserialize(source).map(Elementary::of)
+    }
+}
+
 static TABLE: LazyLock<FxHashMap<FunctionId, Elementary>> = LazyLock::new(|| {
     function::functions()
         .map(|(id, function)| {

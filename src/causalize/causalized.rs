@@ -4,7 +4,7 @@ use crate::lower::{Dae, Equation};
 use crate::symbolic::{Expr, VarId};
 
 /// A system in solving order.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct CausalizedDae {
     /// Variables, assertions, relations; equations as they were read.
     pub dae: Dae,
@@ -31,7 +31,7 @@ pub struct CausalizedDae {
 
 /// States of which each is one of several candidates, chosen anew when the constraints between the
 /// candidates do not determine the others well.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Selection {
     /// The Jacobian of the constraints in the candidates, by rows; fewer rows than columns.
     pub jacobian: Vec<Vec<Expr>>,
@@ -46,7 +46,7 @@ pub struct Selection {
 }
 
 /// Another name for a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Alias {
     /// The variable whose value it is.
     pub of: VarId,
@@ -55,7 +55,7 @@ pub struct Alias {
 }
 
 /// A part of the system that is solved at once.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Block {
     /// A variable and its value.
     Assignment(Assignment),
@@ -66,7 +66,7 @@ pub enum Block {
 }
 
 /// `variable := value`, from the equation of this number.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Assignment {
     /// The variable.
     pub variable: VarId,
@@ -77,7 +77,7 @@ pub struct Assignment {
 }
 
 /// A linear loop in closed form.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LinearLoop {
     /// What its equations are solved for at once.
     pub unknowns: Vec<VarId>,
@@ -89,7 +89,7 @@ pub struct LinearLoop {
 }
 
 /// A torn algebraic loop.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Loop {
     /// The iteration variables.
     pub iteration: Vec<VarId>,

@@ -3,6 +3,7 @@
 
 mod args;
 mod c_compiler;
+mod cache_folder;
 mod check;
 mod compare;
 mod comparison;
@@ -35,6 +36,7 @@ mod teach;
 mod teach_screen;
 mod terminal;
 mod test;
+mod translations;
 mod verify;
 mod world;
 

@@ -13,6 +13,11 @@ pub(super) struct Global {
     /// A folder with Modelica packages to load by name (repeatable; also MODELICAPATH)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub library: Vec<PathBuf>,
+    /// Translate models anew, and keep none for later [large ones are in
+    /// the folder `gapi` of the user's cache]
+    #[arg(long, global = true, env = "GAPI_NO_CACHE", hide_env = true)]
+    #[arg(value_parser = clap::builder::FalseyValueParser::new())]
+    pub no_cache: bool,
     /// Allow scripts and models to read files in this folder; without DIR, everywhere (repeatable)
     #[arg(long, global = true, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = EVERYWHERE, value_hint = ValueHint::DirPath, help_heading = ALLOWED)]

@@ -2,6 +2,7 @@
 
 use super::options::{EVERYWHERE, Global};
 use super::terminal::{self, Terminal};
+use super::translations;
 use super::world::SystemWorld;
 use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
@@ -23,6 +24,9 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     let current = session.world.current_dir();
     session.grant_models(&current);
     grant_asked(&mut session, global);
+    if !global.no_cache {
+        session.storage = translations::of_the_user();
+    }
     session
 }
 

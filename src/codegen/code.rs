@@ -5,14 +5,14 @@ use super::machine_code::MachineCode;
 use super::tape::Tape;
 
 /// A step of solving for all variables, the states (or nothing, at the start) given.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Step {
     Run(Tape),
     Solve(CompiledLoop),
 }
 
 /// A torn loop with its Jacobian.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledLoop {
     pub(crate) tape: Tape,
     pub(crate) unknowns: Vec<Register>,
@@ -25,7 +25,7 @@ pub(crate) struct CompiledLoop {
 }
 
 /// A frozen relation, compiled.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledRelation {
     pub(crate) register: Register,
     pub(crate) operator: crate::symbolic::RelationOperator,
@@ -34,7 +34,7 @@ pub(crate) struct CompiledRelation {
 }
 
 /// States chosen at run time, as registers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledSelection {
     /// The entries that are not always zero.
     pub(crate) jacobian: Outputs,
@@ -48,15 +48,16 @@ pub(crate) struct CompiledSelection {
 }
 
 /// Code with the registers of its results.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Outputs {
     pub(crate) tape: Tape,
     pub(crate) outputs: Vec<Register>,
+    #[serde(skip)]
     pub(crate) machine_code: MachineCode,
 }
 
 /// The condition that must hold, and the numbers in the message.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LogAssertion {
     /// Its number among all assertions, those at events behind the others.
     pub(crate) assertion: u32,

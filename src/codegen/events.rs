@@ -5,7 +5,7 @@ use super::instruction::Register;
 use crate::symbolic::VarId;
 
 /// The part of a program that acts at events alone.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Events {
     /// Solves for discrete variables as well; empty if there are none.
     pub(crate) steps: Vec<Step>,
@@ -48,7 +48,7 @@ pub(crate) struct Events {
 }
 
 /// A variable with its previous value.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Previous {
     pub(crate) of: VarId,
     pub(crate) register: Register,
@@ -61,7 +61,7 @@ pub(crate) struct Previous {
 }
 
 /// A rounding, compiled.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledRounding {
     pub(crate) register: Register,
     /// For an argument that is linear in time: its slope, and the register of the rest.
@@ -69,7 +69,7 @@ pub(crate) struct CompiledRounding {
 }
 
 /// `register = delay(value, time)`
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledDelay {
     pub(crate) register: Register,
     /// The expression, from states and values of events.
@@ -79,7 +79,7 @@ pub(crate) struct CompiledDelay {
 }
 
 /// A variable delay, or the content of a pipe.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledTransport {
     /// Where the value of a delay, or those at both ends of a pipe, are written.
     pub(crate) outputs: Vec<Register>,

@@ -1,13 +1,13 @@
 //! The instructions of tapes, and what they work on.
 
 use crate::symbolic::RelationOperator;
-use crate::symbolic::function::FunctionId;
+use crate::symbolic::function::{FunctionId, Value};
 
 /// A register.
 pub(crate) type Register = u32;
 
 /// One instruction; `d` is the register written.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Instruction {
     Move {
         d: Register,
@@ -66,6 +66,7 @@ pub(crate) enum Instruction {
         id: FunctionId,
         d: Register,
         a: Register,
+        #[serde(skip, default = "unlinked")]
         function: fn(f64) -> f64,
     },
     Binary {
@@ -73,6 +74,7 @@ pub(crate) enum Instruction {
         d: Register,
         a: Register,
         b: Register,
+        #[serde(skip, default = "unlinked_binary")]
         function: fn(f64, f64) -> f64,
     },
     /// The call of this number in the tape.
@@ -106,7 +108,37 @@ pub(crate) enum Instruction {
     },
 }
 
+/// In place of a function until [`Instruction::linked`].
+fn unlinked() -> fn(f64) -> f64 {
+    |_| f64::NAN
+}
+
+/// In place of a function until [`Instruction::linked`].
+fn unlinked_binary() -> fn(f64, f64) -> f64 {
+    |_, _| f64::NAN
+}
+
 impl Instruction {
+    /// An instruction read from a file with the function that it calls.
+    fn linked(self) -> Instruction {
+        match (self, self.function().map(|id| id.get().value)) {
+            (Instruction::Unary { id, d, a, .. }, Some(Value::Unary(function))) => {
+                Instruction::Unary { id, d, a, function }
+            }
+            (Instruction::Binary { id, d, a, b, .. }, Some(Value::Binary(function))) => {
+                Instruction::Binary { id, d, a, b, function }
+            }
+            (other, _) => other,
+        }
+    }
+
+    fn function(self) -> Option<FunctionId> {
+        match self {
+            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Some(id),
+            _ => None,
+        }
+    }
+
     /// Visits the registers read, but for those of calls and linear systems.
     pub(super) fn for_each_operand(&self, mut visit: impl FnMut(Register)) {
         match *self {
@@ -172,7 +204,7 @@ impl Instruction {
 
 /// A call of a function: its scalar outputs, or their derivatives for some inputs, are written to
 /// registers in a row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Call {
     pub(super) function: u32,
     pub(super) inputs: Box<[u32]>,
@@ -181,7 +213,7 @@ pub(super) struct Call {
 }
 
 /// Solves A x = b.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct LinearSolve {
     /// The workspace.
     pub(super) system: u32,
@@ -193,4 +225,12 @@ pub(super) struct LinearSolve {
     pub(super) d: Register,
     /// Whether b need not fit to a singular A.
     pub(super) is_slope: bool,
+}
+
+/// Instructions from a file, with the functions that they call.
+pub(super) fn read_linked<'de, D: serde::Deserializer<'de>>(
+    source: D,
+) -> Result<Vec<Instruction>, D::Error> {
+    let read: Vec<Instruction> = serde::Deserialize::deserialize(source)?;
+    Ok(read.into_iter().map(Instruction::linked).collect())
 }

@@ -12,22 +12,31 @@
 
 use super::instruction::Register;
 use super::memory::Memory;
+use super::pieces::{Piece, pieces};
 use super::routines::without_routines;
-use super::translation::translate;
+use super::translation::{Matrices, Part, translate};
 use super::upcalls::{Upcalls, Workspaces};
 use crate::bytecode::Functions;
 use crate::codegen::tape::Tape;
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{Linkage, Module, default_libcall_names};
+use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, OnceLock};
 
 /// Runs of a tape after which it is translated: a translation takes about as long as a thousand.
 const OFTEN: u32 = 1_000;
+/// The same for tapes longer than [`LONG`], whose translation is quicker: with `EngineV6`, whose
+/// Jacobian has 220,000 instructions, it takes as long as about 100 runs.
+const OFTEN_LONG: u32 = 100;
 /// Instructions beyond which the time of a translation matters more than the best code.
 const LONG: usize = 3_000;
-/// Tapes longer than this are not translated: the time that takes is more than linear.
-const LONGEST: usize = 100_000;
+/// Longer tapes are translated in pieces of at most this many instructions: the time that a
+/// translation takes is more than linear.
+const PIECE: usize = 20_000;
+/// A tape that cannot be cut is translated as a whole up to this length.
+const WHOLE: usize = 100_000;
+/// Tapes longer than this are not translated.
+const LONGEST: usize = 2_000_000;
 
 /// Whether no tape is translated.
 static INTERPRETED: AtomicBool = AtomicBool::new(false);
@@ -59,7 +68,8 @@ impl MachineCode {
             let function = function.as_ref().filter(|function| function.n_outputs <= out.len());
             return function.is_some_and(|function| function.call(memory, out));
         }
-        if self.runs.fetch_add(1, Ordering::Relaxed) == OFTEN {
+        let often = if tape.code.len() <= LONG { OFTEN } else { OFTEN_LONG };
+        if self.runs.fetch_add(1, Ordering::Relaxed) == often {
             let interpreted = INTERPRETED.load(Ordering::Relaxed);
             let functions = memory.calls.functions();
             let translated =
@@ -88,8 +98,11 @@ type Entry = unsafe extern "C" fn(*const f64, *mut f64, *mut Workspaces) -> f64;
 
 /// A function in memory of its own.
 pub(super) struct Function {
-    entry: Entry,
-    /// One more than the last register read.
+    /// More than one where the tape was cut into pieces: these write to registers.
+    entries: Vec<Entry>,
+    /// The registers of the outputs, where the tape was cut.
+    outputs: Vec<Register>,
+    /// One more than the last register read or written.
     n_registers: usize,
     n_outputs: usize,
     /// The machine code has addresses in it.
@@ -104,18 +117,18 @@ impl Function {
             without_routines(tape, LONGEST)?.len() + Upcalls::of(tape, functions)?.length();
         let code = (tape, outputs, functions);
         match length {
-            0..=LONG => Function::translated(code, "speed", "backtracking"),
+            0..=LONG => Function::translated(code, LONG, ["speed", "backtracking"]),
             // Better code would take too long.
-            _ if length <= LONGEST => Function::translated(code, "none", "single_pass"),
-            _ => None,
+            _ => Function::translated(code, PIECE, ["none", "single_pass"]),
         }
     }
 
-    /// Translates with options of Cranelift.
+    /// Translates in pieces of at most so many instructions, with options of Cranelift for
+    /// optimization and register allocation.
     fn translated(
         (tape, outputs, functions): (&Tape, &[Register], &Functions),
-        opt_level: &str,
-        regalloc_algorithm: &str,
+        longest: usize,
+        [opt_level, regalloc_algorithm]: [&str; 2],
     ) -> Option<Function> {
         let flags = [
             ("opt_level", opt_level),
@@ -126,23 +139,42 @@ impl Function {
         cranelift_native::builder().ok()?;
         let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
         let mut module = JITModule::new(builder);
-        let mut context = module.make_context();
         let instructions = without_routines(tape, LONGEST)?;
         let upcalls = Upcalls::of(tape, functions)?;
-        let code = (tape, outputs, &upcalls);
-        translate(code, &instructions, module.target_config(), &mut context)?;
-        let signature = &context.func.signature;
-        let id = module.declare_function("tape", Linkage::Export, signature).ok()?;
-        module.define_function(id, &mut context).ok()?;
-        module.clear_context(&mut context);
+        let whole = |instructions| vec![Piece { instructions, left: Vec::new() }];
+        let pieces = match pieces(&instructions, longest, outputs, (tape, &upcalls)) {
+            Some(pieces) => pieces,
+            None if instructions.len() <= WHOLE => whole(instructions),
+            None => return None,
+        };
+        let is_cut = pieces.len() > 1;
+        let mut matrices = Matrices::default();
+        let mut ids = Vec::new();
+        for (number, piece) in pieces.iter().enumerate() {
+            let places: Vec<(Register, usize)> = match is_cut {
+                true => piece.left.iter().map(|register| (*register, *register as usize)).collect(),
+                false => outputs.iter().copied().zip(0..).collect(),
+            };
+            let part = Part {
+                tape,
+                upcalls: &upcalls,
+                instructions: &piece.instructions,
+                outputs: &places,
+                keeps: is_cut,
+            };
+            ids.push(define(&mut module, &format!("tape_{number}"), part, &mut matrices)?);
+        }
         module.finalize_definitions().ok()?;
-        let address = module.get_finalized_function(id);
-        // SAFETY: the function was declared with the signature of `Entry` and lives as long as the
-        // module, which this value keeps.
-        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
+        let entry = |id: FuncId| {
+            let address = module.get_finalized_function(id);
+            // SAFETY: the function was declared with the signature of `Entry` and lives as long as
+            // the module, which the result keeps.
+            unsafe { std::mem::transmute::<*const u8, Entry>(address) }
+        };
         Some(Function {
-            entry,
-            n_registers: registers_read(tape, outputs),
+            entries: ids.into_iter().map(entry).collect(),
+            outputs: if is_cut { outputs.to_vec() } else { Vec::new() },
+            n_registers: registers_used(tape, outputs, &upcalls),
             n_outputs: outputs.len(),
             _upcalls: upcalls,
             module: Mutex::new(Some(module)),
@@ -154,29 +186,63 @@ impl Function {
         let (registers, mut workspaces) = Workspaces::of(memory);
         assert!(self.n_registers <= registers.len(), "registers are those the tape was made for");
         assert!(self.n_outputs <= out.len(), "there is room for every output");
-        // SAFETY: the code reads registers below `n_registers`, writes outputs below `n_outputs`, and
-        // hands the workspaces to its upcalls alone.
-        let check =
-            unsafe { (self.entry)(registers.as_ptr(), out.as_mut_ptr(), &raw mut workspaces) };
-        check == 0.0
+        let registers_start = registers.as_mut_ptr();
+        if let [entry] = self.entries[..] {
+            // SAFETY: the code reads registers below `n_registers`, writes outputs below
+            // `n_outputs`, and hands the workspaces to its upcalls alone.
+            let check = unsafe { entry(registers_start, out.as_mut_ptr(), &raw mut workspaces) };
+            return check == 0.0;
+        }
+        for entry in &self.entries {
+            // SAFETY: the code reads and writes registers below `n_registers`, and hands the
+            // workspaces to its upcalls alone.
+            let check = unsafe { entry(registers_start, registers_start, &raw mut workspaces) };
+            if check != 0.0 {
+                return false;
+            }
+        }
+        for (out, register) in out.iter_mut().zip(&self.outputs) {
+            *out = registers[*register as usize];
+        }
+        true
     }
+}
+
+/// Adds the code of a part of a tape to a module.
+fn define(
+    module: &mut JITModule,
+    name: &str,
+    part: Part,
+    matrices: &mut Matrices,
+) -> Option<FuncId> {
+    let mut context = module.make_context();
+    translate(part, matrices, module.target_config(), &mut context)?;
+    let signature = &context.func.signature;
+    let id = module.declare_function(name, Linkage::Export, signature).ok()?;
+    module.define_function(id, &mut context).ok()?;
+    module.clear_context(&mut context);
+    Some(id)
 }
 
 impl Drop for Function {
     fn drop(&mut self) {
         let module = self.module.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(module) = module.take() {
-            // SAFETY: `entry` is not called any more.
+            // SAFETY: the entries are not called any more.
             unsafe { module.free_memory() };
         }
     }
 }
 
 /// One more than the last register that a tape or its outputs mention.
-fn registers_read(tape: &Tape, outputs: &[Register]) -> usize {
+fn registers_used(tape: &Tape, outputs: &[Register], upcalls: &Upcalls) -> usize {
     let mut last: Register = 0;
     for instruction in &tape.code {
         instruction.for_each_operand(|register| last = last.max(register));
+        last = instruction.result().into_iter().fold(last, Register::max);
+        if let Some((d, results)) = upcalls.row(instruction, tape) {
+            last = last.max((d + results as Register).saturating_sub(1));
+        }
     }
     for solve in &tape.solves {
         let entries = solve.entries.iter().flatten().map(|(_, register)| *register);
@@ -288,9 +354,14 @@ mod tests {
             let (code, mut memory) = compiled(&pool, &outputs);
             let functions = Functions::default();
             let code_of = (&code.tape, &*code.outputs, &functions);
-            let best = Function::translated(code_of, "speed", "backtracking");
-            let quick = Function::translated(code_of, "none", "single_pass");
-            let functions = [best, quick].map(|f| f.expect("all of it can be translated"));
+            let best = Function::translated(code_of, LONG, ["speed", "backtracking"]);
+            let quick = Function::translated(code_of, LONG, ["none", "single_pass"]);
+            let whole = [best, quick].map(|f| f.expect("all of it can be translated"));
+            let cut = [5, 20, 60].map(|longest| {
+                Function::translated(code_of, longest, ["none", "single_pass"])
+            });
+            let cut = cut.map(|f| f.expect("all of it can be translated"));
+            let functions: Vec<Function> = whole.into_iter().chain(cut).collect();
             let mut out = vec![f64::NAN; outputs.len()];
             for (values, function) in values.iter().flat_map(|v| functions.iter().map(move |f| (v, f))) {
                 memory[..VARIABLES].copy_from_slice(values);
@@ -326,7 +397,7 @@ mod tests {
         let (code, mut memory) = compiled(&pool, &outputs);
         let functions = Functions::default();
         let code_of = (&code.tape, &*code.outputs, &functions);
-        let function = Function::translated(code_of, "speed", "backtracking");
+        let function = Function::translated(code_of, PIECE, ["speed", "backtracking"]);
         let function = function.expect("all of it can be translated");
         for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
             memory[0] = x;

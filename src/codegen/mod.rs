@@ -28,6 +28,8 @@ mod machine_code;
 mod machine_code;
 pub(crate) mod memory;
 pub(crate) mod noevent_relations;
+#[cfg(feature = "jit")]
+mod pieces;
 pub(crate) mod program;
 mod queries;
 #[cfg(feature = "jit")]
@@ -37,6 +39,7 @@ mod relation_groups;
 mod routines;
 pub(crate) mod sensitivity;
 pub(crate) mod sequence;
+mod stored;
 pub(crate) mod tape;
 pub(crate) mod tape_builder;
 #[cfg(feature = "jit")]

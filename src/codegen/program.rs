@@ -14,7 +14,7 @@ use crate::syntax::ast::CausalityPrefix;
 use std::sync::{Arc, OnceLock};
 
 /// A parameter that can be set between simulations.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ParameterInfo {
     /// Its full name.
     pub name: Arc<str>,
@@ -36,7 +36,7 @@ pub struct ParameterInfo {
 }
 
 /// A scalar variable of the model, aliases, parameters and constants included.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct VariableInfo {
     /// Its full name.
     pub name: Arc<str>,
@@ -74,7 +74,7 @@ impl VariableInfo {
 }
 
 /// Where the value of a variable is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Access {
     /// It is the simulated time.
     Time,
@@ -106,7 +106,7 @@ pub(crate) struct Differences {
 }
 
 /// A compiled model.
-#[derive(Debug)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct Program {
     pub(crate) sorted: CausalizedDae,
     pub(crate) registers: Registers,
@@ -160,6 +160,7 @@ pub struct Program {
     pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,
     /// What became of its relations inside `noEvent`.
+    #[serde(skip)]
     pub(super) literal: Literal,
 }
 

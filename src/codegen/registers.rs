@@ -10,11 +10,13 @@ use std::mem::Discriminant;
 use std::sync::Arc;
 
 /// The registers of a program: one for every variable, then constants and temporaries.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Registers {
     next: Register,
     n_variables: usize,
     constants: FxHashMap<u64, Register>,
+    /// Those of the system: see [`Registers::use_functions`].
+    #[serde(skip)]
     functions: Arc<Functions>,
     /// Workspaces of linear systems by matrix, and their sizes.
     workspaces: FxHashMap<Expr, u32>,
@@ -38,6 +40,11 @@ impl Registers {
             values: Vec::new(),
             hoisted: Hoisted::default(),
         }
+    }
+
+    /// Registers that were read from a file get their functions.
+    pub(super) fn use_functions(&mut self, functions: &Arc<Functions>) {
+        self.functions = functions.clone();
     }
 
     /// Sizes of the linear systems that tapes on these registers solve.
@@ -105,9 +112,11 @@ pub(super) enum Which {
 }
 
 /// The instructions moved.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Hoisted {
     pub(crate) tape: Tape,
+    /// Only saves work in programs that are compiled for the same registers later.
+    #[serde(skip)]
     pub(super) results: FxHashMap<Key, Register>,
     pub(super) fixed: Vec<bool>,
 }

@@ -11,8 +11,9 @@ use crate::codegen::instruction::{Call, Instruction, Register};
 use crate::elementary;
 
 /// A sequence of instructions.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Tape {
+    #[serde(deserialize_with = "super::instruction::read_linked")]
     pub(crate) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
     pub(super) solves: Vec<LinearSolve>,

@@ -27,14 +27,28 @@ use std::collections::BTreeSet;
 /// Sums of `0 · value` that are added to in turn.
 const CHECKS: usize = 4;
 
-/// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot
-/// be translated.
+/// What becomes one function: instructions of a tape, without routines, that jump to each other
+/// alone, and where values go.
+#[derive(Clone, Copy)]
+pub(super) struct Part<'a> {
+    pub(super) tape: &'a Tape,
+    pub(super) upcalls: &'a Upcalls,
+    pub(super) instructions: &'a [Instruction],
+    /// Registers with their places in the array of results.
+    pub(super) outputs: &'a [(Register, usize)],
+    /// Whether branches that are not taken leave what the memory holds.
+    pub(super) keeps: bool,
+}
+
+/// Writes the code of a part of a tape into a context; `None` if it has what cannot be translated.
+/// `matrices` are the entries of the matrix in each workspace, by rows, before and after it.
 pub(super) fn translate(
-    (tape, outputs, upcalls): (&Tape, &[Register], &Upcalls),
-    instructions: &[Instruction],
+    part: Part,
+    matrices: &mut Matrices,
     target: TargetFrontendConfig,
     context: &mut Context,
 ) -> Option<()> {
+    let Part { tape, upcalls, instructions, outputs, keeps } = part;
     let pointer = target.pointer_type();
     let signature = &mut context.func.signature;
     signature.params.extend([AbiParam::new(pointer); 3]);
@@ -47,11 +61,7 @@ pub(super) fn translate(
     let parameters = builder.block_params(start);
     let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
     let (functions, elimination, asking) = signatures(&mut builder, target);
-    let array = (upcalls.room() > 0).then(|| {
-        let size = (8 * upcalls.room()) as u32;
-        let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
-        builder.create_sized_stack_slot(slot)
-    });
+    let array = (upcalls.room() > 0).then(|| array_of(upcalls.room(), &mut builder));
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
     let zero = builder.ins().f64const(0.0);
     checks.iter().for_each(|check| builder.def_var(*check, zero));
@@ -70,7 +80,7 @@ pub(super) fn translate(
         values: FxHashMap::default(),
         chosen: FxHashMap::default(),
         blocks: FxHashMap::default(),
-        matrices: FxHashMap::default(),
+        matrices,
         places: FxHashMap::default(),
         functions,
         elimination,
@@ -79,6 +89,9 @@ pub(super) fn translate(
         next_check: 0,
     };
     translation.prepare();
+    if keeps {
+        translation.begin_with_the_memory();
+    }
     for (at, instruction) in instructions.iter().enumerate() {
         translation.enter(at);
         translation.instruction(*instruction)?;
@@ -86,6 +99,12 @@ pub(super) fn translate(
     translation.enter(instructions.len());
     translation.finish(target);
     Some(())
+}
+
+/// So many numbers on the stack.
+fn array_of(length: usize, builder: &mut FunctionBuilder) -> StackSlot {
+    let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, 8 * length as u32, 3);
+    builder.create_sized_stack_slot(slot)
 }
 
 /// The signatures of functions with one and two arguments, of [`small_system`], and of the upcalls.
@@ -137,12 +156,14 @@ extern "C" fn small_system(system: &mut [f64; SMALL_SYSTEM], n: usize) {
     }
 }
 
+/// The entries of the matrix in each workspace, by rows.
+pub(super) type Matrices = FxHashMap<u32, Box<[(u32, Register)]>>;
+
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     tape: &'a Tape,
-    outputs: &'a [Register],
+    outputs: &'a [(Register, usize)],
     upcalls: &'a Upcalls,
-    /// Those of the tape, routines where they are performed.
     instructions: &'a [Instruction],
     pointer: Type,
     memory: Value,
@@ -159,7 +180,7 @@ struct Translation<'a> {
     /// Targets of jumps.
     blocks: FxHashMap<usize, Block>,
     /// The entries of the matrix in each workspace, by rows.
-    matrices: FxHashMap<u32, Box<[(u32, Register)]>>,
+    matrices: &'a mut Matrices,
     /// Where registers are written to that are outputs.
     places: FxHashMap<Register, Vec<usize>>,
     /// Signatures of functions with one and two arguments.
@@ -192,8 +213,18 @@ impl Translation<'_> {
             let block = self.builder.create_block();
             self.blocks.insert(target, block);
         }
-        for (place, register) in self.outputs.iter().enumerate() {
-            self.places.entry(*register).or_default().push(place);
+        for (register, place) in self.outputs {
+            self.places.entry(*register).or_default().push(*place);
+        }
+    }
+
+    fn begin_with_the_memory(&mut self) {
+        let mut chosen: Vec<(Register, Variable)> =
+            self.chosen.iter().map(|(register, variable)| (*register, *variable)).collect();
+        chosen.sort_unstable_by_key(|(register, _)| *register);
+        for (register, variable) in chosen {
+            let value = self.load(register);
+            self.builder.def_var(variable, value);
         }
     }
 
@@ -227,6 +258,10 @@ impl Translation<'_> {
         if let Some(variable) = self.chosen.get(&register) {
             return self.builder.use_var(*variable);
         }
+        self.load(register)
+    }
+
+    fn load(&mut self, register: Register) -> Value {
         let flags = MemFlagsData::trusted();
         self.builder.ins().load(types::F64, flags, self.memory, 8 * register as i32)
     }
@@ -430,9 +465,7 @@ impl Translation<'_> {
 
     /// Writes a system to the stack, calls [`small_system`] and reads the solution.
     fn eliminate(&mut self, entries: &[Value], right: &[Value], d: Register) {
-        let size = (8 * SMALL_SYSTEM) as u32;
-        let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
-        let slot = self.builder.create_sized_stack_slot(slot);
+        let slot = array_of(SMALL_SYSTEM, &mut self.builder);
         for (place, value) in (0..).zip(entries.iter().chain(right)) {
             self.builder.ins().stack_store(self.pointer, *value, slot, 8 * place);
         }
@@ -547,14 +580,14 @@ impl Translation<'_> {
 
     /// Writes the outputs that are not written yet, and returns the check.
     fn finish(mut self, target: TargetFrontendConfig) {
-        for (place, register) in self.outputs.iter().enumerate() {
+        for (register, place) in self.outputs {
             if !self.values.contains_key(register) {
                 let value = self.get(*register);
                 self.builder.ins().store(
                     MemFlagsData::trusted(),
                     value,
                     self.out,
-                    8 * place as i32,
+                    8 * *place as i32,
                 );
             }
         }

@@ -24,7 +24,7 @@ pub(super) struct Workspaces<'a> {
 
 impl Workspaces<'_> {
     /// Those of a memory, beside its registers.
-    pub(super) fn of(memory: &mut Memory) -> (&[f64], Workspaces<'_>) {
+    pub(super) fn of(memory: &mut Memory) -> (&mut [f64], Workspaces<'_>) {
         let Memory { registers, calls, systems, .. } = memory;
         (registers, Workspaces { calls, systems })
     }

@@ -1,5 +1,7 @@
 //! Diagnostic codes: slugs with their explanations.
 
+use crate::name::Ident;
+
 /// What kind of fault a diagnostic reports. Declared with [`codes!`](crate::codes) in the
 /// `errors.rs` of the stage that finds it.
 #[derive(Debug, Clone, Copy)]
@@ -8,6 +10,21 @@ pub struct Code {
     pub slug: &'static str,
     /// Markdown under the headings *What it means*, *Example*, *What to do*.
     pub explanation: &'static str,
+}
+
+/// In a file a code is its name. One that was read has no explanation, which is looked up by the
+/// name.
+impl serde::Serialize for Code {
+    fn serialize<S: serde::Serializer>(&self, target: S) -> Result<S::Ok, S::Error> {
+        self.slug.serialize(target)
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Code {
+    fn deserialize<D: serde::Deserializer<'de>>(source: D) -> Result<Code, D::Error> {
+        let slug = Ident::deserialize(source)?.as_str();
+        Ok(Code { slug, explanation: "" })
+    }
 }
 
 impl PartialEq for Code {

@@ -17,7 +17,9 @@ pub use visible::{visible, visible_line};
 use crate::source::Span;
 
 /// How bad it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum Severity {
     /// Worth knowing, nothing is wrong.
     Note,
@@ -28,7 +30,7 @@ pub enum Severity {
 }
 
 /// A place and what is to be said about it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Label {
     /// The place.
     pub span: Span,
@@ -39,7 +41,7 @@ pub struct Label {
 }
 
 /// One step of the way from the outermost script to the fault.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Frame {
     /// Where the call is written.
     pub span: Span,
@@ -60,11 +62,11 @@ pub struct Fault {
 
 /// A fault with its place: what a stage returns and what the user sees. Boxed inside, so that
 /// `Result<T, Diagnostic>` stays small.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Diagnostic(Box<Report>);
 
 /// The content of a [`Diagnostic`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
     /// Its kind.
     pub code: Code,

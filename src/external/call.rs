@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub type Object = Arc<dyn Any + Send + Sync>;
 
 /// What a slot holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Kind {
     /// Numbers at a position of [`Call::numbers`].
     Number,
@@ -24,7 +24,7 @@ pub enum Kind {
 }
 
 /// An argument or a result: where it stands.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Slot {
     /// What it holds.
     pub kind: Kind,

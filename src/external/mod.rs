@@ -81,6 +81,28 @@ pub struct Entry {
     pub c: Option<&'static c::CFunction>,
 }
 
+/// A function of the tables in a file: its name, and the file that must be included for it. One in
+/// C cannot be written.
+pub(crate) mod by_name {
+    use super::{Entry, FAMILIES};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};
+
+    pub fn serialize<S: Serializer>(entry: &&'static Entry, target: S) -> Result<S::Ok, S::Error> {
+        if entry.c.is_some() {
+            return Err(ser::Error::custom("a function in C"));
+        }
+        (entry.name, entry.stands_for).serialize(target)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<&'static Entry, D::Error> {
+        let (name, stands_for) = <(String, String)>::deserialize(source)?;
+        let mut entries = FAMILIES.iter().copied().flatten();
+        entries
+            .find(|entry| entry.name == name && entry.stands_for == stands_for)
+            .ok_or_else(|| de::Error::custom("there is no such function"))
+    }
+}
+
 /// What calls of a function do besides giving results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Effect {

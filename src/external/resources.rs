@@ -81,7 +81,7 @@ impl Outside for Resources {
 }
 
 /// Contents of files by the names that external functions are called with; shared by clones.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Contents(Arc<BTreeMap<Arc<str>, Arc<[u8]>>>);
 
 impl fmt::Debug for Contents {

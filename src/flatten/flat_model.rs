@@ -63,7 +63,7 @@ pub struct Part {
 }
 
 /// The `experiment` annotation (MLS §18.4): `None` where it says nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Experiment {
     /// `StartTime`, seconds.
     pub start_time: Option<f64>,
@@ -119,7 +119,7 @@ pub struct Attribute {
 }
 
 /// The predefined type of a variable.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum BaseType {
     /// `Real`
     Real,
@@ -139,7 +139,9 @@ pub enum BaseType {
 }
 
 /// When a variable may change (MLS §3.8).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum Variability {
     /// Never.
     Constant,

@@ -11,7 +11,7 @@ use crate::syntax::ast::CausalityPrefix;
 use std::sync::Arc;
 
 /// A scalar system: variables are numbered by their position.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Dae {
     /// Name of the class.
     pub name: String,
@@ -46,7 +46,7 @@ pub struct Dae {
 /// The variables behind every `homotopy(actual, simplified)`, which reads
 /// `if active then simplified + lambda*(actual - simplified) else actual` in the initial system and
 /// `actual` in the other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Homotopy {
     /// Whether there is something between the two, 0 or 1.
     pub active: VarId,
@@ -55,7 +55,7 @@ pub struct Homotopy {
 }
 
 /// A scalar variable.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Variable {
     /// Its name with subscripts, such as `pack.cell[2].V`.
     pub name: Arc<str>,
@@ -96,7 +96,18 @@ pub struct Variable {
 }
 
 /// How much a variable is wanted as a state (MLS §4.9.8), the least wanted first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 pub enum StateSelect {
     /// Only if nothing else is left.
     Never,
@@ -123,7 +134,7 @@ impl StateSelect {
 }
 
 /// What part a variable plays.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Kind {
     /// `time`
     Time,
@@ -157,7 +168,7 @@ pub enum Kind {
 }
 
 /// A relation whose value changes at events only (MLS §8.5).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Relation {
     /// The variable that holds its value.
     pub variable: VarId,
@@ -189,7 +200,7 @@ impl Dae {
 }
 
 /// A value for every variable, NaN where there is none.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct DefaultValues {
     pub(super) values: Vec<f64>,
 }

@@ -5,7 +5,7 @@ use crate::symbolic::Expr;
 use std::sync::Arc;
 
 /// `left = right`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Equation {
     /// Left side.
     pub left: Expr,
@@ -25,11 +25,11 @@ impl Equation {
 }
 
 /// Position of a path in [`Dae::instances`](super::Dae::instances).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Instance(pub u32);
 
 /// What it means that a condition does not hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Level {
     /// The simulation ends (`AssertionLevel.error`).
     Error,
@@ -42,7 +42,7 @@ pub enum Level {
 }
 
 /// A part of a text for people.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Part {
     /// Known when compiling.
     Text(Arc<str>),
@@ -53,7 +53,7 @@ pub enum Part {
 }
 
 /// `assert(condition, message, level)`, or a text that is printed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Assertion {
     /// Must hold; its relations are evaluated as they are.
     pub condition: Expr,

@@ -6,7 +6,7 @@ use crate::symbolic::{Expr, VarId};
 use std::sync::Arc;
 
 /// The part of a system that acts at events alone.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Events {
     /// `v = …` for every variable of kind [`Kind::Discrete`](super::Kind::Discrete): the left side
     /// is the variable.
@@ -32,7 +32,7 @@ pub struct Events {
 }
 
 /// `variable = floor(argument)`, which jumps at events only (MLS §3.7.2).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rounding {
     /// The variable that holds the value.
     pub variable: VarId,
@@ -43,7 +43,7 @@ pub struct Rounding {
 }
 
 /// `sample(start, interval)`: a variable that is 1 at the times start + i·interval, i = 0, 1, …
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// The variable.
     pub variable: VarId,
@@ -58,7 +58,7 @@ pub struct Sample {
 }
 
 /// `variable = delay(argument, time)` (MLS §3.7.4.1).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Delay {
     /// The variable that holds the value.
     pub variable: VarId,
@@ -71,7 +71,7 @@ pub struct Delay {
 }
 
 /// Values that come out of something later than they go in.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Transport {
     /// `variable = delay(argument, time, longest)` (MLS §3.7.4.1).
     Delay {
@@ -140,7 +140,7 @@ impl Transport {
 }
 
 /// `reinit(state, value)`, carried out when the condition holds.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Reinit {
     /// The state as written.
     pub state: VarId,
@@ -153,7 +153,7 @@ pub struct Reinit {
 }
 
 /// `terminate(message)`, carried out when the condition holds.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Termination {
     /// When.
     pub condition: Expr,

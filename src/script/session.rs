@@ -12,7 +12,7 @@ use super::models::classes::Classes;
 use super::models::compiled::CompiledModels;
 use super::models::translated::Translated;
 use super::options::{Dialect, Options, Strictness};
-use super::world::World;
+use super::world::{Store, World};
 use crate::diag::{Code, Diagnostic, Fault};
 use crate::name::Ident;
 use crate::source::{SourceMap, Span};
@@ -28,6 +28,8 @@ pub struct Session {
     pub world: Box<dyn World>,
     /// The text of all files read so far.
     pub sources: SourceMap,
+    /// Where translated models are kept from one process to the next, if they are.
+    pub storage: Option<Arc<dyn Store>>,
     /// What it answers.
     pub output: Output,
     /// How it behaves.
@@ -51,6 +53,7 @@ impl Session {
         Session {
             world,
             sources: SourceMap::default(),
+            storage: None,
             output: Output::default(),
             options: Options::default(),
             workspace: Workspace::default(),

@@ -195,7 +195,7 @@ pub enum Treatment {
 }
 
 /// A sparsity pattern in compressed columns.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Pattern {
     /// Rows and columns.
     pub n: usize,

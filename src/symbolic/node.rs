@@ -3,7 +3,9 @@
 use super::function::FunctionId;
 
 /// An expression: the id of a node of one [`Pool`](super::Pool).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct Expr(pub(super) u32);
 
 impl Expr {
@@ -14,11 +16,13 @@ impl Expr {
 }
 
 /// A variable, numbered by whoever owns the pool.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct VarId(pub u32);
 
 /// A constant that is equal to another when all bits are.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub struct Number(pub f64);
 
 impl PartialEq for Number {
@@ -36,7 +40,7 @@ impl std::hash::Hash for Number {
 }
 
 /// The arguments of a function of one or two arguments; read it as a slice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Arguments {
     first: Expr,
     second: Option<Expr>,
@@ -70,7 +74,7 @@ impl Arguments {
 }
 
 /// A relation between two numbers (MLS §3.5).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum RelationOperator {
     /// `<`
     Less,
@@ -113,7 +117,7 @@ impl RelationOperator {
 }
 
 /// How an equation `y = f(…)` is solved for one input of a user function with one output.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Inverse {
     /// The function that gives the input.
     pub function: u32,
@@ -122,7 +126,7 @@ pub struct Inverse {
 }
 
 /// A node of an expression.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Node {
     /// A number.
     Constant(Number),

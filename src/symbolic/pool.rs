@@ -7,7 +7,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::cell::RefCell;
 
 /// All nodes of all expressions of a model. The constructors ([`Pool::add`] …) simplify locally.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Pool {
     nodes: IndexSet<Node, FxBuildHasher>,
     /// By function and input.

@@ -65,7 +65,7 @@ pub struct EnumerationValue {
 }
 
 /// An enumeration type.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EnumerationDefinition {
     /// Its full name.
     pub name: Name,

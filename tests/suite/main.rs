@@ -93,6 +93,7 @@ mod teach;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+mod translations;
 mod transport;
 mod undetermined;
 mod upcalls;

@@ -1,6 +1,7 @@
 //! Shared objects in the user's cache folder, by the digest of what they were made of.
 
 use super::hex;
+use crate::cli::cache_folder;
 use crate::diag::Fault;
 use crate::external::errors::EXTERNAL_COMPILER;
 use crate::fault;
@@ -16,29 +17,11 @@ pub(super) fn cannot(error: &io::Error) -> Fault {
         help: "the cache folder must be writable: `XDG_CACHE_HOME`, or `.cache` in the home folder")
 }
 
-/// The folder of the user for what can be made again.
-fn folder() -> Option<PathBuf> {
-    let variable = |name| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
-    let base = match () {
-        () if cfg!(windows) => variable("LOCALAPPDATA"),
-        () => variable("XDG_CACHE_HOME").or_else(|| {
-            let home = variable("HOME")?;
-            Some(home.join(if cfg!(target_os = "macos") { "Library/Caches" } else { ".cache" }))
-        }),
-    };
-    Some(base?.join("gapi").join("external"))
-}
+const FOLDER: &str = "external";
 
 /// The folder, made so that nobody else can put anything there.
 fn made_folder() -> Result<PathBuf, Fault> {
-    let none = || io::Error::new(io::ErrorKind::NotFound, "there is no cache folder");
-    let folder = folder().ok_or_else(|| cannot(&none()))?;
-    let mut builder = fs::DirBuilder::new();
-    builder.recursive(true);
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(&folder).map_err(|error| cannot(&error))?;
-    Ok(folder)
+    cache_folder::made(FOLDER).map_err(|error| cannot(&error))
 }
 
 /// A folder to compile in, removed afterwards.
@@ -72,7 +55,7 @@ fn digest(bytes: &[u8]) -> String {
 
 /// The shared object of a key, if it is as it was written.
 pub(super) fn find(key: &str) -> Option<PathBuf> {
-    let object = folder()?.join(format!("{key}.so"));
+    let object = cache_folder::of(FOLDER)?.join(format!("{key}.so"));
     let written = fs::read_to_string(object.with_extension("sha256")).ok()?;
     let is_whole = digest(&fs::read(&object).ok()?) == written.trim();
     is_whole.then_some(object)

@@ -163,6 +163,8 @@ impl Ran {
         let echo = if embedded { Echo::Everything } else { Echo::Usual };
         let mut session =
             session::open(global, world).with_options(Options { dialect, echo, ..options });
+        // What scripts translate in folders of their own, nobody translates again.
+        session.storage = None;
         let start = session.world.current_dir();
         session.output.transcript = Some(Transcript::default());
         let status = session.run_file(Path::new(name));

@@ -290,12 +290,14 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let class: Name = args.take("className")?;
     let done = simulation::translated(session, &class.to_string());
     let Some(model) = session.or_report_all(done) else { return Ok("".into()) };
-    let unknowns = simulation::unknowns(&model.flat);
+    let flat = simulation::flat_model_of(session, &model);
+    let Some(flat) = session.or_report_all(flat) else { return Ok("".into()) };
+    let unknowns = model.unknowns();
     Ok(format!(
         "Check of {class} completed successfully.\n\
          Class {class} has {unknowns} equation(s) and {unknowns} variable(s).\n\
          {} of these are trivial equation(s).",
-        trivial_equations(&model.flat)
+        trivial_equations(flat)
     )
     .into())
 }

@@ -24,6 +24,8 @@ pub struct Output {
     windowless: BTreeSet<&'static str>,
     /// `echo(false)` was called.
     muted: bool,
+    /// Warnings and notes from here on, for whoever keeps what they are about.
+    pub overheard: Option<Vec<Diagnostic>>,
 }
 
 impl Output {
@@ -53,6 +55,9 @@ impl Output {
         diagnostic: Diagnostic,
     ) -> bool {
         let diagnostic = diagnostic.shortened();
+        if let Some(overheard) = &mut self.overheard {
+            overheard.push(diagnostic.clone());
+        }
         let is_error = diagnostic.is_error();
         let reported = self.reported.as_mut().filter(|_| !is_error);
         let place = || (diagnostic.span(), diagnostic.message.clone());

@@ -29,7 +29,7 @@ impl Session {
             names.extend(components.map(|component| format!("{class}.{component}")));
         }
         if let Some(model) = self.last_model() {
-            names.extend(model.flat.variables.keys().map(|name| name.to_string()));
+            names.extend(model.declarations.keys().map(|name| name.to_string()));
         }
         names.extend(crate::functions::names().map(str::to_owned));
         names

@@ -2,9 +2,9 @@
 //! values, merged into the modification that the model was asked for with.
 
 use super::modification::merge;
-use super::translated::Translated;
+use super::translated::{Declaration, Translated};
 use crate::diag::Diagnostic;
-use crate::flatten::{BaseType, Variability, Variable};
+use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::{Expression, ExpressionKind, Modification};
@@ -53,20 +53,20 @@ impl Changes {
             Some(name) => (name, true),
             None => (name, false),
         };
-        let variable = model.flat.variables.get(name)?;
+        let variable = model.declarations.get(name)?;
         if name.contains('[') || variable.is_final || !variable.dims.is_empty() {
             return None;
         }
         if variable.variability == Variability::Parameter && !is_start {
             // Sorting may have taken others for numbers, too: a resistance of zero.
             let is_other = matches!(variable.base, BaseType::String | BaseType::ExternalObject(_));
-            let is_number = !is_other && !variable.attributes.contains_key("fixed");
+            let is_number = !is_other && !variable.says_fixed;
             return is_number.then(|| {
                 self.insert(name.to_owned(), value);
                 Changed::Structure
             });
         }
-        if variable.variability <= Variability::Parameter || !may_start(model, variable) {
+        if variable.variability <= Variability::Parameter || !may_start(model, name, variable) {
             return None;
         }
         self.insert(format!("{name}.start"), value);
@@ -100,7 +100,7 @@ impl Changes {
 /// The value as the type of what it belongs to writes it.
 fn literal(model: &Translated, path: &str, value: f64) -> Expression {
     let owner = path.strip_suffix(".start").unwrap_or(path);
-    let base = model.flat.variables.get(owner).map(|variable| &variable.base);
+    let base = model.declarations.get(owner).map(|variable| &variable.base);
     let kind = match base {
         Some(BaseType::Boolean) => ExpressionKind::Boolean(value != 0.0),
         Some(BaseType::Integer) => ExpressionKind::Integer(value as i64),
@@ -110,9 +110,8 @@ fn literal(model: &Translated, path: &str, value: f64) -> Expression {
     Expression::new(kind, Span::NONE)
 }
 
-fn may_start(model: &Translated, variable: &Variable) -> bool {
-    let start = variable.attributes.get("start");
-    start.map_or_else(|| is_state(model, &variable.name), |start| !start.is_final)
+fn may_start(model: &Translated, name: &str, variable: &Declaration) -> bool {
+    variable.final_start.map_or_else(|| is_state(model, name), |is_final| !is_final)
 }
 
 fn is_state(model: &Translated, name: &str) -> bool {

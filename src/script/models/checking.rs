@@ -18,7 +18,7 @@ pub fn report(session: &mut Session, model: &Translated) -> String {
     let report = causalize::report(model.program.sorted());
     let (name, rest) = report.split_once('\n').unwrap_or((&report, ""));
     let classes = session.library().number_read();
-    let unknowns = simulation::unknowns(&model.flat);
+    let unknowns = model.unknowns();
     format!("{name}\n  classes read {classes}\n  unknowns {unknowns}\n{rest}")
 }
 

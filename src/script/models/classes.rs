@@ -2,6 +2,7 @@
 
 use super::constant_cache::ConstantCache;
 use super::library_files::Warnings;
+use super::stored::{History, Reads};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::eval::Function;
 use crate::fault;
@@ -37,6 +38,10 @@ pub struct Classes {
     pub versions: BTreeMap<Ident, String>,
     /// Warnings about the encodings of libraries.
     pub warnings: Warnings,
+    /// How the classes came to be what they are.
+    pub history: History,
+    /// What was asked of the disk for them.
+    pub reads: Reads,
 }
 
 impl Classes {
@@ -87,6 +92,7 @@ impl Classes {
     /// Forgets all classes.
     pub fn forget(&mut self) {
         self.invalidate();
+        self.history.note("forget", "");
         self.library = Library::new();
         self.files.clear();
         self.misnamed.clear();

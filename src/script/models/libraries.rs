@@ -27,6 +27,7 @@ impl Session {
     pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
             self.world.reader(),
+            self.classes.reads.clone(),
             self.sources.clone(),
             self.world.current_dir(),
             self.classes.warnings.clone(),

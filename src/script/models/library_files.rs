@@ -1,6 +1,7 @@
 //! The files of a library as its classes are read from them: decoded, and put among the sources of
 //! the session.
 
+use super::stored::{Reads, Watched};
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::LibraryFiles;
 use crate::script::access::faults::cannot;
@@ -13,7 +14,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 /// The files of one library.
 #[derive(Debug)]
 pub struct SourceFiles {
-    files: Arc<dyn FileReader>,
+    files: Watched,
+    reads: Reads,
     sources: SourceMap,
     /// The working directory, to which shown paths are relative.
     current: PathBuf,
@@ -32,6 +34,7 @@ impl LibraryFiles for SourceFiles {
         let shown = path.strip_prefix(&self.current).unwrap_or(path).display().to_string();
         let text: Arc<str> = text.into();
         let source = self.sources.add(shown, text.clone());
+        self.reads.note_text(source, path);
         if let Some(warning) = warning {
             let warning = warning.at(Span::new(source, 0, 0)).warning();
             if self.encoding.set(warning.clone()).is_ok()
@@ -56,10 +59,12 @@ impl SourceFiles {
     /// The files of one library; paths are shown relative to the working directory `current`.
     pub fn new(
         files: Arc<dyn FileReader>,
+        reads: Reads,
         sources: SourceMap,
         current: PathBuf,
         warnings: Warnings,
     ) -> SourceFiles {
-        SourceFiles { files, sources, current, encoding: OnceLock::new(), warnings }
+        let files = Watched::new(files, reads.clone());
+        SourceFiles { files, reads, sources, current, encoding: OnceLock::new(), warnings }
     }
 }

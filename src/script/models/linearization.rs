@@ -65,7 +65,8 @@ fn linearized_variant(
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
     let mut inputs = Vec::new();
-    let model = session.vary_current(|model| with_states_for_inputs(model, &mut inputs))?;
+    let model = session
+        .vary_current(|model, flat| with_states_for_inputs(model, flat.clone(), &mut inputs))?;
     let done = simulation::simulate(session, &model, options).map_err(one)?;
     let time = done.table.time.last().copied().unwrap_or(0.0);
     let last =
@@ -102,9 +103,9 @@ fn linearized_variant(
 /// their names.
 fn with_states_for_inputs(
     model: &Translated,
+    mut flat: FlatModel,
     inputs: &mut Vec<String>,
 ) -> Result<Option<Translated>, Diagnostic> {
-    let mut flat = model.flat.clone();
     let free = |variable: &&Variable| {
         variable.causality == Some(CausalityPrefix::Input)
             && variable.binding.is_none()
@@ -120,7 +121,7 @@ fn with_states_for_inputs(
         inputs.extend(element_names(&variable));
     }
     let program = Program::compile(causalize::causalize(&flat)?)?;
-    Ok(Some(Translated { problem: model.problem.clone(), flat, program }))
+    Ok(Some(Translated::new(&model.problem, flat, program)))
 }
 
 /// The name of the slope of an input.

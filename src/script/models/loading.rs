@@ -111,6 +111,7 @@ impl Session {
     /// Loads a package from its folder; its classes are read when they are needed.
     fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
         self.classes.invalidate();
+        self.classes.history.note("folder", &format!("{} in `{around}`", folder.display()));
         let files = self.library_files();
         let one = |error: Diagnostic| vec![error];
         let names =
@@ -135,6 +136,8 @@ impl Session {
     ) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let mut file = syntax::parse_all_of_stored_definition(source, text)?;
         self.classes.invalidate();
+        let shown = path.map(|path| path.display().to_string()).unwrap_or_default();
+        self.classes.history.note("text", &format!("{shown}\n{text}"));
         let around = path.map_or(Ok(Name::default()), |path| self.package_around(path))?;
         if !around.parts.is_empty() && file.within.is_none() {
             file.within = Some(Spanned { node: around, span: Span::new(source, 0, 0) });
@@ -156,10 +159,16 @@ impl Session {
         }
     }
 
-    fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
+    pub(super) fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
         if self.classes.defines(name) || self.classes.is_missing(name) {
             return Ok(false);
         }
+        let is_loaded = self.load_class(name)?;
+        self.classes.history.note_search(name, is_loaded);
+        Ok(is_loaded)
+    }
+
+    fn load_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
         let Some(path) = self.search_class(name) else {
             self.classes.note_nowhere(name);
             return Ok(false);
@@ -207,6 +216,8 @@ impl Session {
         class: &Arc<ClassDefinition>,
     ) -> Result<(), Diagnostic> {
         self.classes.invalidate();
+        let text = self.sources.text(class.span).to_owned();
+        self.classes.history.note("class", &text);
         self.classes.library.define(class).map(|_| ())
     }
 
@@ -218,6 +229,7 @@ impl Session {
     /// Removes a class; whether there was one.
     pub(in crate::script) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.invalidate();
+        self.classes.history.note("remove", &name.to_string());
         name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
     }
 

@@ -19,5 +19,7 @@ mod parameters;
 mod resources;
 pub mod simulation;
 pub(in crate::script) mod static_curve;
+pub mod stored;
 pub mod translated;
 pub mod verification;
+mod warnings;

@@ -126,7 +126,7 @@ impl Session {
     ) -> Result<(), Fault> {
         let Some(current) = &self.models.current else { return Ok(()) };
         let model = current.model.clone();
-        let declared = model.flat.variables.get(name.as_str());
+        let declared = model.declarations.get(name.as_str());
         let is_parameter =
             declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
         if !is_parameter {
@@ -202,12 +202,12 @@ fn nested_modification(name: &str) -> String {
 /// Why a name cannot be assigned in the model.
 fn not_tunable(model: &Translated, name: &str) -> Fault {
     let problem = &model.problem;
-    match model.flat.variables.get(name) {
+    match model.declarations.get(name) {
         Some(variable) if variable.variability <= Variability::Parameter => {
             let reason = match () {
                 () if variable.variability == Variability::Constant => "it is a constant",
                 () if variable.is_final => "it is final",
-                () if variable.structural || variable.evaluate => {
+                () if variable.is_evaluated => {
                     "it is a structural parameter, evaluated at translation"
                 }
                 () => "it is an array or not a number",

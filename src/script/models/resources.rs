@@ -1,6 +1,7 @@
 //! The files that a model may use while it is compiled: tables above all.
 
 use super::c_functions;
+use super::stored::Watched;
 use crate::diag::Fault;
 use crate::external::c::{CCompiler, Request};
 use crate::external::{Entry, Provide, Resources};
@@ -47,7 +48,8 @@ impl Session {
         folders.extend(self.execution.folders().map(Path::to_path_buf));
         folders.extend(folder.map(Path::to_path_buf));
         let packages = self.classes.packages();
-        let files = self.world.reader();
+        let files: Arc<dyn FileReader> =
+            Arc::new(Watched::new(self.world.reader(), self.classes.reads.clone()));
         let compiler = self.world.c_compiler();
         Resources::new(Arc::new(ModelFiles { files, folders, packages, compiler }))
     }

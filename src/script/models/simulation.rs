@@ -4,11 +4,13 @@ use super::changes::Changes;
 use super::compiled::{Current, End};
 use super::continuation::Continued;
 use super::hardest::{Hardest, hardest};
+use super::stored::Request;
 pub use super::translated::Translated;
+use super::warnings::warn;
 use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::flatten::{self, Experiment, FlatModel};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{LogMessage, System, Treated, Undetermined};
 use crate::script::Session;
@@ -103,11 +105,37 @@ pub fn translated(
     if let Some(model) = session.models.get(problem, revision) {
         return Ok(model);
     }
-    let model = Arc::new(compiled(session, problem)?);
+    let model = Arc::new(found_or_compiled(session, problem)?);
     // Flattening may have loaded packages, which is what the revision counts.
     let revision = session.library_revision();
     session.models.keep(revision, &model);
     Ok(model)
+}
+
+/// A model that an earlier process has translated, or this one does.
+fn found_or_compiled(session: &mut Session, problem: &str) -> Result<Translated, Vec<Diagnostic>> {
+    let Some(request) = Request::new(session, problem) else { return compiled(session, problem) };
+    if let Some(model) = request.find(session, problem) {
+        return Ok(model);
+    }
+    let model = compiled(session, problem)?;
+    request.keep(session, &model);
+    Ok(model)
+}
+
+/// The flat model of a translated one.
+///
+/// # Errors
+/// Its files have changed since, and something is wrong with them.
+pub(in crate::script) fn flat_model_of<'m>(
+    session: &mut Session,
+    model: &'m Translated,
+) -> Result<&'m FlatModel, Vec<Diagnostic>> {
+    if let Some(flat) = model.flat.get() {
+        return Ok(flat);
+    }
+    let flat = flat_model(session, &model.problem)?;
+    Ok(model.flat.get_or_init(|| flat))
 }
 
 /// A model, translated whether it has been or not.
@@ -119,16 +147,7 @@ pub(super) fn compiled(
     let sorted = causalize::causalize(&flat).map_err(|error| vec![error])?;
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
     warn(session, program.warnings());
-    Ok(Translated { problem: problem.to_owned(), flat, program })
-}
-
-/// Reports the warnings about a model that were not reported yet, whatever it was asked before.
-fn warn(session: &mut Session, warnings: &[Diagnostic]) {
-    for warning in warnings {
-        if session.models.is_new_warning(warning.span(), &warning.message) {
-            session.report(warning.clone());
-        }
-    }
+    Ok(Translated::new(problem, flat, program))
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
@@ -180,15 +199,6 @@ pub(in crate::script) fn flattened(
         warn(session, &flattened.warnings);
         return Ok(flattened);
     }
-}
-
-/// Number of scalar unknowns of a model.
-pub fn unknowns(flat: &FlatModel) -> usize {
-    let is_unknown = |variable: &&flatten::Variable| {
-        variable.variability >= Variability::Discrete
-            && variable.causality != Some(syntax::ast::CausalityPrefix::Input)
-    };
-    flat.variables.values().filter(is_unknown).map(flatten::Variable::len).sum()
 }
 
 /// The diagnostic at the place of the call, if it has none of its own.
@@ -508,7 +518,7 @@ impl Session {
     /// `Session::restore_values` takes it back.
     pub fn vary_current(
         &mut self,
-        variant: impl FnOnce(&Translated) -> Result<Option<Translated>, Diagnostic>,
+        variant: impl FnOnce(&Translated, &FlatModel) -> Result<Option<Translated>, Diagnostic>,
     ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
         let (call, one) = (self.call_site(), |error: Diagnostic| vec![error]);
         let Some(mut current) = self.models.current.clone() else {
@@ -518,7 +528,8 @@ impl Session {
             true => current.model.clone(),
             false => self.changed_model(&current.model.clone(), &mut current.changes)?,
         };
-        let model = variant(&changed).map_err(one)?.map_or(changed, Arc::new);
+        let flat = flat_model_of(self, &changed)?;
+        let model = variant(&changed, flat).map_err(one)?.map_or(changed, Arc::new);
         let mut overrides = IndexMap::new();
         for (at, value) in &current.overrides {
             let name = &current.model.program.parameters()[*at].name;

@@ -1,24 +1,99 @@
 //! A model ready to be simulated.
 
 use crate::codegen::Program;
-use crate::flatten::FlatModel;
-use std::sync::Arc;
+use crate::flatten::{self, BaseType, FlatModel, Variability};
+use crate::syntax::ast::CausalityPrefix;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use std::sync::{Arc, OnceLock};
 
 /// A model ready to be simulated.
 #[derive(Debug)]
 pub struct Translated {
     /// The class with its modification, as it was asked for.
     pub problem: String,
-    /// The flat model.
-    pub flat: FlatModel,
+    /// What its variables are declared as.
+    pub declarations: Declarations,
     /// The compiled model.
     pub program: Arc<Program>,
+    /// The flat model; a model that was kept has none until somebody asks.
+    pub(super) flat: OnceLock<FlatModel>,
+}
+
+/// The variables of a model by their names, arrays as one.
+pub type Declarations = IndexMap<Arc<str>, Declaration>;
+
+/// What a variable is declared as: see [`flatten::Variable`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Declaration {
+    /// Its predefined type.
+    pub base: BaseType,
+    /// Sizes of its dimensions; empty for a scalar.
+    pub dims: Vec<usize>,
+    /// When it may change.
+    pub variability: Variability,
+    /// `input` or `output`, of top-level components only.
+    pub causality: Option<CausalityPrefix>,
+    /// Whether it is final.
+    pub is_final: bool,
+    /// Whether its value is used when the model is translated.
+    pub is_evaluated: bool,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    /// Whether it has the attribute `fixed`.
+    pub says_fixed: bool,
+    /// Whether the attribute `start` is final, if it has one.
+    pub final_start: Option<bool>,
 }
 
 impl Translated {
+    /// A model with its flat model.
+    pub fn new(problem: &str, flat: FlatModel, program: Arc<Program>) -> Translated {
+        let declared = |(name, variable): (&Arc<str>, &flatten::Variable)| {
+            (name.clone(), Declaration::of(variable))
+        };
+        let declarations = flat.variables.iter().map(declared).collect();
+        Translated { problem: problem.to_owned(), declarations, program, flat: flat.into() }
+    }
+
+    /// A model that was kept.
+    pub(super) fn without_flat_model(
+        problem: &str,
+        declarations: Declarations,
+        program: Arc<Program>,
+    ) -> Translated {
+        Translated { problem: problem.to_owned(), declarations, program, flat: OnceLock::new() }
+    }
+
     /// The names of the states, in their order.
     pub fn state_names(&self) -> impl Iterator<Item = &Arc<str>> {
         let sorted = self.program.sorted();
         sorted.states.iter().map(|state| &sorted.dae.variable(*state).name)
+    }
+
+    /// Number of scalar unknowns.
+    pub fn unknowns(&self) -> usize {
+        let is_unknown = |variable: &&Declaration| {
+            variable.variability >= Variability::Discrete
+                && variable.causality != Some(CausalityPrefix::Input)
+        };
+        let unknown = self.declarations.values().filter(is_unknown);
+        unknown.map(|variable| variable.dims.iter().product::<usize>()).sum()
+    }
+}
+
+impl Declaration {
+    fn of(variable: &flatten::Variable) -> Declaration {
+        Declaration {
+            base: variable.base.clone(),
+            dims: variable.dims.clone(),
+            variability: variable.variability,
+            causality: variable.causality,
+            is_final: variable.is_final,
+            is_evaluated: variable.structural || variable.evaluate,
+            top_level: variable.top_level,
+            says_fixed: variable.attributes.contains_key("fixed"),
+            final_start: variable.attributes.get("start").map(|start| start.is_final),
+        }
     }
 }

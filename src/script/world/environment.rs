@@ -6,6 +6,16 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// Keeps from one process to the next what can be made again, by names that are made of letters and
+/// digits. Whoever implements it answers with nothing where what is there is damaged or was kept by
+/// another version of this program.
+pub trait Store: Send + Sync {
+    /// What is kept under a name.
+    fn find(&self, name: &str) -> Option<Vec<u8>>;
+    /// Keeps something under a name, if there is room.
+    fn keep(&self, name: &str, bytes: &[u8]);
+}
+
 /// The process and the machine that a script runs on.
 pub trait Environment {
     /// An environment variable that scripts may see.

@@ -8,7 +8,7 @@ mod files;
 mod memory;
 mod screen;
 
-pub use environment::Environment;
+pub use environment::{Environment, Store};
 pub use files::{Content, FileReader, Files, Stamp, normalized};
 pub use memory::{MemoryWorld, Streams, Views};
 pub use screen::Screen;

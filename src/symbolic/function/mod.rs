@@ -94,7 +94,9 @@ pub enum UnitRule {
 }
 
 /// A function of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct FunctionId(u16);
 
 static TABLE: LazyLock<Vec<&'static Function>> =

@@ -384,7 +384,7 @@ pub enum VariabilityPrefix {
 }
 
 /// `input` or `output`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum CausalityPrefix {
     /// Known from outside.
     Input,

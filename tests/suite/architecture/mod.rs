@@ -21,7 +21,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("elementary", &[]),
     ("page", &[]),
     ("singular_values", &[]),
-    ("diag", &["source"]),
+    ("diag", &["source", "name"]),
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
     ("budget", &[]),

@@ -71,10 +71,11 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
         class => class.to_owned(),
     };
     let translated = simulation::translated(session, &class)?;
-    let roles = roles(&columns, &translated).map_err(one)?;
+    let flat = simulation::flat_model_of(session, &translated)?;
+    let roles = roles(&columns, &translated, flat).map_err(one)?;
     let mut text = head(options, &class);
     parameters(&mut text, &translated, &roles);
-    experiment(&mut text, options, &translated.flat, &roles);
+    experiment(&mut text, options, flat, &roles);
     text.push_str(
         "\n[stop]                       # the first condition met ends the run\n\
          evaluations = 20000          # simulations\n\
@@ -101,9 +102,12 @@ fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
     Ok(found)
 }
 
-fn roles<'c>(columns: &'c [DataColumn], model: &Translated) -> Result<Roles<'c>, Fault> {
+fn roles<'c>(
+    columns: &'c [DataColumn],
+    model: &Translated,
+    flat: &FlatModel,
+) -> Result<Roles<'c>, Fault> {
     let has_states = !model.program.sorted().states.is_empty();
-    let flat = &model.flat;
     let matched = |column: &DataColumn| {
         let name = variable_of(&column.name, flat)?;
         let variable = flat.variables.get(name.as_str())?;

@@ -1,0 +1,124 @@
+//! Translated models in the user's cache folder.
+//!
+//! A file is written beside its place and moved there when it is whole; its digest stands first.
+//! Its name is that of the model with the version of this program, so that another version finds
+//! nothing. Beyond [`MOST`] bytes what was not used for longest is removed.
+
+use super::cache_folder;
+use crate::script::world::Store;
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::SystemTime;
+
+/// Bytes that all models take at most.
+const MOST: u64 = 1 << 30;
+/// Bytes from which keeping a model pays: it took about 0.05 s to translate.
+const SMALL: usize = 1 << 16;
+/// Bytes of a digest.
+const DIGEST: usize = 32;
+/// Seconds after which a file that is being written belongs to a process that is gone.
+const FORGOTTEN: u64 = 3600;
+
+/// The models of the user.
+#[derive(Debug)]
+struct Translations {
+    /// What tells this program from another version.
+    version: String,
+}
+
+/// The models of the user, if there is a place for them.
+pub(super) fn of_the_user() -> Option<Arc<dyn Store>> {
+    cache_folder::of(FOLDER)?;
+    Some(Arc::new(Translations { version: version()? }))
+}
+
+const FOLDER: &str = "models";
+
+/// The version of this program; one that is being worked on has another one after every build.
+fn version() -> Option<String> {
+    let program = fs::metadata(std::env::current_exe().ok()?).ok()?;
+    let built = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
+    let name = env!("CARGO_PKG_VERSION");
+    Some(format!("{name} {} {} {}", std::env::consts::ARCH, program.len(), built.as_nanos()))
+}
+
+impl Translations {
+    fn file_name(&self, name: &str) -> String {
+        let digest = Sha256::digest(format!("{name} {}", self.version));
+        digest.iter().fold(String::new(), |mut text, byte| {
+            _ = write!(text, "{byte:02x}");
+            text
+        }) + ".model"
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> std::io::Result<()> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let folder = cache_folder::made(FOLDER)?;
+        make_room(&folder, bytes.len() as u64);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let beside = folder.join(format!("{}-{number}.part", std::process::id()));
+        let mut file = File::create(&beside)?;
+        let written = file.write_all(&Sha256::digest(bytes)).and_then(|()| file.write_all(bytes));
+        drop(file);
+        let moved = written.and_then(|()| fs::rename(&beside, folder.join(self.file_name(name))));
+        if moved.is_err() {
+            _ = fs::remove_file(&beside);
+        }
+        moved
+    }
+}
+
+impl Store for Translations {
+    fn find(&self, name: &str) -> Option<Vec<u8>> {
+        let path = cache_folder::of(FOLDER)?.join(self.file_name(name));
+        let mut bytes = fs::read(&path).ok()?;
+        let content = bytes.get(DIGEST..)?;
+        if Sha256::digest(content)[..] != bytes[..DIGEST] {
+            _ = fs::remove_file(&path);
+            return None;
+        }
+        // When it was used last.
+        let used = File::options().append(true).open(&path);
+        _ = used.and_then(|file| file.set_modified(SystemTime::now()));
+        bytes.drain(..DIGEST);
+        Some(bytes)
+    }
+
+    fn keep(&self, name: &str, bytes: &[u8]) {
+        if bytes.len() >= SMALL && bytes.len() as u64 <= MOST / 4 {
+            // A disk that is full or read-only keeps nothing.
+            _ = self.write(name, bytes);
+        }
+    }
+}
+
+/// Removes what was not used for longest until there is room for so many bytes, and what processes
+/// left that were killed.
+fn make_room(folder: &Path, wanted: u64) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let mut known: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
+    for entry in entries.flatten() {
+        let path = entry.path();
+        let Ok(metadata) = entry.metadata() else { continue };
+        let Ok(used) = metadata.modified() else { continue };
+        if path.extension().is_some_and(|extension| extension == "model") {
+            known.push((used, metadata.len(), path));
+        } else if used.elapsed().is_ok_and(|age| age.as_secs() > FORGOTTEN) {
+            _ = fs::remove_file(path);
+        }
+    }
+    known.sort();
+    let mut taken: u64 = known.iter().map(|(_, length, _)| length).sum();
+    for (_, length, path) in known {
+        if taken + wanted <= MOST {
+            break;
+        }
+        taken -= length;
+        _ = fs::remove_file(path);
+    }
+}

@@ -1,0 +1,120 @@
+//! A model as it is kept.
+
+use super::reads::{Answer, Digest, Question, Watched, ask};
+use crate::codegen::Program;
+use crate::diag::Diagnostic;
+use crate::name::Ident;
+use crate::script::Session;
+use crate::script::models::translated::{Declarations, Translated};
+use crate::source::{SourceId, noting_texts, with_texts};
+use crate::syntax;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
+
+/// A model, and what must be as it was.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Entry {
+    answers: BTreeMap<Question, Answer>,
+    searches: Vec<(Ident, bool)>,
+    /// The history of the classes after the translation.
+    after: Digest,
+    texts: Vec<Text>,
+    /// Declarations, program and warnings.
+    content: Vec<u8>,
+}
+
+/// A text in which something of the model is written.
+#[derive(Serialize, Deserialize)]
+enum Text {
+    /// Of a file among the answers, as it is shown.
+    File(String, PathBuf),
+    /// Another one: name and content.
+    Other(String, String),
+}
+
+impl Entry {
+    /// The bytes of an entry; `None` where the model cannot be kept.
+    pub(super) fn of(
+        session: &Session,
+        model: &Translated,
+        warnings: &[Diagnostic],
+    ) -> Option<Vec<u8>> {
+        let (content, sources) = noting_texts(|| {
+            let program = model.program.to_bytes()?;
+            postcard::to_allocvec(&(&model.declarations, program, warnings)).ok()
+        });
+        let texts = sources.into_iter().map(|source| text_of(session, source));
+        let entry = Entry {
+            answers: session.classes.reads.answers(),
+            searches: session.classes.history.searches().to_vec(),
+            after: session.classes.history.digest(),
+            texts: texts.collect::<Option<_>>()?,
+            content: content?,
+        };
+        postcard::to_allocvec(&entry).ok()
+    }
+
+    pub(super) fn read(bytes: &[u8]) -> Option<Entry> {
+        postcard::from_bytes(bytes).ok()
+    }
+
+    /// The texts of the entry, if the disk answers as it did.
+    pub(super) fn texts_if_unchanged(&self, session: &Session) -> Option<Vec<SourceId>> {
+        let files = Watched::new(session.world.reader(), session.classes.reads.clone());
+        let mut contents = HashMap::new();
+        for (question, answer) in &self.answers {
+            let (now, bytes) = ask(&files, question);
+            if now != *answer {
+                return None;
+            }
+            if let (Question::Read(path), Some(bytes)) = (question, bytes) {
+                contents.insert(path, bytes);
+            }
+        }
+        let texts = self.texts.iter().map(|text| match text {
+            Text::File(shown, path) => {
+                let (text, _) = syntax::decode(contents.get(path)?);
+                let source = session.sources.add(shown.as_str(), text);
+                session.classes.reads.note_text(source, path);
+                Some(source)
+            }
+            Text::Other(name, text) => {
+                let known = session.sources.find(name, text);
+                Some(known.unwrap_or_else(|| session.sources.add(name.as_str(), text.as_str())))
+            }
+        });
+        texts.collect()
+    }
+
+    /// Searches for the classes that the translation searched for; whether the same were found.
+    pub(super) fn repeats_searches(&self, session: &mut Session) -> bool {
+        let same = self.searches.iter().all(|(name, is_loaded)| {
+            session.autoload_class(*name).is_ok_and(|found| found == *is_loaded)
+        });
+        same && session.classes.history.digest() == self.after
+    }
+
+    /// The model with the warnings about it.
+    pub(super) fn model(
+        &self,
+        problem: &str,
+        texts: Vec<SourceId>,
+    ) -> Option<(Translated, Vec<Diagnostic>)> {
+        with_texts(texts, || {
+            let (declarations, program, warnings): (Declarations, &[u8], Vec<Diagnostic>) =
+                postcard::from_bytes(&self.content).ok()?;
+            let program = Program::from_bytes(program)?;
+            Some((Translated::without_flat_model(problem, declarations, program), warnings))
+        })
+    }
+}
+
+fn text_of(session: &Session, source: SourceId) -> Option<Text> {
+    let known = session.sources.get(source)?;
+    let name = known.name.to_string();
+    Some(match session.classes.reads.file_of(source) {
+        Some(path) => Text::File(name, path),
+        None => Text::Other(name, known.text.to_string()),
+    })
+}

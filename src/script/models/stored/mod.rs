@@ -1,0 +1,60 @@
+//! Translated models that are kept from one process to the next.
+//!
+//! A translation depends on the classes that are loaded, on the files that are read for it, and on
+//! the version of this program. The name under which it is kept says what classes were loaded, and
+//! from where more would be; beside the model stands every question to the disk that was asked so
+//! far, with the answer. A model is taken only where all answers are the same.
+
+mod entry;
+mod history;
+mod reads;
+mod state;
+
+pub use history::History;
+pub use reads::{Reads, Watched};
+
+use super::translated::Translated;
+use super::warnings::warn;
+use crate::diag::Diagnostic;
+use crate::script::Session;
+use crate::script::world::Store;
+use entry::Entry;
+use std::sync::Arc;
+
+/// A translation that is going to be done, or found.
+pub struct Request {
+    store: Arc<dyn Store>,
+    /// What the model is kept under.
+    name: String,
+}
+
+impl Request {
+    /// `None` where nothing is kept.
+    pub(super) fn new(session: &mut Session, problem: &str) -> Option<Request> {
+        let store = session.storage.clone()?;
+        let name = state::name(session, problem);
+        session.classes.history.forget_searches();
+        session.output.overheard = Some(Vec::new());
+        Some(Request { store, name })
+    }
+
+    /// The model, if it is kept and would be the same now.
+    pub(super) fn find(&self, session: &mut Session, problem: &str) -> Option<Translated> {
+        let entry = Entry::read(&self.store.find(&self.name)?)?;
+        let texts = entry.texts_if_unchanged(session)?;
+        if !entry.repeats_searches(session) {
+            return None;
+        }
+        let (model, warnings) = entry.model(problem, texts)?;
+        warn(session, &warnings);
+        Some(model)
+    }
+
+    /// Keeps a model with what was said about it.
+    pub(super) fn keep(self, session: &mut Session, model: &Translated) {
+        let warnings: Vec<Diagnostic> = session.output.overheard.take().unwrap_or_default();
+        if let Some(bytes) = Entry::of(session, model, &warnings) {
+            self.store.keep(&self.name, &bytes);
+        }
+    }
+}

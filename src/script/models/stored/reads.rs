@@ -1,0 +1,121 @@
+//! What was asked of the disk, and what it answered.
+
+use crate::script::world::FileReader;
+use crate::source::SourceId;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::collections::{BTreeMap, HashMap};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// SHA-256.
+pub(super) type Digest = [u8; 32];
+
+/// The digest of bytes.
+pub(super) fn digest(bytes: &[u8]) -> Digest {
+    Sha256::digest(bytes).into()
+}
+
+/// A question to the disk.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) enum Question {
+    /// What is in a file.
+    Read(PathBuf),
+    /// What lies in a folder.
+    List(PathBuf),
+    /// Whether there is a file.
+    IsFile(PathBuf),
+}
+
+/// The digest of what was found, if there was anything.
+pub(super) type Answer = Option<Digest>;
+
+/// All questions of a session with their answers; clones note together.
+#[derive(Debug, Clone, Default)]
+pub struct Reads(Arc<Mutex<Notes>>);
+
+#[derive(Debug, Default)]
+struct Notes {
+    answers: BTreeMap<Question, Answer>,
+    /// The files of texts.
+    files: HashMap<SourceId, PathBuf>,
+}
+
+impl Reads {
+    fn notes(&self) -> std::sync::MutexGuard<'_, Notes> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A text was read from a file.
+    pub fn note_text(&self, source: SourceId, path: &Path) {
+        self.notes().files.insert(source, path.to_owned());
+    }
+
+    pub(super) fn file_of(&self, source: SourceId) -> Option<PathBuf> {
+        self.notes().files.get(&source).cloned()
+    }
+
+    pub(super) fn answers(&self) -> BTreeMap<Question, Answer> {
+        self.notes().answers.clone()
+    }
+
+    fn note(&self, question: Question, answer: Answer) {
+        self.notes().answers.insert(question, answer);
+    }
+}
+
+/// A reader of files whose questions are noted.
+#[derive(Debug)]
+pub struct Watched {
+    files: Arc<dyn FileReader>,
+    reads: Reads,
+}
+
+impl Watched {
+    /// A reader whose questions are noted.
+    pub fn new(files: Arc<dyn FileReader>, reads: Reads) -> Watched {
+        Watched { files, reads }
+    }
+}
+
+fn of_names(names: &io::Result<Vec<String>>) -> Answer {
+    names.as_ref().ok().map(|names| digest(names.join("\n").as_bytes()))
+}
+
+fn of_whether(is_there: bool) -> Answer {
+    is_there.then_some(Digest::default())
+}
+
+impl FileReader for Watched {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let bytes = self.files.read(path);
+        let answer = bytes.as_ref().ok().map(|bytes| digest(bytes));
+        self.reads.note(Question::Read(path.to_owned()), answer);
+        bytes
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        let names = self.files.list_dir(path);
+        self.reads.note(Question::List(path.to_owned()), of_names(&names));
+        names
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        let is_file = self.files.is_file(path);
+        self.reads.note(Question::IsFile(path.to_owned()), of_whether(is_file));
+        is_file
+    }
+}
+
+/// Asks a question again; with the bytes of a file that was read.
+pub(super) fn ask(files: &dyn FileReader, question: &Question) -> (Answer, Option<Vec<u8>>) {
+    match question {
+        Question::Read(path) => {
+            let bytes = files.read(path).ok();
+            (bytes.as_deref().map(digest), bytes)
+        }
+        Question::List(path) => (of_names(&files.list_dir(path)), None),
+        Question::IsFile(path) => (of_whether(files.is_file(path)), None),
+    }
+}

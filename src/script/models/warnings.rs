@@ -1,0 +1,13 @@
+//! Warnings about models, each of which is reported once.
+
+use crate::diag::Diagnostic;
+use crate::script::Session;
+
+/// Reports the warnings about a model that were not reported yet, whatever it was asked before.
+pub(super) fn warn(session: &mut Session, warnings: &[Diagnostic]) {
+    for warning in warnings {
+        if session.models.is_new_warning(warning.span(), &warning.message) {
+            session.report(warning.clone());
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Translated models that are kept from one process to the next: the same results as translated
+//! anew, and never those of what has changed since.
+
+use crate::cli::{command, folder};
+use crate::shipped;
+use gapilib::codegen::Program;
+use gapilib::script::Session;
+use gapilib::script::models::simulation::{self, SimulationOptions};
+use gapilib::script::world::{MemoryWorld, Store};
+use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use std::sync::{Arc, Mutex};
+use tempfile::TempDir;
+
+/// What a program computes: the rows, or how it fails.
+fn computed(program: &Arc<Program>) -> (Vec<u64>, Option<String>) {
+    let mut system = program.system();
+    let output = OutputGrid::Intervals(20);
+    let settings = Settings { tolerance: 1e-6, output, ..Settings::default() };
+    let mut rows = Trajectory::default();
+    let ended = Simulator::new().run(&mut system, &settings, &mut rows);
+    let columns = (0..rows.n_columns()).flat_map(|column| rows.column(column));
+    let numbers = rows.time().iter().chain(columns).map(|value| value.to_bits());
+    (numbers.collect(), ended.err().map(|error| program.explain(&error).message.clone()))
+}
+
+#[test]
+fn a_program_computes_the_same_after_it_was_written_and_read() {
+    let mut count = 0;
+    let folders = ["tests/simulation", "tests/models"];
+    for path in folders.iter().flat_map(|folder| shipped::files(folder, "mo")) {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        // Those take long.
+        if path.iter().any(|part| part == "test_set") {
+            continue;
+        }
+        let mut session = Session::new(Box::new(shipped::world()));
+        let Ok(classes) = session.load_text("model.mo", &text) else { continue };
+        let Some(class) = classes.first() else { continue };
+        let Ok(model) = simulation::translate(&mut session, &class.to_string()) else { continue };
+        let program = model.program.clone();
+        let Some(bytes) = program.to_bytes() else { panic!("{}", path.display()) };
+        let restored = Program::from_bytes(&bytes).expect("the bytes of this version");
+        assert_eq!(computed(&program), computed(&restored), "{}", path.display());
+        count += 1;
+    }
+    assert!(count > 25, "only {count} models");
+}
+
+/// A store in memory that counts what was found.
+#[derive(Default)]
+struct Kept {
+    files: Mutex<HashMap<String, Vec<u8>>>,
+    found: Mutex<usize>,
+}
+
+impl Store for Kept {
+    fn find(&self, name: &str) -> Option<Vec<u8>> {
+        let found = self.files.lock().unwrap().get(name).cloned();
+        *self.found.lock().unwrap() += usize::from(found.is_some());
+        found
+    }
+
+    fn keep(&self, name: &str, bytes: &[u8]) {
+        self.files.lock().unwrap().insert(name.to_owned(), bytes.to_vec());
+    }
+}
+
+const PACKAGE: &[(&str, &str)] = &[
+    ("/lib/P/package.mo", "package P\n  constant Real k = 2;\nend P;\n"),
+    (
+        "/lib/P/M.mo",
+        "within P;\nmodel M\n  parameter Real p = 3;\n  parameter Integer n = 2;\n  Real x[n];\n  \
+         Real y = f(x[1]);\nequation\n  for i in 1:n loop\n    x[i] = k*p + time;\n  end for;\n  \
+         assert(y < 100, \"y is large\", AssertionLevel.warning);\nend M;\n",
+    ),
+    (
+        "/lib/P/f.mo",
+        "within P;\nfunction f\n  input Real u;\n  output Real y;\nalgorithm\n  y := 10*u;\nend f;\n",
+    ),
+];
+
+/// What a script prints in a world with the package, changed so; and whether the model that it
+/// translates was found.
+fn printed(kept: &Arc<Kept>, changes: &[(&str, &str)], script: &str) -> (String, bool) {
+    let files = PACKAGE.iter().chain(changes);
+    let world = files.fold(MemoryWorld::new(), |world, (path, text)| world.with_file(path, text));
+    let streams = world.streams();
+    let mut session = Session::new(Box::new(world));
+    session.storage = Some(kept.clone());
+    session.add_library_dir(Path::new("/lib"));
+    session.run_text("test.mos", script);
+    // A model that is translated needs the classes `M` and `f`, too.
+    let was_found = session.library().number_read() < 3;
+    (streams.output() + &streams.errors(), was_found)
+}
+
+const SCRIPT: &str = "simulateModel(\"P.M\", stopTime = 5, resultFile = \"r\");\n\
+                      y = readTrajectory(\"r.mat\", {\"y\"}, readTrajectorySize(\"r.mat\"));\n\
+                      print(String(y[1, end]));\n";
+
+#[test]
+fn a_kept_model_is_taken_only_while_nothing_has_changed() {
+    let kept = Arc::new(Kept::default());
+    let (first, was_found) = printed(&kept, &[], SCRIPT);
+    assert!(!was_found);
+    let (again, was_found) = printed(&kept, &[], SCRIPT);
+    assert!(was_found, "the model is taken from the store");
+    assert_eq!(first, again);
+
+    for change in [
+        (
+            "/lib/P/f.mo",
+            "within P;\nfunction f\n  input Real u;\n  output Real y;\nalgorithm\n  y := 20*u;\nend f;\n",
+        ),
+        ("/lib/P/package.mo", "package P\n  constant Real k = 4;\nend P;\n"),
+        ("/lib/P/other.mo", "within P;\nmodel other\nend other;\n"),
+        ("/lib/P/package.order", "M\nf\n"),
+    ] {
+        let (_, was_found) = printed(&kept, &[change], SCRIPT);
+        assert!(!was_found, "{} has changed", change.0);
+        let (back, _) = printed(&kept, &[], SCRIPT);
+        assert_eq!(back, first, "{} is as it was", change.0);
+    }
+}
+
+#[test]
+fn what_a_script_does_to_the_classes_counts() {
+    let kept = Arc::new(Kept::default());
+    let (plain, _) = printed(&kept, &[], SCRIPT);
+    let own = "function g\n  input Real u;\n  output Real y;\nalgorithm\n  y := u;\nend g;\n";
+    let (_, was_found) = printed(&kept, &[], &format!("{own}{SCRIPT}"));
+    assert!(!was_found, "there is another class");
+    let (_, was_found) = printed(&kept, &[], &format!("{own}{SCRIPT}"));
+    assert!(was_found, "the script is the same");
+    let other = SCRIPT.replace("P.M\"", "P.M(p = 4)\"");
+    let (changed, was_found) = printed(&kept, &[], &other);
+    assert!(!was_found && changed != plain, "{changed}");
+}
+
+#[test]
+fn a_kept_model_takes_parameters_and_is_linearized() {
+    let script =
+        format!("translateModel(\"P.M\");\np = 5;\nn = 3;\n{SCRIPT}linearizeModel(\"P.M\");\n");
+    let kept = Arc::new(Kept::default());
+    let (first, _) = printed(&kept, &[], &script);
+    assert!(first.contains("150"), "{first}");
+    let (again, _) = printed(&kept, &[], &script);
+    assert_eq!(first, again);
+    assert!(*kept.found.lock().unwrap() > 0);
+}
+
+#[test]
+fn a_session_finds_what_another_one_has_kept() {
+    let kept = Arc::new(Kept::default());
+    let tables: Vec<_> = (0..2)
+        .map(|_| {
+            let mut session = Session::new(Box::new(shipped::world()));
+            session.storage = Some(kept.clone());
+            let model = simulation::translate(&mut session, "CaseStudies.LoadSteps");
+            let model = model.expect("it is translated");
+            let options = SimulationOptions::default();
+            simulation::simulate(&mut session, &model, &options).expect("it is simulated").table
+        })
+        .collect();
+    assert_eq!(*kept.found.lock().unwrap(), 1);
+    assert_eq!(tables[0].time, tables[1].time);
+    assert_eq!(tables[0].names().collect::<Vec<_>>(), tables[1].names().collect::<Vec<_>>());
+    for name in tables[0].names() {
+        let values = |table: &gapilib::results::ResultTable| -> Vec<u64> {
+            table.column(name).unwrap().iter().map(|value| value.to_bits()).collect()
+        };
+        assert_eq!(values(&tables[0]), values(&tables[1]), "{name}");
+    }
+}
+
+/// A model that is large enough to be kept on a disk.
+const LARGE: &str = "\
+model Large
+  parameter Real p = 1;
+  Real x[1000](each start = 0, each fixed = true);
+  Real s = sum(x);
+equation
+  for i in 1:1000 loop
+    der(x[i]) = p - x[i]*i*1e-3;
+  end for;
+end Large;
+";
+
+/// Simulates the model with a cache below the folder.
+fn simulated(here: &TempDir, arguments: &[&str]) -> Output {
+    let mut all = vec!["simulate", "Large.mo", "--variable-filter", "s", "-o", "r.csv"];
+    all.extend(arguments);
+    let mut command = command(here.path(), &all);
+    command.env_remove("GAPI_NO_CACHE").env("XDG_CACHE_HOME", here.path().join("cache"));
+    let done = command.output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    done
+}
+
+fn kept(here: &TempDir) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(here.path().join("cache/gapi/models")) else {
+        return Vec::new();
+    };
+    entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+#[test]
+#[cfg(unix)]
+fn the_disk_keeps_large_models_and_damage_is_noticed() {
+    use std::os::unix::fs::MetadataExt;
+    let here = folder(&[("Large.mo", LARGE)]);
+    simulated(&here, &["--no-cache"]);
+    assert!(kept(&here).is_empty());
+    let first = simulated(&here, &[]);
+    let results = fs::read(here.path().join("r.csv")).unwrap();
+    let [file] = &kept(&here)[..] else { panic!("one model is kept") };
+    let number = fs::metadata(file).unwrap().ino();
+    let again = simulated(&here, &[]);
+    assert_eq!((&first.stdout, &first.stderr), (&again.stdout, &again.stderr));
+    assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), results);
+    assert_eq!(fs::metadata(file).unwrap().ino(), number, "nothing was written anew");
+
+    let mut bytes = fs::read(file).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(file, &bytes).unwrap();
+    simulated(&here, &[]);
+    assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), results);
+    assert_ne!(fs::read(file).unwrap(), bytes, "what was damaged is replaced");
+    fs::write(file, &bytes[..20]).unwrap();
+    simulated(&here, &[]);
+    assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), results);
+}
+
+#[test]
+fn a_changed_file_is_translated_anew() {
+    let here = folder(&[("Large.mo", LARGE)]);
+    simulated(&here, &[]);
+    let before = fs::read(here.path().join("r.csv")).unwrap();
+    fs::write(here.path().join("Large.mo"), LARGE.replace("Real p = 1", "Real p = 2")).unwrap();
+    simulated(&here, &[]);
+    assert_ne!(fs::read(here.path().join("r.csv")).unwrap(), before);
+}
