@@ -88,7 +88,10 @@ impl Program {
         match self.linear_loop(origin) {
             Some(names) => fault!(
                 SIMULATION_FAILED,
-                "the linear algebraic loop of {names} has no unique solution {when}"
+                "the linear algebraic loop of {names} has no unique solution {when}: its equations \
+                 depend on each other, or contradict each other, with the values that they have then";
+                help: "change the parameters that their coefficients consist of, or replace one of \
+                       the equations"
             )
             .at(self.place(origin)),
             None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(origin)),

@@ -38,6 +38,7 @@ mod simulation_log;
 mod singular_systems;
 mod sliding;
 mod state_selection;
+mod stuck_loops;
 mod system;
 mod transport_record;
 mod transports;

@@ -39,6 +39,9 @@ pub(super) struct LoopSolver {
     /// Where an attempt begins, or what least squares found.
     start: Vec<f64>,
     x: Vec<f64>,
+    /// Where least squares ended without a solution, and the residuals there; NaN before.
+    nearest: Vec<f64>,
+    nearest_residual: Vec<f64>,
     /// Whether the Jacobian is singular at the last solution.
     pub(super) is_singular: bool,
     /// How often it was solved, and its residuals evaluated.
@@ -58,6 +61,8 @@ impl LoopSolver {
             guess: vec![0.0; n],
             start: vec![0.0; n],
             x: vec![0.0; n],
+            nearest: vec![f64::NAN; n],
+            nearest_residual: vec![f64::NAN; n],
             is_singular: false,
             solutions: 0,
             evaluations: 0,
@@ -114,6 +119,12 @@ impl LoopSolver {
         outcome.and(evaluated)
     }
 
+    /// Where least squares ended without a solution, and the residuals there.
+    pub(super) fn nearest(&self) -> Option<(&[f64], &[f64])> {
+        let is_known = self.nearest_residual.iter().all(|residual| residual.is_finite());
+        is_known.then_some((&self.nearest, &self.nearest_residual))
+    }
+
     /// Where everything else failed: with zeros replaced by nominal values.
     fn attempt_from_nominal(
         &mut self,
@@ -140,6 +151,12 @@ impl LoopSolver {
         let Err(failure) = first else { return Ok(()) };
         self.x.copy_from_slice(&self.start);
         let near = self.least_squares.solve(equations, &mut self.x, &self.nominal);
+        if near.is_err() {
+            self.nearest.copy_from_slice(&self.x);
+            if equations.residual(&self.x, &mut self.nearest_residual).is_err() {
+                self.nearest_residual.fill(f64::NAN);
+            }
+        }
         if near.is_ok() {
             self.start.copy_from_slice(&self.x);
             match self.newton.solve(equations, &mut self.x, &self.nominal) {

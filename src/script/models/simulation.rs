@@ -302,7 +302,7 @@ pub fn simulate(
         Err(_) if session.world.interrupted() => {
             Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
-        Err(error) => Err(system.system.program().explain(&error)),
+        Err(error) => Err(system.system.explain(&error)),
     }
 }
 

@@ -144,7 +144,7 @@ fn simulate(
     system.observe_only(&observed);
     let mut trajectory = Trajectory::default();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
-    run.map_err(|error| system.program().explain(&error))?;
+    run.map_err(|error| system.explain(&error))?;
     let mut table = ResultTable::new(trajectory.time().to_vec());
     let column = |(at, name)| Series::new(name, Values::Trajectory(trajectory.column(at).to_vec()));
     table.series = names.into_iter().enumerate().map(column).collect();
