@@ -7,6 +7,7 @@ use super::explain::ExplainArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
 use super::lesson::LessonArgs;
+use super::man::ManArgs;
 use super::new::NewArgs;
 use super::options::Global;
 use super::repl::ReplArgs;
@@ -83,6 +84,8 @@ pub(super) enum Command {
     Explain(ExplainArgs),
     /// Print shell completions
     Completions(CompletionsArgs),
+    /// Print or write manual pages
+    Man(ManArgs),
 }
 
 #[cfg(test)]

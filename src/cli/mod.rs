@@ -18,6 +18,7 @@ mod lesson;
 mod limits;
 mod live;
 mod lock;
+mod man;
 mod memory;
 mod named;
 mod new;
@@ -85,6 +86,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Help(arguments) => help::help(arguments),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments, Cli::command()),
+        Command::Man(arguments) => man::man(arguments, Cli::command()),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
         Command::Report(arguments) => report::report(arguments, &cli.global),

@@ -55,6 +55,7 @@ fn version_and_help() {
         "verify",
         "explain",
         "completions",
+        "man",
     ] {
         let (code, out, _) = gapi(&here, &[name, "--help"]);
         assert_eq!(code, 0);
@@ -184,6 +185,12 @@ fn check_flatten_explain_completions() {
     assert!(code == 0 && out.contains("der(x) = "), "{out}");
     let (code, out, _) = gapi(&here, &["explain", "bad-seed"]);
     assert!(code == 0 && out.contains("## What to do"), "{out}");
+    let (code, _, _) = gapi(&here, &["man", "--out", "pages"]);
+    let page = |name| fs::read_to_string(here.path().join("pages").join(name)).unwrap();
+    assert_eq!(code, 0);
+    assert!(page("gapi.1").contains("simulate"), "{}", page("gapi.1"));
+    assert!(page("gapi-simulate.1").contains("Integration method"));
+    assert_eq!(gapi(&here, &["man"]).1, page("gapi.1"));
     let (code, out, _) = gapi(&here, &["completions", "bash"]);
     assert!(code == 0 && out.contains("complete "), "{out}");
     assert_eq!(gapi(&here, &["check", "missing.mo"]).0, 1);
