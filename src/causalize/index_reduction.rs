@@ -18,7 +18,7 @@ use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::{Bipartite, differentiate_equations, match_equations};
 use crate::lower::{Dae, Equation, Kind, Variable, derivative_of};
-use crate::symbolic::{Expr, VarId, differentiate};
+use crate::symbolic::{Expr, Node, Pool, VarId, differentiate, differentiate_forward};
 use rustc_hash::FxHashMap;
 
 /// Appends differentiated equations and the derivatives they need; returns the states.
@@ -52,6 +52,14 @@ pub(super) fn reduce_index(
     let chosen = choose_states(dae, &chains)?;
     aliases.resize(dae.variables.len(), None);
     Ok(chosen)
+}
+
+/// Whether `variable` is one, and `value` does not depend on it.
+fn defines(pool: &Pool, variable: Expr, value: Expr) -> bool {
+    match *pool.node(variable) {
+        Node::Variable(variable) => !pool.any_variable(value, |v| v == variable),
+        _ => false,
+    }
 }
 
 /// Variables whose derivatives stand in the equations.
@@ -227,8 +235,15 @@ impl Continuous {
                 .at(span));
             }
             let seed = |v: VarId| slopes.get(&v).copied();
-            let left = differentiate(&mut dae.pool, left, &seed);
-            let right = differentiate(&mut dae.pool, right, &seed);
+            // What defines a variable keeps its value at zeros of norms; where the derivatives in a
+            // norm are what is solved for, the equation stays linear in them.
+            let of_side =
+                |pool: &mut Pool, side: Expr, other: Expr| match defines(pool, other, side) {
+                    true => differentiate_forward(pool, side, &seed),
+                    false => differentiate(pool, side, &seed),
+                };
+            let sides = [(left, right), (right, left)];
+            let [left, right] = sides.map(|(side, other)| of_side(&mut dae.pool, side, other));
             self.equations.push(dae.equations.len());
             dae.equations.push(Equation { left, right, ..equation });
         }

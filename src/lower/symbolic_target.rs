@@ -423,7 +423,7 @@ impl Builder<'_> {
             slopes.insert(variable, slope);
         }
         let pool = &mut self.dae.pool;
-        Ok(crate::symbolic::differentiate(pool, a, &|v| slopes.get(&v).copied()))
+        Ok(crate::symbolic::differentiate_forward(pool, a, &|v| slopes.get(&v).copied()))
     }
 
     fn derivative_variable(&mut self, of: VarId, span: Span) -> Result<VarId, Diagnostic> {

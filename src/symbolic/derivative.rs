@@ -1,7 +1,8 @@
 //! Derivatives by the rules of the operators and of the function table.
 //!
 //! Relations and logic have derivative zero, if-expressions are differentiated branch by branch:
-//! the result holds wherever the expression is differentiable.
+//! the result holds wherever the expression is differentiable. [`differentiate_forward`] also holds
+//! where the Euclidean norm of a vector is zero.
 
 use super::function::FunctionId;
 use super::node::{Arguments, Expr, Node, RelationOperator, VarId};
@@ -19,6 +20,20 @@ pub fn derivative(pool: &mut Pool, expr: Expr, variable: VarId) -> Expr {
 /// d/dt.
 pub fn differentiate(pool: &mut Pool, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Expr {
     differentiate_all(pool, &[expr], seed)[0]
+}
+
+/// [`differentiate`] with one-sided derivatives of norms: where all `u` in `sqrt(u1^2 + u2^2)` are
+/// zero, it grows by `sqrt(u1'^2 + u2'^2)` from there on, although its partial derivatives are 0/0.
+/// That is not linear in the derivatives, as the other rules are.
+pub fn differentiate_forward(
+    pool: &mut Pool,
+    expr: Expr,
+    seed: &dyn Fn(VarId) -> Option<Expr>,
+) -> Expr {
+    let nodes = pool.reachable(&[expr]);
+    let mut slopes = Slopes { is_forward: true, ..Slopes::new(pool) };
+    slopes.fill(&nodes, seed);
+    slopes.get(expr).unwrap_or_else(|| slopes.pool.constant(0.0))
 }
 
 /// [`differentiate`] for several expressions at once: what they share is differentiated once.
@@ -39,12 +54,8 @@ fn differentiate_nodes(
     exprs: &[Expr],
     seed: &dyn Fn(VarId) -> Option<Expr>,
 ) -> Vec<Expr> {
-    let mut slopes = Slopes { pool, of: FxHashMap::default(), rights: FxHashMap::default() };
-    for &node in nodes {
-        if let Some(slope) = slopes.slope(node, seed) {
-            slopes.of.insert(node, slope);
-        }
-    }
+    let mut slopes = Slopes::new(pool);
+    slopes.fill(nodes, seed);
     let of = slopes.of;
     let zero = pool.constant(0.0);
     exprs.iter().map(|expr| of.get(expr).copied().unwrap_or(zero)).collect()
@@ -56,12 +67,28 @@ struct Slopes<'a> {
     of: FxHashMap<Expr, Expr>,
     /// The right sides of the derivatives of linear systems, `None` where these are zero.
     rights: FxHashMap<System, Option<Expr>>,
+    /// Whether norms have one-sided derivatives where they are zero.
+    is_forward: bool,
 }
 
 /// A linear system: matrix, right side, whether it is a derivative itself.
 type System = (Expr, Expr, bool);
 
 impl Slopes<'_> {
+    fn new(pool: &mut Pool) -> Slopes<'_> {
+        let (of, rights) = (FxHashMap::default(), FxHashMap::default());
+        Slopes { pool, of, rights, is_forward: false }
+    }
+
+    /// The derivatives of nodes in ascending order.
+    fn fill(&mut self, nodes: &[Expr], seed: &dyn Fn(VarId) -> Option<Expr>) {
+        for &node in nodes {
+            if let Some(slope) = self.slope(node, seed) {
+                self.of.insert(node, slope);
+            }
+        }
+    }
+
     fn slope(&mut self, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Option<Expr> {
         let slope = match self.pool.node(expr).clone() {
             Node::Constant(_)
@@ -159,6 +186,12 @@ impl Slopes<'_> {
 
     fn application(&mut self, id: FunctionId, arguments: Arguments) -> Option<Expr> {
         let list: Vec<Expr> = arguments.iter().collect();
+        if self.is_forward
+            && id.get().name == "sqrt"
+            && let Some(slope) = self.norm(list[0])
+        {
+            return Some(slope);
+        }
         let mut sum = None;
         for (which, argument) in list.iter().enumerate() {
             let Some(inner) = self.get(*argument) else { continue };
@@ -167,6 +200,50 @@ impl Slopes<'_> {
             sum = self.total(sum, Some(term));
         }
         sum
+    }
+
+    /// √q of a sum q = Σ c u² with c > 0: q′ / (2 √q), and √(Σ c u′²) where q is zero. `None` if q
+    /// is anything else, or constant.
+    fn norm(&mut self, q: Expr) -> Option<Expr> {
+        let inner = self.get(q)?;
+        let mut squares = Vec::new();
+        if !self.squares(q, 1.0, &mut squares) {
+            return None;
+        }
+        let zero = self.pool.constant(0.0);
+        let at_zero = squares.into_iter().fold(zero, |sum, (factor, u)| {
+            let du = self.get(u).unwrap_or(zero);
+            let (factor, square) = (self.pool.constant(factor), self.pool.mul(du, du));
+            let term = self.pool.mul(factor, square);
+            self.pool.add(sum, term)
+        });
+        let at_zero = self.pool.function("sqrt", &[at_zero]);
+        let (root, two) = (self.pool.function("sqrt", &[q]), self.pool.constant(2.0));
+        let divisor = self.pool.mul(two, root);
+        let elsewhere = self.pool.div(inner, divisor);
+        let is_zero = self.pool.relation(RelationOperator::Equal, q, zero);
+        Some(self.pool.if_then_else(is_zero, at_zero, elsewhere))
+    }
+
+    /// Appends the terms c u² of a sum of such, times a factor, as (c, u); whether it is one.
+    fn squares(&self, e: Expr, factor: f64, found: &mut Vec<(f64, Expr)>) -> bool {
+        match *self.pool.node(e) {
+            Node::Add(a, b) => self.squares(a, factor, found) && self.squares(b, factor, found),
+            Node::Mul(a, b) if a == b => {
+                found.push((factor, a));
+                true
+            }
+            Node::Mul(a, b) => match (self.pool.as_constant(a), self.pool.as_constant(b)) {
+                (Some(c), _) if c > 0.0 => self.squares(b, factor * c, found),
+                (_, Some(c)) if c > 0.0 => self.squares(a, factor * c, found),
+                _ => false,
+            },
+            Node::Pow(u, exponent) if self.pool.as_constant(exponent) == Some(2.0) => {
+                found.push((factor, u));
+                true
+            }
+            _ => false,
+        }
     }
 
     /// The product of the slopes of a function and of what it is applied to: where one of them

@@ -30,7 +30,7 @@ mod substitute;
 mod tests;
 
 pub use collect::collect_terms;
-pub use derivative::{derivative, differentiate, differentiate_all};
+pub use derivative::{derivative, differentiate, differentiate_all, differentiate_forward};
 pub use evaluate::{Environment, evaluate};
 pub use node::{Arguments, Expr, Inverse, Node, Number, RelationOperator, VarId};
 pub use pool::{Containing, Pool, VariableCollection};

@@ -360,6 +360,50 @@ fn what_libraries_do_is_refused_only_where_all_must_conform() {
     );
 }
 
+/// An input of expandable connectors needs a source in one of them; those of the model itself may
+/// get it from outside (MLS §9.1.3).
+#[test]
+fn inputs_of_expandable_connectors_have_a_source() {
+    let model = |source: &str| {
+        format!(
+            "expandable connector Bus end Bus; connector In = input Real; connector Out = output Real;
+             model User In u = 1; end User; model Source Out y = 1; end Source;
+             model A Bus bus; User user; {source} equation connect(user.u, bus.u); end A;
+             model M A a; end M;"
+        )
+    };
+    refused_if_strict(&model(""), "invalid-connection");
+    let accepted_if_strict = |text: &str, name: &str| {
+        let mut library = library(text);
+        library.set_strict(true);
+        let flat = flatten(&library, &Name::parse(name), &[]);
+        assert!(flat.is_ok(), "{:?}", flat.err());
+    };
+    accepted_if_strict(&model(""), "A");
+    let with_source = model("Source s;").replace("In u = 1", "In u");
+    let with_source = with_source.replace("equation", "equation connect(s.y, bus.u);");
+    accepted_if_strict(&with_source, "M");
+}
+
+/// The size of an array declared with a colon: of its value, or of any attribute that is an array
+/// (MLS §10.1).
+#[test]
+fn an_attribute_gives_the_size_of_an_array() {
+    let model = |x: &str| {
+        format!(
+            "function positive input Integer x[:]; output Integer y[:];
+             algorithm for i in 1:size(x, 1) loop if x[i] > 0 then y := cat(1, y, x[i:i]); end if;
+             end for; end positive;
+             model M {x}; parameter Integer n = size(x, 1); equation x = fill(time, n); end M;"
+        )
+    };
+    let library =
+        library(&model("Real x[:](each nominal = 2, start = positive({-2, 1, 0, 4, 2}))"));
+    let flat = flatten(&library, &Name::parse("M"), &[]).expect("flattens").model;
+    assert_eq!(flat.variables["x"].dims, [3]);
+    refused(&model("Real x[:](each start = 2)"), "not-constant");
+}
+
 #[test]
 fn a_loop_does_not_change_the_size_that_gives_its_range() {
     let function = |range: &str, assigned: &str| {

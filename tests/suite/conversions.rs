@@ -90,16 +90,20 @@ fn flat(body: &str, version: &str) -> Result<String, Vec<Diagnostic>> {
         format!("package User {body} annotation(uses(Pumps(version = \"{version}\"))); end User;");
     let texts = [true, false].map(|first| {
         let library = loaded(&text, first);
-        let flat = flatten(&library, &Name::parse("User.M"), &[]);
-        // Errors in the texts of classes come first, as in the program.
-        match library.take_problems() {
-            problems if problems.is_empty() => flat.map(|flat| flat.model.to_string()),
-            problems => Err(problems),
-        }
+        flattened(&library)
     });
     let [one, other] = texts;
     assert_eq!(one.as_ref().ok(), other.as_ref().ok(), "the order of loading decides");
     one
+}
+
+fn flattened(library: &Library) -> Result<String, Vec<Diagnostic>> {
+    let flat = flatten(library, &Name::parse("User.M"), &[]);
+    // Errors in the texts of classes come first, as in the program.
+    match library.take_problems() {
+        problems if problems.is_empty() => flat.map(|flat| flat.model.to_string()),
+        problems => Err(problems),
+    }
 }
 
 /// The lines of the flat model of `User.M`, without the first and the last.
@@ -204,4 +208,113 @@ fn nothing_else_is_converted() {
         let new = flat("model M Pumps.Machines.Pump p; end M;", version);
         assert!(new.as_ref().is_ok_and(|text| text.contains("'p.nominal' = 1")), "{new:?}");
     }
+}
+
+/// A library that was renamed twice: 1.0 to 1.5 by rules in its annotation, 1.5 to 2.0 by others;
+/// 1.6 needs none to become 2.0.
+const TANKS: &str = "package Tanks
+  model Tank parameter Real height = 1; parameter Real area = 1; end Tank;
+  model OpenTank extends Tank; end OpenTank;
+  function cube input Real x; output Real y; algorithm y := x^3; end cube;
+  function cubeSlope input Real x; input Real dx; output Real y; algorithm y := 3*x^2*dx; end cubeSlope;
+  annotation(version = \"2.0\", conversion(noneFromVersion = \"1.6\",
+    from(version = {\"0.9\", \"1.0\"}, to = \"1.5\", change = {
+      convertClass(\"Tanks.Box\", \"Tanks.Vessel\"),
+      convertElement(\"Tanks.Box\", {\"high\", \"s\"}, {\"level\", \"size.area\"}),
+      convertModifiers(\"Tanks.Box\", {\"double=1\"}, {\"level=2*%double%\"})}),
+    from(version = \"1.5\", to = \"1.6\", change = {
+      convertClass({\"Tanks.Vessel\", \"Tanks.third\", \"Tanks.thirdSlope\"}, {\"Tanks.Tank\", \"Tanks.cube\", \"Tanks.cubeSlope\"}),
+      convertClassIf(\"Tanks.Vessel\", \"lid\", \"false\", \"Tanks.OpenTank\"),
+      convertElement(\"Tanks.Vessel\", {\"level\", \"size.area\"}, {\"height\", \"area\"}),
+      convertMessage(\"Tanks.Vessel\", \"tanks have no colour\", \"colour\")}),
+    from(version = \"0.1\", to = \"0.2\", change = {convertClass(\"Tanks.Box\", \"Tanks.Tub\")}),
+    from(version = \"0.3\", to = \"0.3\", change = {convertClass(\"Tanks.Box\", \"Tanks.Tub\")}),
+    from(version = \"0.4\", change = {convertTanks(\"Tanks.Box\")})));
+end Tanks;";
+
+fn tanks_and(body: &str, version: &str) -> Library {
+    let mut library = Library::new();
+    let user =
+        format!("package User {body} annotation(uses(Tanks(version = \"{version}\"))); end User;");
+    for text in [TANKS, user.as_str()] {
+        let source = SourceMap::default().add("Tanks.mo", text);
+        library.load(&parse_stored_definition(source, text).expect("Modelica")).expect("loads");
+    }
+    library
+}
+
+fn with_tanks(body: &str, version: &str) -> Result<String, Vec<Diagnostic>> {
+    flattened(&tanks_and(body, version))
+}
+
+#[test]
+fn rules_in_the_annotation_lead_over_several_versions() {
+    for (version, body) in [
+        ("1.0", "model M Tanks.Box t(high = 3, s = 4); Real x = t.high; Real a = t.s; end M;"),
+        ("0.9", "model M Tanks.Box t(s = 4, high = 3); Real x = t.high; Real a = t.s; end M;"),
+        (
+            "1.5",
+            "model M Tanks.Vessel t(level = 3, size.area = 4); Real x = t.level; Real a = t.size.area; end M;",
+        ),
+        (
+            "1.6",
+            "model M Tanks.Tank t(height = 3, area = 4); Real x = t.height; Real a = t.area; end M;",
+        ),
+    ] {
+        let flat =
+            with_tanks(body, version).unwrap_or_else(|errors| panic!("{version} {errors:?}"));
+        for line in [
+            "parameter Real 't.height' = 3;",
+            "parameter Real 't.area' = 4;",
+            "Real x = 't.height';",
+            "Real a = 't.area';",
+        ] {
+            assert!(flat.contains(line), "{version}: no `{line}` in\n{flat}");
+        }
+    }
+    // The modifiers and the choice of a later step see what an earlier one has made.
+    let flat = with_tanks("model M Tanks.Box t(double = 5, lid = false); end M;", "1.0");
+    assert!(flat.as_ref().is_ok_and(|text| text.contains("'t.height' = 2 * 5;")), "{flat:?}");
+}
+
+#[test]
+fn steps_that_lead_nowhere_and_messages_of_any_step_are_errors() {
+    for (version, body, reason) in [
+        ("0.1", "model M Tanks.Box t; end M;", "from version 0.1 to 0.2 only"),
+        ("0.3", "model M Tanks.Box t; end M;", "from version 0.3 to 0.3 only"),
+        ("0.4", "model M Tanks.Box t; end M;", "this is not a rule"),
+        ("1.0", "model M Tanks.Box t(colour = 2); end M;", "tanks have no colour"),
+    ] {
+        let errors = with_tanks(body, version).expect_err(version);
+        let found = errors.iter().find(|one| one.code.slug == "conversion");
+        let found = found.unwrap_or_else(|| panic!("{errors:?}"));
+        assert!(found.message.contains(reason), "{}", found.message);
+    }
+}
+
+#[test]
+fn functions_named_in_annotations_and_addresses_are_converted() {
+    let body = "function own input Real x; output Real y; algorithm y := Tanks.third(x);
+           annotation(derivative = Tanks.thirdSlope); end own;
+         model M Real x = own(time); constant String s = \"modelica://Tanks.Vessel/a.txt\"; end M;";
+    let library = tanks_and(body, "1.5");
+    let flat = flatten(&library, &Name::parse("User.M"), &[]).expect("flattens").model;
+    // A function that an annotation names in vain is left out.
+    assert!(
+        flat.functions.contains_key(&Name::parse("Tanks.cubeSlope")),
+        "{:?}",
+        flat.functions.keys()
+    );
+    let text = flat.to_string();
+    assert!(text.contains("\"modelica://Tanks.Tank/a.txt\""), "{text}");
+}
+
+/// What a class inherits from other classes of the user, over any number of them.
+#[test]
+fn inherited_components_are_converted() {
+    converted(
+        "model A Pumps.Pump p; end A; model B extends A; end B; model C extends B; end C;
+         model M extends C(p(nom = 4)); Real y = 2*p.nom; end M;",
+        &["parameter Real 'p.nominal' = 4;", "Real y = 2 * 'p.nominal';"],
+    );
 }

@@ -46,3 +46,38 @@ fn a_domain_error_of_the_residual_is_still_one() {
     let error = gapilib::sim::simulate(&mut compiled.system(), &settings).expect_err("sqrt(-1)");
     assert!((error.time - 1.0).abs() < 1e-2, "{}", error.time);
 }
+
+/// The acceleration along a path is the derivative of the norm of a velocity, which starts at zero.
+#[test]
+fn the_derivative_of_a_norm_starts_at_zero() {
+    let text = "model M Real u(start = 0, fixed = true), v(start = 0, fixed = true); Real s, d, e;
+        equation der(u) = 3; der(v) = 4*cos(time); s = sqrt(u^2 + v*v) + 1e-4; d = der(s);
+        e = der(sqrt(4*u^2)); end M;";
+    let run = Run::of(text, 2.0);
+    run.follows("e", 1e-8, |_| 6.0);
+    run.follows("d", 1e-6, |t| {
+        let (u, v) = (3.0 * t, 4.0 * t.sin());
+        if t == 0.0 { 5.0 } else { (3.0 * u + 4.0 * t.cos() * v) / u.hypot(v) }
+    });
+}
+
+/// Through zero: the speed of a body thrown upwards.
+#[test]
+fn the_derivative_of_a_norm_changes_sign_at_zero() {
+    let text = "model M Real v(start = 1, fixed = true); Real s, d;
+        equation der(v) = -1; s = sqrt(v^2); d = der(s); end M;";
+    let run = Run::of(text, 2.0);
+    run.follows("s", 1e-8, |t| (1.0 - t).abs());
+    run.follows("d", 1e-8, |t| if t < 1.0 { -1.0 } else { 1.0 });
+}
+
+/// What is no sum of squares has no derivative at zero.
+#[test]
+fn the_derivative_of_another_root_at_zero_is_refused() {
+    let compiled = super::index_reduction::compiled(
+        "model M Real u(start = 0, fixed = true), v(start = 0, fixed = true); Real s, d;
+         equation der(u) = 2; der(v) = 1; s = sqrt(u^2 - v^2); d = der(s); end M;",
+    );
+    let settings = gapilib::sim::Settings { stop: 2.0, ..Default::default() };
+    gapilib::sim::simulate(&mut compiled.system(), &settings).expect_err("0/0");
+}

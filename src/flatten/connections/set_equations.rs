@@ -4,9 +4,11 @@ use super::super::instantiate::instance::MemberState;
 use super::super::instantiate::instance::NodeKind;
 use super::super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
+use crate::fault;
 use crate::flatten::connections::end::End;
 use crate::flatten::connections::sets::Connections;
 use crate::flatten::connections::sets::ConnectorSide;
+use crate::flatten::errors::INVALID_CONNECTION;
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
@@ -14,8 +16,8 @@ use crate::flatten::lookup::classes::Classes;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, ConnectionPrefix, Equation, EquationKind,
-    Expression, ExpressionKind, UnaryOperator,
+    Arguments, BinaryOperator, CausalityPrefix, ComponentReference, ConnectionPrefix, Equation,
+    EquationKind, Expression, ExpressionKind, UnaryOperator,
 };
 
 impl Instantiation<'_> {
@@ -26,6 +28,9 @@ impl Instantiation<'_> {
         model: &mut FlatModel,
     ) -> Result<(), Diagnostic> {
         for (sides, span) in connections.sets() {
+            if self.classes.library.is_strict() {
+                self.classes.check_source(&sides, span)?;
+            }
             match self.classes.tree.connection_of(sides[0].leaf) {
                 None => self.classes.tree.add_potential_equations(&sides, span, model),
                 Some(ConnectionPrefix::Flow) => {
@@ -118,6 +123,36 @@ impl Tree {
 }
 
 impl Classes<'_> {
+    /// What is an input in expandable connectors is something else in one of them at least (MLS
+    /// §9.1.3). Those of the model itself may get it from outside.
+    fn check_source(&self, sides: &[ConnectorSide], span: Span) -> Result<(), Diagnostic> {
+        let is_input = |side: &ConnectorSide| match &self.tree.nodes[side.leaf.0].kind {
+            NodeKind::Variable(leaf) => leaf.causality == Some(CausalityPrefix::Input),
+            NodeKind::Composite(_) => false,
+        };
+        let mut within = sides.iter().filter(|side| self.is_inside_expandable(side.leaf));
+        let Some(one) = within.clone().next() else { return Ok(()) };
+        let of_model = within.any(|side| self.is_connector_of_model(side.leaf));
+        if of_model || !sides.iter().all(is_input) {
+            return Ok(());
+        }
+        let path = &self.tree.nodes[one.leaf.0].path;
+        Err(fault!(INVALID_CONNECTION, "`{path}` of an expandable connector is only used as input";
+            help: "connect it to an output, or to what is neither input nor output")
+        .at(span))
+    }
+
+    /// Whether a variable belongs to a connector that the model itself declares.
+    fn is_connector_of_model(&self, leaf: NodeId) -> bool {
+        let mut node = leaf;
+        while let Some(parent) = self.tree.nodes[node.0].parent {
+            if parent == self.tree.root {
+                return self.is_expandable(node);
+            }
+            node = parent;
+        }
+        false
+    }
     /// Flows of connectors that no connection sees from the inside.
     fn unconnected_flows(
         &mut self,

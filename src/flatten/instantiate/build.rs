@@ -12,6 +12,7 @@ use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::Expanded;
 use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::modification::Bound;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{Expression, Subscript};
@@ -154,7 +155,12 @@ impl Instantiation<'_> {
         expanded: &Expanded,
         span: Span,
     ) -> Result<Vec<usize>, Diagnostic> {
-        let bound = expanded.modifier.binding.as_ref();
+        // The value decides, or an attribute that is an array (MLS §10.1).
+        let attributes =
+            expanded.modifier.elements.values().filter(|_| expanded.shape.base().is_some());
+        let of_array = |b: &&Bound| !b.each && b.value.is_some();
+        let of_attributes = attributes.filter_map(|one| one.binding.as_ref()).find(of_array);
+        let bound = expanded.modifier.binding.as_ref().or(of_attributes);
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
             return Err(fault!(NOT_CONSTANT, "the size of `{}` is unknown", declared.name;
                 help: "declare its size, or give it a value")

@@ -1,7 +1,7 @@
 //! Classes as if their library had been converted to the versions of the libraries that are loaded
 //! (MLS §18.8.3): names of classes, elements and modifiers are rewritten where a class is read.
 
-use super::conversion_rules::Rules;
+use super::conversion_rules::Conversion;
 use super::old_names::{Meaning, OldNames};
 use super::{Class, ClassId, Library};
 use crate::diag::Diagnostic;
@@ -10,11 +10,11 @@ use crate::flatten::errors::CONVERSION;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    Argument, Arguments, ClassDefinition, ClassSpecifier, ComponentClause, ComponentReference,
-    Constraint, Element, Expression, ExpressionKind, ImportKind, ReferencePart, Section,
-    TypeSpecifier,
+    Annotation, Argument, Arguments, ClassDefinition, ClassSpecifier, ComponentClause,
+    ComponentReference, Constraint, Element, Expression, ExpressionKind, ImportKind, ReferencePart,
+    Section, TypeSpecifier,
 };
-use crate::syntax::visit::{Rewrite, rewrite_expression, rewrite_reference};
+use crate::syntax::visit::{Rewrite, rewrite_expression, rewrite_modification, rewrite_reference};
 use std::sync::{Arc, OnceLock};
 
 impl Library {
@@ -78,7 +78,7 @@ pub(super) struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    pub(super) fn rules_of(&self, old: &Name) -> Option<&'a Rules> {
+    pub(super) fn rules_of(&self, old: &Name) -> Option<&'a Conversion> {
         let library = old.first()?;
         let conversions = self.names.conversions.iter();
         conversions.filter(|(one, _)| *one == library).map(|(_, rules)| &**rules).next()
@@ -100,6 +100,7 @@ impl<'a> Converter<'a> {
                 let own = std::mem::replace(&mut self.scope, around);
                 self.typed(&mut short.target, &mut short.modification);
                 self.scope = own;
+                short.comment.annotation.iter_mut().for_each(|one| self.annotation(one));
             }
             ClassSpecifier::Long(long) => {
                 long.sections.iter_mut().for_each(|section| self.section(section));
@@ -124,7 +125,20 @@ impl<'a> Converter<'a> {
             Section::External(external) => {
                 external.arguments.iter_mut().for_each(|argument| self.expression(argument));
             }
-            Section::Annotation(_) => {}
+            Section::Annotation(annotation) => self.annotation(annotation),
+        }
+    }
+
+    /// The functions that an annotation names: derivatives and inverses.
+    fn annotation(&mut self, annotation: &mut Annotation) {
+        for argument in &mut annotation.arguments {
+            let Argument::Element(element) = argument else { continue };
+            let name = element.name.node.last().filter(|_| element.name.node.is_simple());
+            if name.is_some_and(|name| name == "derivative" || name == "inverse")
+                && let Some(modification) = &mut element.modification
+            {
+                rewrite_modification(self, modification);
+            }
         }
     }
 
@@ -188,17 +202,23 @@ impl<'a> Converter<'a> {
         }
     }
 
+    /// The new `modelica://Name.of.a.class/path`, if the name of the class changes.
+    fn address(&mut self, text: &str, span: Span) -> Option<Arc<str>> {
+        const SCHEME: &str = "modelica://";
+        let address = text.strip_prefix(SCHEME)?;
+        let end = address.find(['/', '#', '?']).unwrap_or(address.len());
+        let (class, rest) = address.split_at(end);
+        let new = self.new_class(&Name::parse(class), span)?;
+        Some(format!("{SCHEME}{new}{rest}").into())
+    }
+
     /// A type and what modifies it.
     pub(super) fn typed(&mut self, specifier: &mut TypeSpecifier, modifiers: &mut Vec<Argument>) {
         let meaning = self.names.meaning(self.scope, &specifier.name);
-        if let Some(Meaning::Old(old)) = &meaning
-            && let Some(new) = self.chosen_by_value(old, modifiers)
-        {
-            specifier.name = new;
-        } else {
-            self.type_name(specifier);
+        match self.modifiers(meaning.as_ref(), modifiers, specifier.span) {
+            Some(new) => specifier.name = new,
+            None => self.type_name(specifier),
         }
-        self.modifiers(meaning.as_ref(), modifiers, specifier.span);
     }
 
     pub(super) fn constraint(&mut self, constraint: &mut Constraint) {
@@ -210,7 +230,7 @@ impl<'a> Converter<'a> {
         let meaning = self.names.meaning(self.scope, &clause.type_specifier.name);
         let depends = match &meaning {
             Some(Meaning::Old(old)) => {
-                self.rules_of(old).is_some_and(|rules| !rules.conditional(old).is_empty())
+                self.rules_of(old).is_some_and(|rules| rules.has_choices(old))
             }
             _ => false,
         };
@@ -227,12 +247,7 @@ impl<'a> Converter<'a> {
         let written = clause.type_specifier.clone();
         let mut chosen = None;
         for component in &mut clause.components {
-            if let (Some(Meaning::Old(old)), Some(modification)) =
-                (&meaning, &mut component.modification)
-            {
-                chosen = chosen.or(self.chosen_by_value(old, &mut modification.arguments));
-            }
-            self.component(component, meaning.as_ref(), written.span);
+            chosen = chosen.or(self.component(component, meaning.as_ref(), written.span));
         }
         match chosen {
             Some(new) => clause.type_specifier.name = new,
@@ -274,7 +289,7 @@ impl<'a> Converter<'a> {
     ) -> bool {
         let Some(rules) = self.rules_of(old) else { return false };
         let path: Vec<Ident> = parts[at..].iter().map(|part| part.name).collect();
-        if let Some(reason) = rules.message_of_element(old, path[0]) {
+        if let Some(reason) = rules.message_of_element(old, &path) {
             self.impossible(&old.child(path[0]), reason, span);
             return true;
         }
@@ -344,6 +359,11 @@ impl Rewrite for Converter<'_> {
     fn expression(&mut self, e: &mut Expression) {
         if let ExpressionKind::Call { function, arguments } = &mut e.kind {
             self.named_arguments(&function.clone(), arguments);
+        }
+        if let ExpressionKind::String(text) = &mut e.kind
+            && let Some(new) = self.address(text, e.span)
+        {
+            *text = new;
         }
         if let ExpressionKind::PartialApplication { function, .. } = &mut e.kind {
             let mut specifier = TypeSpecifier { name: function.clone(), span: e.span };

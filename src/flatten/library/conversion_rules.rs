@@ -14,7 +14,13 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// The libraries whose classes have other names than a library was written for.
-pub(super) type Conversions = Arc<[(Ident, Arc<Rules>)]>;
+pub(super) type Conversions = Arc<[(Ident, Arc<Conversion>)]>;
+
+/// The rules that lead from an older version of a library to the loaded one, version by version.
+#[derive(Debug)]
+pub(super) struct Conversion {
+    steps: Vec<Rules>,
+}
 
 /// Why a class, or an element of it, cannot be converted.
 type Message = (Option<Name>, Arc<str>);
@@ -64,6 +70,22 @@ impl Rules {
                 _ => return Err(no_rule(statement.span)),
             };
             rules.add(call)?;
+        }
+        Ok(rules)
+    }
+
+    /// The rules of `change = {convertClass("A", "B"), ...}`, which stand in an annotation.
+    ///
+    /// # Errors
+    /// A value is no rule.
+    pub(super) fn of_change(change: &Expression) -> Result<Rules, Diagnostic> {
+        let mut rules = Rules::default();
+        let written = match &change.kind {
+            ExpressionKind::Array(written) => written.as_slice(),
+            _ => std::slice::from_ref(change),
+        };
+        for rule in written {
+            rules.add(rule)?;
         }
         Ok(rules)
     }
@@ -182,7 +204,7 @@ impl Rules {
     }
 
     /// Why a class, or what lies in it, cannot be converted.
-    pub(super) fn message(&self, old: &Name) -> Option<&Arc<str>> {
+    fn message(&self, old: &Name) -> Option<&Arc<str>> {
         (1..=old.parts.len()).rev().find_map(|length| {
             let head = Name::new(old.parts[..length].iter().copied());
             let of_class = |(element, _): &&Message| element.is_none();
@@ -195,6 +217,78 @@ impl Rules {
         let wanted = Name::from(element);
         let messages = self.messages.get(class)?;
         messages.iter().find(|(one, _)| one.as_ref() == Some(&wanted)).map(|(_, message)| message)
+    }
+}
+
+impl Conversion {
+    /// A conversion in these steps, the oldest first.
+    pub(super) fn new(steps: Vec<Rules>) -> Conversion {
+        Conversion { steps }
+    }
+
+    /// The rules of each step, the oldest first.
+    pub(super) fn steps(&self) -> &[Rules] {
+        &self.steps
+    }
+
+    /// The new name of a class; `None` if it stays.
+    pub(super) fn class(&self, old: &Name) -> Option<Name> {
+        self.steps
+            .iter()
+            .fold(None, |new: Option<Name>, rules| rules.class(new.as_ref().unwrap_or(old)).or(new))
+    }
+
+    /// Whether the value of a modifier may decide what stands for a class.
+    pub(super) fn has_choices(&self, old: &Name) -> bool {
+        self.along(old).any(|(rules, class)| !rules.conditional(&class).is_empty())
+    }
+
+    /// Why a class cannot be converted: the message of a step that gives it no new name.
+    pub(super) fn message(&self, old: &Name) -> Option<&Arc<str>> {
+        self.along(old).find_map(|(rules, class)| match rules.class(&class) {
+            Some(_) => None,
+            None => rules.message(&class),
+        })
+    }
+
+    /// The new name of an element of a class, and how many names of the path it stands for.
+    pub(super) fn element(&self, class: &Name, path: &[Ident]) -> Option<(Name, usize)> {
+        let mut found: Option<(Name, usize)> = None;
+        for (rules, class) in self.along(class) {
+            let (head, count) = match &found {
+                Some((name, count)) => (name.parts.as_slice(), *count),
+                None => (&[] as &[Ident], 0),
+            };
+            let now: Vec<Ident> = head.iter().chain(&path[count..]).copied().collect();
+            if let Some((new, replaced)) = rules.element(&class, &now) {
+                let kept = head.get(replaced..).unwrap_or_default();
+                let taken = count + replaced.saturating_sub(head.len());
+                found = Some((Name::new(new.parts.iter().chain(kept).copied()), taken));
+            }
+        }
+        found
+    }
+
+    /// Why an element of a class, behind the names of a path, cannot be converted.
+    pub(super) fn message_of_element(&self, class: &Name, path: &[Ident]) -> Option<&Arc<str>> {
+        let mut first = *path.first()?;
+        self.along(class).find_map(|(rules, class)| {
+            let message = rules.message_of_element(&class, first);
+            if let Some((new, 1)) = rules.element(&class, &[first])
+                && let Some(renamed) = new.first()
+            {
+                first = renamed;
+            }
+            message
+        })
+    }
+
+    /// The rules of each step with the name that a class has before it.
+    fn along(&self, old: &Name) -> impl Iterator<Item = (&Rules, Name)> {
+        self.steps.iter().scan(old.clone(), |class, rules| {
+            let new = rules.class(class).unwrap_or_else(|| class.clone());
+            Some((rules, std::mem::replace(class, new)))
+        })
     }
 }
 

@@ -28,20 +28,22 @@ impl Converter<'_> {
         }
     }
 
+    /// A component, and the type that the value of one of its modifiers chooses.
     pub(super) fn component(
         &mut self,
         component: &mut ComponentDeclaration,
         meaning: Option<&Meaning>,
         span: Span,
-    ) {
+    ) -> Option<Name> {
         self.subscripts(&mut component.subscripts);
         component.condition.iter_mut().for_each(|one| self.expression(one));
         let is_written = component.modification.is_some();
         let modification = component.modification.get_or_insert_with(|| empty(span));
-        self.modification(modification, meaning, span);
+        let chosen = self.modification(modification, meaning, span);
         if !is_written && modification.arguments.is_empty() {
             component.modification = None;
         }
+        chosen
     }
 
     fn modification(
@@ -49,50 +51,67 @@ impl Converter<'_> {
         modification: &mut Modification,
         meaning: Option<&Meaning>,
         span: Span,
-    ) {
+    ) -> Option<Name> {
         if let Some(Binding::Expression(value)) = &mut modification.binding {
             self.expression(value);
         }
-        self.modifiers(meaning, &mut modification.arguments, span);
+        self.modifiers(meaning, &mut modification.arguments, span)
     }
 
-    /// The class that stands for an old one because of a modifier's value; the modifier is removed.
-    pub(super) fn chosen_by_value(&mut self, old: &Name, given: &mut Modifiers) -> Option<Name> {
-        let rules = self.rules_of(old)?.conditional(old);
-        rules.iter().find_map(|rule| {
-            let at = position(given, &rule.element)?;
-            let value = bound(&given[at])?;
-            (literal_text(value) == rule.value).then(|| {
-                given.remove(at);
-                rule.new.clone()
-            })
-        })
-    }
-
-    /// What modifies a class or component of a type.
+    /// What modifies a class or component of a type; returns the class that stands for the type
+    /// because of a modifier's value.
     pub(super) fn modifiers(
         &mut self,
         meaning: Option<&Meaning>,
         given: &mut Modifiers,
         span: Span,
-    ) {
+    ) -> Option<Name> {
+        // The values that a choice compares are those of the old version, the first choice's at
+        // least; those of later steps are compared as they are converted.
+        let is_type = matches!(meaning, Some(Meaning::Old(_)));
+        let written = if is_type { given.clone() } else { Modifiers::new() };
         given.iter_mut().for_each(|argument| self.argument(meaning, argument));
-        let Some(meaning) = meaning else { return };
-        for old in self.names.old_bases(meaning) {
-            let Some(rules) = self.rules_of(&old) else { continue };
-            let mut added = Vec::new();
-            for rule in rules.modifiers(&old) {
-                // Where the old class is a base, its own extends clause has got what is added.
-                if !rule.old.is_empty() || matches!(meaning, Meaning::Old(_)) {
-                    self.replace(rule, given, &mut added, span);
-                }
+        let mut chosen = None;
+        for old in self.names.old_bases(meaning?) {
+            let Some(conversion) = self.rules_of(&old) else { continue };
+            let mut class = old;
+            for (at, rules) in conversion.steps().iter().enumerate() {
+                let by_value = match (is_type, at) {
+                    (false, _) => None,
+                    (true, 0) => chosen_by_value(rules, &class, &written, given),
+                    (true, _) => chosen_by_value(rules, &class, &given.clone(), given),
+                };
+                self.step(rules, &class, is_type, given, span);
+                let is_chosen = chosen.is_some() || by_value.is_some();
+                class = by_value.or_else(|| rules.class(&class)).unwrap_or(class);
+                chosen = is_chosen.then(|| class.clone());
             }
-            self.rename(&old, rules, given);
-            // What is written takes precedence.
-            for argument in added {
-                if name_of(&argument).is_none_or(|name| position(given, name).is_none()) {
-                    given.push(argument);
-                }
+        }
+        chosen
+    }
+
+    /// The modifiers of a class that is a type or, if not `is_type`, the base of one, converted by
+    /// the rules of one step.
+    fn step(
+        &mut self,
+        rules: &Rules,
+        class: &Name,
+        is_type: bool,
+        given: &mut Modifiers,
+        span: Span,
+    ) {
+        let mut added = Vec::new();
+        for rule in rules.modifiers(class) {
+            // Where the old class is a base, its own extends clause has got what is added.
+            if !rule.old.is_empty() || is_type {
+                self.replace(rule, given, &mut added, span);
+            }
+        }
+        self.rename(class, rules, given);
+        // What is written takes precedence.
+        for argument in added {
+            if name_of(&argument).is_none_or(|name| position(given, name).is_none()) {
+                given.push(argument);
             }
         }
     }
@@ -116,7 +135,8 @@ impl Converter<'_> {
             Argument::Element(element) => {
                 let Some(modification) = &mut element.modification else { return };
                 let inner = self.type_of_element(meaning, &element.name.node);
-                self.modification(modification, inner.as_ref(), element.span);
+                // The type of the component is chosen where it is declared.
+                let _chosen = self.modification(modification, inner.as_ref(), element.span);
             }
             Argument::Redeclaration(redeclaration) => match &mut redeclaration.element {
                 RedeclaredElement::Component(clause) => {
@@ -202,6 +222,23 @@ fn name_of(argument: &Argument) -> Option<&Name> {
 
 fn position(given: &[Argument], name: &Name) -> Option<usize> {
     given.iter().position(|one| name_of(one).is_some_and(|known| known.parts == name.parts))
+}
+
+/// The class that stands for an old one because of a modifier's value; the modifier is removed.
+fn chosen_by_value(
+    rules: &Rules,
+    old: &Name,
+    values: &Modifiers,
+    given: &mut Modifiers,
+) -> Option<Name> {
+    rules.conditional(old).iter().find_map(|rule| {
+        let value = bound(&values[position(values, &rule.element)?])?;
+        let at = position(given, &rule.element)?;
+        (literal_text(value) == rule.value).then(|| {
+            given.remove(at);
+            rule.new.clone()
+        })
+    })
 }
 
 fn bound(argument: &Argument) -> Option<&Expression> {

@@ -166,13 +166,16 @@ impl<'a> OldNames<'a> {
 
     /// Whether a class declares or inherits such a component from classes of the user.
     pub(super) fn has_component(self, id: ClassId, name: Ident) -> bool {
+        self.declares_component(id, name, 0)
+    }
+
+    fn declares_component(self, id: ClassId, name: Ident, depth: usize) -> bool {
         self.class(id).component_element(name).is_some()
-            || self.bases(id, 0).iter().any(|base| match base {
-                Meaning::Own(base) => {
-                    *base != id && self.class(*base).component_element(name).is_some()
-                }
-                Meaning::Old(_) => false,
-            })
+            || depth < MAX_DEPTH
+                && self.bases(id, 0).into_iter().any(|base| match base {
+                    Meaning::Own(base) => self.declares_component(base, name, depth + 1),
+                    Meaning::Old(_) => false,
+                })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which versions of other libraries a library was written for (MLS §18.8.2), and the rules that
 //! convert it to those that are loaded.
 
-use super::conversion_rules::{Conversions, Rules};
+use super::conversion_rules::{Conversion, Conversions, Rules};
 use super::{ClassId, Library, Origin, locked};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -66,38 +66,49 @@ impl Library {
         Ok(found.into())
     }
 
-    /// The rules that convert users of a version of a library to the one that is loaded.
+    /// The rules that convert users of a version of a library to the one that is loaded, in as many
+    /// steps as it takes: a `from` with `to` leads to another old version.
     fn rules_from(
         &self,
         library: ClassId,
         version: &str,
         span: Span,
-    ) -> Result<Option<Arc<Rules>>, Diagnostic> {
+    ) -> Result<Option<Arc<Conversion>>, Diagnostic> {
         let definition = self.read(library).definition.clone();
         let annotation = annotation_of(&definition);
         let own = annotation.and_then(|annotation| text(&annotation.arguments, "version"));
-        if own.as_deref() == Some(version) {
-            return Ok(None);
+        let (mut now, mut passed) = (Arc::<str>::from(version), Vec::new());
+        let mut steps = Vec::new();
+        while own.as_deref() != Some(&*now) && !needs_no_conversion(annotation, &now) {
+            let found = steps_from(annotation, &now);
+            let direct = |one: &&[Argument]| text(one, "to").is_none_or(|to| Some(to) == own);
+            let Some(arguments) = found.iter().find(|one| direct(one)).or(found.first()) else {
+                break;
+            };
+            steps.push(self.rules_of_step(library, arguments, span)?);
+            passed.push(now.clone());
+            let Some(to) = text(arguments, "to") else {
+                return Ok(Some(Arc::new(Conversion::new(steps))));
+            };
+            if passed.contains(&to) || !is_known(annotation, &to, own.as_deref()) {
+                return Err(leads_nowhere(&definition, [version, &to], own.as_deref(), span));
+            }
+            now = to;
         }
-        let from = inside(annotation, "conversion").find(|one| {
-            let versions = one.modification.iter().flat_map(|m| texts(&m.arguments, "version"));
-            one.name.node.to_string() == "from" && versions.into_iter().any(|v| &*v == version)
-        });
-        let Some(arguments) = from.and_then(|one| one.modification.as_ref()) else {
-            return Ok(None);
-        };
-        let arguments = &arguments.arguments;
-        if let Some(to) = text(arguments, "to").filter(|to| Some(&**to) != own.as_deref()) {
-            return Err(
-                fault!(CONVERSION, "`{}` is converted from version {version} to {to} only, \
-                                           not to the loaded version {}",
-                definition.name.node, own.as_deref().unwrap_or("without a number");
-                help: "convert the library that uses it, or load version {to}")
-                .at(span),
-            );
+        Ok((!steps.is_empty()).then(|| Arc::new(Conversion::new(steps))))
+    }
+
+    /// The rules of one `from`: of its script or its list.
+    fn rules_of_step(
+        &self,
+        library: ClassId,
+        arguments: &[Argument],
+        span: Span,
+    ) -> Result<Rules, Diagnostic> {
+        if let Some(script) = text(arguments, "script") {
+            return self.script_of(library, &script, span);
         }
-        let Some(script) = text(arguments, "script") else { return Ok(None) };
-        self.script_of(library, &script, span).map(|rules| Some(Arc::new(rules)))
+        value(arguments, "change").map_or(Ok(Rules::default()), Rules::of_change)
     }
 
     /// The rules of a script of a library.
@@ -118,6 +129,41 @@ impl Library {
         let (source, text) = read.map_err(|fault| unreadable(fault.message.to_string()))?;
         Rules::of_script(&syntax::parse_script(source, &text)?)
     }
+}
+
+/// Whether users of a version need no rules.
+fn needs_no_conversion(annotation: Option<&Annotation>, version: &str) -> bool {
+    let conversion =
+        inside(annotation, "conversion").filter(|one| is_named(one, "noneFromVersion"));
+    let bound = conversion.filter_map(|one| string(bound(one)?));
+    bound.into_iter().any(|known| &*known == version)
+}
+
+/// What stands in each `from` of a library that is about a version.
+fn steps_from<'a>(annotation: Option<&'a Annotation>, version: &str) -> Vec<&'a [Argument]> {
+    let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
+    let arguments = from.filter_map(|one| one.modification.as_ref()).map(|m| &*m.arguments);
+    arguments.filter(|one| texts(one, "version").iter().any(|known| &**known == version)).collect()
+}
+
+/// Whether a version is the loaded one, or one that a library tells how to convert.
+fn is_known(annotation: Option<&Annotation>, version: &str, own: Option<&str>) -> bool {
+    own == Some(version)
+        || needs_no_conversion(annotation, version)
+        || !steps_from(annotation, version).is_empty()
+}
+
+fn leads_nowhere(
+    library: &ClassDefinition,
+    [from, to]: [&str; 2],
+    own: Option<&str>,
+    span: Span,
+) -> Diagnostic {
+    fault!(CONVERSION, "`{}` is converted from version {from} to {to} only, not to the loaded \
+                        version {}",
+        library.name.node, own.unwrap_or("without a number");
+        help: "convert the library that uses it, or load version {to}")
+    .at(span)
 }
 
 /// The annotation of a class.
@@ -160,20 +206,30 @@ fn inside<'a>(
 
 /// The texts that an argument is bound to: one, or an array of them.
 fn texts(arguments: &[Argument], name: &str) -> Vec<Arc<str>> {
-    let text = |e: &Expression| match &e.kind {
+    let bound = value(arguments, name);
+    match bound.map(|value| &value.kind) {
+        Some(ExpressionKind::Array(values)) => values.iter().filter_map(string).collect(),
+        Some(_) => bound.and_then(string).into_iter().collect(),
+        None => Vec::new(),
+    }
+}
+
+/// What an argument is bound to.
+fn value<'a>(arguments: &'a [Argument], name: &str) -> Option<&'a Expression> {
+    elements(arguments).filter(|element| is_named(element, name)).find_map(bound)
+}
+
+fn bound(element: &ElementModification) -> Option<&Expression> {
+    match &element.modification.as_ref()?.binding {
+        Some(Binding::Expression(value)) => Some(value),
+        _ => None,
+    }
+}
+
+fn string(e: &Expression) -> Option<Arc<str>> {
+    match &e.kind {
         ExpressionKind::String(text) => Some(text.clone()),
         _ => None,
-    };
-    let bound = elements(arguments).filter(|element| is_named(element, name)).find_map(|element| {
-        match &element.modification.as_ref()?.binding {
-            Some(Binding::Expression(value)) => Some(value),
-            _ => None,
-        }
-    });
-    match bound.map(|value| &value.kind) {
-        Some(ExpressionKind::Array(values)) => values.iter().filter_map(text).collect(),
-        Some(_) => bound.and_then(text).into_iter().collect(),
-        None => Vec::new(),
     }
 }
 
