@@ -120,15 +120,19 @@ fn may_determine(dae: &Dae, equation: Equation, variable: VarId, members: &[VarI
 }
 
 /// The value of a variable by one equation, if it can be had without dividing by what may be zero:
-/// within a loop also by what is zero at an iterate only.
+/// within a loop also by what is zero at an iterate only. What solves the loop solves its equations:
+/// a declared inverse that is none everywhere is not used.
 pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
     explicit_where(dae, equation, variable, |dae, solution| {
-        is_safe(dae, solution.divisor) && is_safe(dae, solution.inverted)
+        solution.is_exact && is_safe(dae, solution.divisor) && is_safe(dae, solution.inverted)
     })
 }
 
 /// The same where all else in the equation is known: `a / v = b` has no solution where b is zero,
-/// and Newton's method would divide by v, which begins at zero.
+/// and Newton's method would divide by v, which begins at zero. The inverse that the function
+/// declares is used as its author wants it: the pressure drops of IBPSA and their inverses differ
+/// where both are made smooth, and the reference results of its dampers have the values of the
+/// inverses.
 pub(super) fn explicit_alone(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
     explicit_where(dae, equation, variable, |dae, solution| is_safe(dae, solution.divisor))
 }

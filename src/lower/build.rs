@@ -9,12 +9,13 @@ use super::errors::{
 };
 use super::expressions::message_text;
 use super::expressions::{Array, Lowered, Lowering, size_fault};
+use super::function::Inverts;
 use super::message::message_parts;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
 use crate::source::Span;
-use crate::symbolic::{Expr, VarId};
+use crate::symbolic::{Expr, Inverse, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -60,10 +61,14 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let functions = builder.calls.functions.finish();
     for (function, code) in functions.codes.iter().enumerate() {
         for (input, inverse) in &code.inverses {
-            if !super::function::inverts(&functions, function as u32, *input, inverse) {
-                continue;
-            }
-            builder.dae.pool.declare_inverse(function as u32, *input, inverse.clone());
+            let is_exact =
+                match super::function::inverts(&functions, function as u32, *input, inverse) {
+                    Inverts::Everywhere => true,
+                    Inverts::Somewhere => false,
+                    Inverts::Nowhere => continue,
+                };
+            let inverse = Inverse { is_exact, ..inverse.clone() };
+            builder.dae.pool.declare_inverse(function as u32, *input, inverse);
         }
     }
     builder.dae.functions = Arc::new(functions);

@@ -66,19 +66,28 @@ pub fn compare(
 /// Compares signals of a result with a reference that has been sampled at instants of its own
 /// (see [`super::read_sampled`]). It need not show what happens between them, so the samples are
 /// compared with the result: each must lie in the tube around it, whose sides are those of the tube
-/// around the reference.
+/// around the reference; or in that around the points of the result that `is_written` marks. A sample
+/// is interpolated between the points that a simulator has written: on a flank it is as far from the
+/// trajectory as these are from each other.
 ///
 /// # Errors
 /// Those of [`compare`].
 pub fn compare_samples(
     result: &ResultTable,
+    is_written: &[bool],
     reference: &ResultTable,
     signals: &[String],
     tolerance: f64,
 ) -> Result<Vec<Compared>, Fault> {
     check(reference, tolerance)?;
+    let written = |all: &[f64]| -> Vec<f64> {
+        all.iter().zip(is_written).filter(|(_, is)| **is).map(|(value, _)| *value).collect()
+    };
+    let times = written(&result.time);
     let judge = |tube: &Tube, values: &[f64], samples: &[f64]| {
-        tube.around_other(&result.time, values).worst_sample(&reference.time, samples)
+        let own = written(values);
+        let tubes = [tube.around_other(&result.time, values), tube.around_other(&times, &own)];
+        Tube::worst_sample(&tubes, &reference.time, samples)
     };
     let judged = signals.iter().map(|signal| judged(result, reference, signal, tolerance, &judge));
     judged.collect()
@@ -182,7 +191,8 @@ mod tests {
         let reference = table(&[0.0, 50.0, 100.0], &[("a", &[0.0, 1.0, 1.0])]);
         let compare = |time: &[f64], values: &[f64]| {
             let result = table(time, &[("a", values)]);
-            let found = compare_samples(&result, &reference, &["a".to_owned()], 0.002).unwrap();
+            let (all, signals) = (vec![true; time.len()], ["a".to_owned()]);
+            let found = compare_samples(&result, &all, &reference, &signals, 0.002).unwrap();
             found[0].agreement.clone()
         };
         let peak = compare(&[0.0, 20.0, 20.0, 50.0, 100.0], &[0.0, 0.0, 5.0, 1.0, 1.0]);
@@ -193,6 +203,23 @@ mod tests {
         let late = compare(&[0.0, 51.0, 51.0, 100.0], &steps);
         let Agreement::Outside { worst, .. } = late else { panic!("{late:?}") };
         assert_eq!((worst.time, worst.value, worst.lower), (50.0, 0.0, 0.998));
+    }
+
+    #[test]
+    fn samples_may_lie_between_points_that_were_written() {
+        // The trajectory is t², written at 0, 1/2 and 1.
+        let time: Vec<f64> = (0..=8).map(|at| f64::from(at) / 8.0).collect();
+        let values: Vec<f64> = time.iter().map(|t| t * t).collect();
+        let is_written: Vec<bool> = (0..=8).map(|at| at % 4 == 0).collect();
+        let result = table(&time, &[("a", &values)]);
+        let agrees = |samples: &[f64]| {
+            let reference = table(&[0.0, 0.25, 0.5, 0.75, 1.0], &[("a", samples)]);
+            let signals = ["a".to_owned()];
+            compare_samples(&result, &is_written, &reference, &signals, 0.002).unwrap()[0].agrees()
+        };
+        assert!(agrees(&[0.0, 0.0625, 0.25, 0.5625, 1.0]));
+        assert!(agrees(&[0.0, 0.125, 0.25, 0.625, 1.0]));
+        assert!(!agrees(&[0.0, 0.09, 0.25, 0.6, 1.0]));
     }
 
     #[test]

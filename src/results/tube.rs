@@ -103,16 +103,26 @@ impl<'a> Tube<'a> {
         Tube { time, values, half_width: self.half_width, half_height: self.half_height }
     }
 
-    /// The sample farthest outside, if one is, and how far: with the value of the trajectory at its
-    /// time, and the bounds that the sample sets.
-    pub(super) fn worst_sample(&self, time: &[f64], samples: &[f64]) -> Option<(Deviation, f64)> {
+    /// The sample farthest outside of all tubes, if one is, and how far outside the nearest: with the
+    /// value of its trajectory at that time, and the bounds that the sample sets.
+    pub(super) fn worst_sample(
+        tubes: &[Tube],
+        time: &[f64],
+        samples: &[f64],
+    ) -> Option<(Deviation, f64)> {
         let outside = time.iter().zip(samples).filter_map(|(time, sample)| {
-            let found = self.deviation(*time, *sample)?;
-            let (lower, upper) = (sample - self.half_height, sample + self.half_height);
-            let deviation = Deviation { time: *time, value: self.at(*time), lower, upper };
-            Some((deviation, self.distance(&found)))
+            let found = tubes.iter().map(|tube| tube.sample_outside(*time, *sample));
+            let found = found.collect::<Option<Vec<_>>>()?;
+            found.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b))
         });
         outside.max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    fn sample_outside(&self, time: f64, sample: f64) -> Option<(Deviation, f64)> {
+        let found = self.deviation(time, sample)?;
+        let (lower, upper) = (sample - self.half_height, sample + self.half_height);
+        let deviation = Deviation { time, value: self.at(time), lower, upper };
+        Some((deviation, self.distance(&found)))
     }
 
     fn deviation(&self, time: f64, value: f64) -> Option<Deviation> {

@@ -19,9 +19,10 @@ use super::execution::run;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
+use crate::bytecode::Register;
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
-use crate::sim::{Equations, Failure, Newton, NewtonFailure};
+use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
 use std::sync::Arc;
 
 /// How far beside the guess another attempt begins, relative to its magnitude: small
@@ -32,8 +33,11 @@ const DISPLACEMENT: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(super) struct LoopSolver {
     newton: Newton,
-    least_squares: LeastSquares,
-    continuation: Continuation,
+    /// Where the entries of the Jacobian are that are not always zero, by columns.
+    entries: Arc<[Register]>,
+    /// Made where Newton's method fails: large loops need much memory for it.
+    least_squares: Option<Box<LeastSquares>>,
+    continuation: Option<Box<Continuation>>,
     nominal: Arc<[f64]>,
     guess: Vec<f64>,
     /// Where an attempt begins, or what least squares found.
@@ -50,13 +54,19 @@ pub(super) struct LoopSolver {
 }
 
 impl LoopSolver {
-    /// For a loop whose unknowns have these magnitudes.
-    pub(super) fn new(nominal: Vec<f64>) -> LoopSolver {
+    /// For a loop whose unknowns have these magnitudes; `zero` is the register of the constant 0.
+    pub(super) fn new(
+        nominal: Vec<f64>,
+        torn: &CompiledLoop,
+        zero: Option<Register>,
+    ) -> LoopSolver {
         let n = nominal.len();
+        let (pattern, entries) = nonzeros(n, &torn.jacobian, zero);
         LoopSolver {
-            newton: Newton::new(n),
-            least_squares: LeastSquares::new(n),
-            continuation: Continuation::new(n),
+            newton: Newton::of_pattern(pattern),
+            entries: entries.into(),
+            least_squares: None,
+            continuation: None,
             nominal: nominal.into(),
             guess: vec![0.0; n],
             start: vec![0.0; n],
@@ -67,6 +77,11 @@ impl LoopSolver {
             solutions: 0,
             evaluations: 0,
         }
+    }
+
+    /// A new simulation begins.
+    pub(super) fn forget(&mut self) {
+        self.newton.forget();
     }
 
     /// Solves a loop from the values its unknowns have; they keep these on failure.
@@ -82,7 +97,8 @@ impl LoopSolver {
         }
         self.x.copy_from_slice(&self.guess);
         let nominal = self.nominal.clone();
-        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false, count: 0 };
+        let entries = self.entries.clone();
+        let mut equations = Evaluation { torn, r, entries, nominal, has_jacobian: false, count: 0 };
         let mut outcome = self.attempt(&mut equations, initial);
         if initial {
             outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
@@ -104,7 +120,9 @@ impl LoopSolver {
         if outcome.is_err() && may_jump {
             self.x.copy_from_slice(&self.guess);
             let (newton, nominal) = (&mut self.newton, &self.nominal);
-            let found = self.continuation.solve(newton, &mut equations, &mut self.x, nominal);
+            let n = nominal.len();
+            let continuation = self.continuation.get_or_insert_with(|| Continuation::new(n).into());
+            let found = continuation.solve(newton, &mut equations, &mut self.x, nominal);
             outcome = if found.is_ok() { Ok(()) } else { outcome };
         }
         if !initial {
@@ -150,7 +168,9 @@ impl LoopSolver {
         let first = self.newton.solve(equations, &mut self.x, &self.nominal);
         let Err(failure) = first else { return Ok(()) };
         self.x.copy_from_slice(&self.start);
-        let near = self.least_squares.solve(equations, &mut self.x, &self.nominal);
+        let n = self.x.len();
+        let least_squares = self.least_squares.get_or_insert_with(|| LeastSquares::new(n).into());
+        let near = least_squares.solve(equations, &mut self.x, &self.nominal);
         if near.is_err() {
             self.nearest.copy_from_slice(&self.x);
             if equations.residual(&self.x, &mut self.nearest_residual).is_err() {
@@ -190,10 +210,27 @@ impl LoopSolver {
     }
 }
 
+/// The pattern of a Jacobian given by rows, and where its entries are, by columns.
+fn nonzeros(n: usize, jacobian: &[Register], zero: Option<Register>) -> (Pattern, Vec<Register>) {
+    let (mut column_starts, mut rows, mut entries) = (vec![0], Vec::new(), Vec::new());
+    for column in 0..n {
+        for row in 0..n {
+            let register = jacobian[row * n + column];
+            if Some(register) != zero {
+                rows.push(row);
+                entries.push(register);
+            }
+        }
+        column_starts.push(rows.len());
+    }
+    (Pattern { n, column_starts, rows }, entries)
+}
+
 /// A loop evaluated in the registers.
 struct Evaluation<'a> {
     torn: &'a CompiledLoop,
     r: &'a mut Memory,
+    entries: Arc<[Register]>,
     nominal: Arc<[f64]>,
     /// Whether the registers hold the Jacobian at the unknowns that they hold.
     has_jacobian: bool,
@@ -216,6 +253,12 @@ impl Evaluation<'_> {
             }
             other => other,
         }
+    }
+
+    /// Computes the Jacobian, if it has values.
+    fn differentiate(&mut self, x: &[f64]) -> Result<(), Failure> {
+        let here = self.torn.unknowns.iter().zip(x).all(|(u, x)| self.r[*u as usize] == *x);
+        if here { Ok(()) } else { self.evaluate(x) }
     }
 
     /// The Jacobian where a derivative has no value.
@@ -244,10 +287,7 @@ impl Equations for Evaluation<'_> {
     }
 
     fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        let here = self.torn.unknowns.iter().zip(x).all(|(u, x)| self.r[*u as usize] == *x);
-        if !here {
-            self.evaluate(x)?;
-        }
+        self.differentiate(x)?;
         if !self.has_jacobian {
             return self.difference_jacobian(x, out);
         }
@@ -255,6 +295,20 @@ impl Equations for Evaluation<'_> {
         for (at, register) in self.torn.jacobian.iter().enumerate() {
             let (row, column) = (at / n, at % n);
             out[column * n + row] = self.r[*register as usize];
+        }
+        Ok(())
+    }
+
+    fn nonzeros(&mut self, x: &[f64], pattern: &Pattern, out: &mut [f64]) -> Result<(), Failure> {
+        self.differentiate(x)?;
+        if !self.has_jacobian {
+            let mut all = vec![0.0; x.len() * x.len()];
+            self.difference_jacobian(x, &mut all)?;
+            gather(&all, pattern, out);
+            return Ok(());
+        }
+        for (out, register) in out.iter_mut().zip(self.entries.iter()) {
+            *out = self.r[*register as usize];
         }
         Ok(())
     }

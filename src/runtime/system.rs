@@ -317,6 +317,8 @@ impl System {
         let program = self.program.clone();
         self.lacking = None;
         self.registers.calls.restart();
+        let solvers = self.initial_solvers.iter_mut().chain(&mut self.solvers);
+        solvers.chain(&mut self.event_solvers).for_each(LoopSolver::forget);
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();
@@ -378,10 +380,12 @@ impl System {
             Step::Solve(torn) => Some(torn),
             Step::Run(_) => None,
         });
+        let zero = self.program.registers.zero();
         loops
             .map(|torn| {
                 let unknowns = torn.unknowns.iter();
-                LoopSolver::new(unknowns.map(|u| self.nominal_of(VarId(*u))).collect())
+                let nominal = unknowns.map(|u| self.nominal_of(VarId(*u))).collect();
+                LoopSolver::new(nominal, torn, zero)
             })
             .collect()
     }

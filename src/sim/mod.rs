@@ -84,7 +84,7 @@ pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use instants::{AT_ONCE, same_time};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
-pub use newton::{Equations, Newton, NewtonFailure};
+pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;

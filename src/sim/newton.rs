@@ -12,7 +12,7 @@
 //! Reference: [Deuflhard 2011](crate::bibliography#deuflhard-2011).
 
 use super::norm::{set_weights, weighted_rms};
-use super::{DenseLu, Failure};
+use super::{DenseLu, Factorization, Failure, Pattern};
 
 /// The system that Newton's method solves.
 pub trait Equations {
@@ -20,6 +20,22 @@ pub trait Equations {
     fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// Writes ∂F/∂x by columns.
     fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// Writes the entries of ∂F/∂x that a pattern has, in its order.
+    fn nonzeros(&mut self, x: &[f64], pattern: &Pattern, out: &mut [f64]) -> Result<(), Failure> {
+        let mut all = vec![0.0; pattern.n * pattern.n];
+        self.jacobian(x, &mut all)?;
+        gather(&all, pattern, out);
+        Ok(())
+    }
+}
+
+/// Writes the entries of a dense matrix that a pattern has.
+pub fn gather(matrix: &[f64], pattern: &Pattern, out: &mut [f64]) {
+    for column in 0..pattern.n {
+        for at in pattern.column(column) {
+            out[at] = matrix[column * pattern.n + pattern.rows[at]];
+        }
+    }
 }
 
 /// Why there is no solution.
@@ -42,10 +58,21 @@ const SMALLEST_DAMPING: f64 = 1e-4;
 /// A step shorter than this, relative to x, is the last; the error after it is about its square.
 const LAST_STEP: f64 = 1e-9;
 
+/// From this size on a Jacobian with few nonzeros is factorised as a sparse matrix. A network of 763
+/// unknowns takes 20 times longer with a dense one; small loops keep their digits.
+const SPARSE_FROM: usize = 64;
+
+/// The Jacobian and its factors.
+#[derive(Debug, Clone)]
+enum Linear {
+    Dense(DenseLu),
+    Sparse { pattern: Pattern, values: Vec<f64>, factors: Box<Factorization> },
+}
+
 /// The workspace for systems of one size.
 #[derive(Debug, Clone)]
 pub struct Newton {
-    lu: DenseLu,
+    linear: Linear,
     delta: Vec<f64>,
     residual: Vec<f64>,
     next_delta: Vec<f64>,
@@ -56,14 +83,36 @@ pub struct Newton {
 impl Newton {
     /// For n equations.
     pub fn new(n: usize) -> Newton {
+        Newton::with(n, Linear::Dense(DenseLu::new(n)))
+    }
+
+    /// For equations whose Jacobian has this pattern.
+    pub fn of_pattern(pattern: Pattern) -> Newton {
+        let n = pattern.n;
+        if n < SPARSE_FROM {
+            return Newton::new(n);
+        }
+        let factors = Box::new(Factorization::new(&pattern, &[]));
+        let values = vec![0.0; pattern.rows.len()];
+        Newton::with(n, Linear::Sparse { pattern, values, factors })
+    }
+
+    fn with(n: usize, linear: Linear) -> Newton {
         let zeros = vec![0.0; n];
         Newton {
-            lu: DenseLu::new(n),
+            linear,
             delta: zeros.clone(),
             residual: zeros.clone(),
             next_delta: zeros.clone(),
             trial: zeros.clone(),
             weights: zeros,
+        }
+    }
+
+    /// A new simulation begins: it is to give the same bits whatever was solved before.
+    pub fn forget(&mut self) {
+        if let Linear::Sparse { factors, .. } = &mut self.linear {
+            factors.forget();
         }
     }
 
@@ -99,9 +148,8 @@ impl Newton {
     ) -> Result<(), NewtonFailure> {
         evaluate(equations, x, &mut self.delta)?;
         for _ in 0..iterations {
-            equations.jacobian(x, self.lu.matrix()).map_err(NewtonFailure::Evaluation)?;
-            self.lu.factorize().map_err(|_| NewtonFailure::Singular)?;
-            self.lu.solve(&mut self.delta);
+            self.linear.factorize(equations, x)?;
+            self.linear.solve(&mut self.delta);
             set_weights(1.0, x, nominal, &mut self.weights);
             let length = weighted_rms(&self.delta, &self.weights);
             if !length.is_finite() {
@@ -136,7 +184,7 @@ impl Newton {
             let failure = match evaluate(equations, &self.trial, &mut self.residual) {
                 Ok(()) => {
                     self.next_delta.copy_from_slice(&self.residual);
-                    self.lu.solve(&mut self.next_delta);
+                    self.linear.solve(&mut self.next_delta);
                     let next = weighted_rms(&self.next_delta, &self.weights);
                     if next <= (1.0 - 0.5 * damping) * length {
                         x.copy_from_slice(&self.trial);
@@ -151,6 +199,30 @@ impl Newton {
             if damping < SMALLEST_DAMPING {
                 return Err(failure);
             }
+        }
+    }
+}
+
+impl Linear {
+    /// Factorises the Jacobian at x.
+    fn factorize(&mut self, equations: &mut dyn Equations, x: &[f64]) -> Result<(), NewtonFailure> {
+        let factorized = match self {
+            Linear::Dense(lu) => {
+                equations.jacobian(x, lu.matrix()).map_err(NewtonFailure::Evaluation)?;
+                lu.factorize()
+            }
+            Linear::Sparse { pattern, values, factors } => {
+                equations.nonzeros(x, pattern, values).map_err(NewtonFailure::Evaluation)?;
+                factors.factorize(values)
+            }
+        };
+        factorized.map_err(|_| NewtonFailure::Singular)
+    }
+
+    fn solve(&mut self, b: &mut [f64]) {
+        match self {
+            Linear::Dense(lu) => lu.solve(b),
+            Linear::Sparse { factors, .. } => factors.solve(b),
         }
     }
 }
@@ -214,6 +286,51 @@ mod tests {
         let mut x = start.to_vec();
         let nominal = vec![1.0; x.len()];
         Newton::new(x.len()).solve(&mut given, &mut x, &nominal).map(|()| x)
+    }
+
+    #[test]
+    fn a_sparse_jacobian_gives_the_solution_of_a_dense_one() {
+        // A chain: exp(x_i) + x_i + 0.2 sin(x_{i-1}) + 0.3 sin(x_{i+1}) = i / n.
+        const N: usize = 80;
+        let given = || {
+            Given(
+                |x, f| {
+                    for i in 0..N {
+                        let before = if i > 0 { 0.2 * x[i - 1].sin() } else { 0.0 };
+                        let after = if i + 1 < N { 0.3 * x[i + 1].sin() } else { 0.0 };
+                        f[i] = x[i].exp() + x[i] + before + after - i as f64 / N as f64;
+                    }
+                },
+                |x, j| {
+                    j.fill(0.0);
+                    for i in 0..N {
+                        j[i * N + i] = x[i].exp() + 1.0;
+                        if i > 0 {
+                            j[(i - 1) * N + i] = 0.2 * x[i - 1].cos();
+                        }
+                        if i + 1 < N {
+                            j[(i + 1) * N + i] = 0.3 * x[i + 1].cos();
+                        }
+                    }
+                },
+            )
+        };
+        let rows = |column: usize| column.saturating_sub(1)..(column + 2).min(N);
+        let starts = (0..N).scan(0, |sum, column| {
+            *sum += rows(column).len();
+            Some(*sum)
+        });
+        let column_starts = std::iter::once(0).chain(starts).collect();
+        let pattern = Pattern { n: N, column_starts, rows: (0..N).flat_map(rows).collect() };
+        let mut newton = Newton::of_pattern(pattern);
+        assert!(matches!(newton.linear, Linear::Sparse { .. }));
+        let mut x = vec![0.0; N];
+        newton.solve(&mut given(), &mut x, &[1.0; N]).unwrap();
+        let dense = solved(given(), &[0.0; N]).unwrap();
+        assert!(x.iter().zip(&dense).all(|(a, b)| (a - b).abs() < 1e-14), "{x:?}");
+        let mut residual = vec![0.0; N];
+        given().residual(&x, &mut residual).unwrap();
+        assert!(residual.iter().all(|r| r.abs() < 1e-13), "{residual:?}");
     }
 
     #[test]

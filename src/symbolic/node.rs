@@ -123,6 +123,8 @@ pub struct Inverse {
     pub function: u32,
     /// For each of its inputs the input of `f` that it is given; `None` stands for y.
     pub arguments: Box<[Option<u32>]>,
+    /// Whether it gives the input back in the whole range of `f`, not in a part of it.
+    pub is_exact: bool,
 }
 
 /// A node of an expression.

@@ -24,6 +24,9 @@ pub struct Solution {
     /// What it divides by where the variable stands below a fraction: `a / v = b` has no solution at
     /// all where `b` is zero, so that nothing is lost there.
     pub inverted: Expr,
+    /// Whether it solves the equation everywhere: an inverse that a function declares may be one in
+    /// a part of its range only.
+    pub is_exact: bool,
 }
 
 /// Takes an expression apart that is linear in `variable`; `None` if it is not, or not visibly.
@@ -119,7 +122,7 @@ pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Optio
         (false, true) => (right, left),
         (true, true) => (pool.sub(left, right), pool.constant(0.0)),
     };
-    let mut moved = Solution { value: other, divisor: one, inverted: one };
+    let mut moved = Solution { value: other, divisor: one, inverted: one, is_exact: true };
     loop {
         if let Some(linear) = linear_in(pool, side, variable) {
             if pool.as_constant(linear.coefficient) == Some(0.0) {
@@ -176,22 +179,24 @@ fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option
             (arguments.first(), pool.function("exp", &[other]))
         }
         Node::Call { function, output: 0, arguments } => {
-            inverted(pool, function, arguments, other, variable)?
+            let (inner, value, is_exact) = inverted(pool, function, arguments, other, variable)?;
+            let is_exact = moved.is_exact && is_exact;
+            return Some((inner, Solution { value, is_exact, ..moved }));
         }
         _ => return None,
     };
     Some((inner, Solution { value, ..moved }))
 }
 
-/// The argument of a call that holds the variable, and its value by the declared inverse of the
-/// function; `None` if several hold it.
+/// The argument of a call that holds the variable, its value by the declared inverse of the function,
+/// and whether that is exact; `None` if several hold it.
 fn inverted(
     pool: &mut Pool,
     function: u32,
     arguments: Expr,
     value: Expr,
     variable: VarId,
-) -> Option<(Expr, Expr)> {
+) -> Option<(Expr, Expr, bool)> {
     let entries = pool.entries(arguments).to_vec();
     let mut holding = (0..entries.len()).filter(|at| pool.depends_on(entries[*at], variable));
     let (at, None) = (holding.next()?, holding.next()) else { return None };
@@ -201,5 +206,5 @@ fn inverted(
         .iter()
         .map(|source| source.map_or(value, |input| entries[input as usize]))
         .collect();
-    Some((entries[at], pool.call(inverse.function, 0, &given)))
+    Some((entries[at], pool.call(inverse.function, 0, &given), inverse.is_exact))
 }

@@ -1,6 +1,7 @@
 // `annotation(inverse(…))` (MLS §12.8): the equations of x and y are solved by the functions that are
-// declared to solve them. That of z, which stands twice in the call, and that of w, whose function may
-// be inlined, are not; nor is that of v, whose function only nearly has its inverse.
+// declared to solve them, and so is that of v, whose function has its inverse in a part of its range.
+// That of z, which stands twice in the call, and that of w, whose function may be inlined, are not; nor
+// is that of u, the same function as of v in a loop.
 model declared_inverse
   function rate
     input Real dp;
@@ -44,11 +45,13 @@ model declared_inverse
   algorithm
   end same;
   parameter Real k = 2;
-  Real x, y, z, w, v;
+  Real x, y, z, w, v, u, s;
 equation
   3 * rate(x, k) + 1 = time;
   drop(y, k) = time;
   rate(z, z) = 1 + time;
   open(w) = time;
   smooth(v) = time;
+  smooth(u) = time - s;
+  s = u ^ 2;
 end declared_inverse;

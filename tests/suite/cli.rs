@@ -439,6 +439,27 @@ fn libraries_are_verified_against_collections() {
     assert_eq!(gapi(&here, &["verify", "Lib.mo", "--references", "nowhere"]).0, 1);
 }
 
+#[test]
+fn samples_are_compared_with_what_lies_between_points_of_the_experiment() {
+    let here = folder(&[]);
+    fs::create_dir(here.path().join("references")).unwrap();
+    let model = "package P model Wave Real x; equation x = time^2; \
+                 annotation(experiment(StopTime = 1, Interval = 0.5)); end Wave; end P;";
+    fs::write(here.path().join("P.mo"), model).unwrap();
+    // Between 0, 1/4 and 1, linear; the curve itself is 1/16 and 9/16 at the quarters.
+    let write = |x: &str| {
+        let text = format!("time=[0, 1]\nx=[{x}]\n");
+        fs::write(here.path().join("references/P_Wave.txt"), text).unwrap();
+    };
+    let verify = || gapi(&here, &["verify", "P.mo", "--references", "references"]).0;
+    write("0, 0.125, 0.25, 0.625, 1");
+    assert_eq!(verify(), 0);
+    write("0, 0.0625, 0.25, 0.5625, 1");
+    assert_eq!(verify(), 0);
+    write("0, 0.09, 0.25, 0.6, 1");
+    assert_eq!(verify(), 1);
+}
+
 /// The variable that limits the steps, the relation that causes the events and the loop are named.
 #[test]
 fn simulations_tell_what_made_them_work() {

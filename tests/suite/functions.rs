@@ -440,6 +440,23 @@ fn an_inverse_that_is_none_is_not_used() {
 }
 
 #[test]
+fn an_inverse_of_a_part_of_the_range_solves_an_equation_that_stands_alone() {
+    // Below 0.1 `drop` gives half of what solves the equation. Alone, x is what it gives; in the loop
+    // the equations hold.
+    let model = "model Main \
+        function rate input Real u; output Real y; algorithm \
+        y := if noEvent(u > 0.1) then u else u/2 + 0.05; \
+        annotation(Inline = false, inverse(u = drop(y))); end rate; \
+        function drop input Real y; output Real u; \
+        algorithm u := if noEvent(y > 0.1) then y else y - 0.05; end drop; \
+        Real x; Real y; Real z; \
+        equation rate(x) = 0.06; rate(y) = 0.075 - z; z = 0.1*y; end Main;";
+    let run = simulated(model, 1.0);
+    assert!((run.column("x")[0] - 0.01).abs() < 1e-15);
+    assert!((run.column("y")[0] - 0.025 / 0.6).abs() < 1e-9);
+}
+
+#[test]
 fn a_declared_inverse_solves_its_equation() {
     // No step of Newton's method: the value has the bits of the function.
     let model = "model Main \

@@ -139,3 +139,38 @@ fn a_capacitance_of_zero_holds_no_voltage() {
     run.follows("v", 1e-9, |t| 1.0 + t);
     run.follows("i", 1e-9, |_| 0.0);
 }
+
+#[test]
+fn a_loop_of_many_unknowns_with_few_neighbours_is_solved() {
+    // The solution is known: b follows from it.
+    let text = "model Chain constant Integer n = 80; Real x[n]; Real b[n]; Real y(start = 1, fixed = true);
+        equation
+          for i in 1:n loop b[i] = exp(sin(i + time)) + sin(i + time)
+            + (if i > 1 then 0.2*sin(sin(i - 1 + time)) else 0)
+            + (if i < n then 0.3*sin(sin(i + 1 + time)) else 0);
+            exp(x[i]) + x[i] + (if i > 1 then 0.2*sin(x[max(i - 1, 1)]) else 0)
+            + (if i < n then 0.3*sin(x[min(i + 1, n)]) else 0) = b[i];
+          end for;
+          der(y) = -y;
+        end Chain;";
+    let run = Run::of(text, 1.0);
+    let (linear, torn) = loops(&run.program);
+    assert!(linear.is_empty() && torn == [80], "{torn:?}");
+    for i in [1, 40, 80] {
+        run.follows(&format!("x[{i}]"), 1e-9, |t| (t + f64::from(i)).sin());
+    }
+}
+
+#[test]
+fn nodes_may_have_any_number_of_connectors() {
+    let text = "model Node
+        connector Pin Real v; flow Real i; end Pin;
+        model Load Pin p; parameter Real g = 1; equation p.i = g*p.v; end Load;
+        model Source Pin p; equation p.v = 2 + time; end Source;
+        Source source; Load load[900](g = {1/i for i in 1:900});
+        equation
+          for i in 1:900 loop connect(load[i].p, source.p); end for;
+        end Node;";
+    let sum: f64 = (1..=900).map(|i| 1.0 / f64::from(i)).sum();
+    Run::of(text, 1.0).follows("source.p.i", 1e-10, |t| -(2.0 + t) * sum);
+}

@@ -75,6 +75,7 @@ mod repl;
 mod report_page;
 mod results;
 mod resume;
+mod scalable;
 mod script_fuzzing;
 mod script_tests;
 mod scripts;

@@ -20,6 +20,9 @@ use crate::syntax::ast::{
     EquationKind, Expression, ExpressionKind, UnaryOperator,
 };
 
+/// Terms of a sum of flows without brackets.
+const LONGEST_SUM: usize = 100;
+
 impl Instantiation<'_> {
     /// Adds the equations of all sets, and those of flows that are not connected.
     pub fn add_connection_equations(
@@ -91,6 +94,23 @@ impl Tree {
 
     /// Σ of the flows into the components = Σ of those through the connectors of the instance.
     fn flow_equation(&self, sides: &[ConnectorSide], span: Span) -> Equation {
+        let zero = Expression::new(ExpressionKind::Real(0.0), span);
+        let kind = EquationKind::Equal { left: self.sum_of_flows(sides, span), right: zero };
+        Equation { kind, comment: Default::default(), span }
+    }
+
+    /// One after the other; long sums as sums of sums, since what reads expressions goes down into
+    /// them, and 1,281 breakers at one node would be as many levels.
+    fn sum_of_flows(&self, sides: &[ConnectorSide], span: Span) -> Expression {
+        if sides.len() > LONGEST_SUM {
+            let (first, second) = sides.split_at(sides.len() / 2);
+            let kind = ExpressionKind::Binary {
+                operator: BinaryOperator::Add,
+                left: Box::new(self.sum_of_flows(first, span)),
+                right: Box::new(self.sum_of_flows(second, span)),
+            };
+            return Expression::new(kind, span);
+        }
         let mut sum: Option<Expression> = None;
         for side in sides {
             let term = self.scalar(side.leaf, side.element, span);
@@ -108,10 +128,7 @@ impl Tree {
             };
             sum = Some(Expression::new(kind, span));
         }
-        let zero = Expression::new(ExpressionKind::Real(0.0), span);
-        let left = sum.unwrap_or_else(|| zero.clone());
-        let kind = EquationKind::Equal { left, right: zero };
-        Equation { kind, comment: Default::default(), span }
+        sum.unwrap_or_else(|| Expression::new(ExpressionKind::Real(0.0), span))
     }
 
     fn variability_of_leaf(&self, leaf: NodeId) -> Variability {

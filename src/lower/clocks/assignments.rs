@@ -358,6 +358,7 @@ impl Builder<'_> {
             return None;
         }
         if let Some(solution) = solve(pool, equation.left, equation.right, variable)
+            && solution.is_exact
             && pool.as_constant(solution.divisor).is_some_and(|divisor| divisor != 0.0)
         {
             return Some((Way::Solved, solution.value));

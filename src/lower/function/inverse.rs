@@ -1,10 +1,11 @@
 //! `annotation(inverse(x = f(y), …))` (MLS §12.8): the functions that solve another for its inputs.
 //!
 //! The annotation counts where the function has one Real output and scalar Real inputs, and the
-//! inverse function takes nothing but these and returns one Real. It must be an inverse: both are
-//! tried at some points, since functions of libraries are inverse to each other but for the place
-//! where they are made smooth. The flow through a resistance of IBPSA, solved by its declared inverse,
-//! is wrong by a tenth where it is laminar.
+//! inverse function takes nothing but these and returns one Real. Both are tried at some points, since
+//! functions of libraries are inverse to each other but for the range where they are made smooth: the
+//! flow through a resistance of IBPSA, solved by its declared inverse, differs by a third where it is
+//! laminar. Such an inverse solves an equation that stands alone, as its author wants it, but none in
+//! a loop. What is an inverse nowhere is not used.
 
 use super::instances::{Argument, Instance, Instances};
 use crate::bytecode::{Functions, Machine};
@@ -81,7 +82,11 @@ impl Instances {
         let unknown = vec![Lowered::scalar(None); of.inputs.len()];
         let instance: Instance = self.instance(flat, &of, &unknown, span).ok()?;
         let is_plain = instance.passed.iter().all(|passed| *passed) && !instance.impure;
-        is_plain.then(|| Inverse { function: instance.code, arguments: sources.into() })
+        is_plain.then(|| Inverse {
+            function: instance.code,
+            arguments: sources.into(),
+            is_exact: true,
+        })
     }
 }
 
@@ -91,22 +96,33 @@ const TRIED: [f64; 12] = [1e-4, -1e-4, 0.01, -0.01, 0.2, -0.2, 0.7, -0.7, 3.0, -
 const OTHERS: [f64; 5] = [0.6, 1.7, 0.05, 12.0, 1.0];
 /// How far the input may be missed, relative to itself.
 const INVERTED: f64 = 1e-9;
-/// So many tries must have a value.
+/// So many tries must give the input back.
 const FEWEST: usize = 6;
 
-/// Whether a declared inverse gives the input back wherever it is tried.
+/// Where a declared inverse gives the input back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::lower) enum Inverts {
+    /// Wherever it was tried.
+    Everywhere,
+    /// At some of the points.
+    Somewhere,
+    /// At too few of them.
+    Nowhere,
+}
+
+/// Tries a declared inverse.
 pub(in crate::lower) fn inverts(
     functions: &Functions,
     function: u32,
     input: u32,
     inverse: &Inverse,
-) -> bool {
+) -> Inverts {
     let n = functions.codes[function as usize].n_inputs as usize;
     let mut machine = Machine::default();
     let mut value = |function: u32, arguments: &[f64]| -> Option<f64> {
         machine.call(functions, function, arguments.iter().copied()).ok()?.first().copied()
     };
-    let mut given = 0;
+    let (mut given, mut inverted) = (0, 0);
     for (first, x) in (0..OTHERS.len()).flat_map(|first| TRIED.map(|x| (first, x))) {
         let mut arguments: Vec<f64> = (0..n).map(|i| OTHERS[(first + i) % OTHERS.len()]).collect();
         arguments[input as usize] = x;
@@ -119,11 +135,13 @@ pub(in crate::lower) fn inverts(
         // An error of the input that the output does not show is none.
         let shown = value(function, &arguments).map(|again| (again - y).abs());
         let is_same = shown.is_some_and(|error| error <= 4.0 * f64::EPSILON * y.abs());
-        if (back - x).abs() > INVERTED * x.abs() && !is_same {
-            return false;
-        }
+        inverted += usize::from((back - x).abs() <= INVERTED * x.abs() || is_same);
     }
-    given >= FEWEST
+    match inverted >= FEWEST {
+        true if inverted == given => Inverts::Everywhere,
+        true => Inverts::Somewhere,
+        false => Inverts::Nowhere,
+    }
 }
 
 /// What a name in the call of an inverse stands for: another input, or `None` for the output.

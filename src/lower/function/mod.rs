@@ -25,7 +25,7 @@ mod target;
 
 pub(super) use external_kinds::{confirms, prints};
 pub(super) use instances::Instances;
-pub(super) use inverse::inverts;
+pub(super) use inverse::{Inverts, inverts};
 pub(super) use results::CallResults;
 
 use super::builder::{Builder, MAX_STATEMENTS};

@@ -13,6 +13,9 @@ use crate::value::{Elements, Value};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;
 
+/// Flags that scripts read before they set them, to set them back, and what they are until then.
+const UNSET: &[(&str, bool)] = &[("Advanced.StoreProtectedVariables", true)];
+
 /// First identifiers of dotted names that are flags rather than parts of a model.
 const FLAG_ROOTS: &[&str] = &["Advanced", "Hidden", "Evaluate", "Design", "Check", "Dymola"];
 
@@ -45,23 +48,31 @@ impl Default for Workspace {
     }
 }
 
+/// Whether a reference names a flag.
+fn is_flag(reference: &ComponentReference) -> bool {
+    reference.parts.len() > 1 && FLAG_ROOTS.contains(&reference.parts[0].name.as_str())
+}
+
 impl Workspace {
     /// The value of the flag of this name, if it was set.
     pub fn flag(&self, name: &str) -> Option<&Value> {
         self.flags.get(name)
     }
 
-    /// The value of a flag, if the reference names one that was set.
+    /// The value of a flag, if the reference names one that was set, or one that has a value
+    /// without that.
     pub fn flag_at(&self, reference: &ComponentReference) -> Option<Value> {
-        if self.flags.is_empty() || reference.parts.len() < 2 {
+        if !is_flag(reference) {
             return None;
         }
-        self.flag(&reference.name().to_string()).cloned()
+        let name = reference.name().to_string();
+        let unset = || UNSET.iter().find(|(flag, _)| *flag == name).map(|(_, on)| (*on).into());
+        self.flag(&name).cloned().or_else(unset)
     }
 
     /// Sets a flag; `false` if the name is not one of a flag.
     pub fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
-        let is_flag = target.parts.len() > 1 && FLAG_ROOTS.contains(&target.parts[0].name.as_str());
+        let is_flag = is_flag(target);
         if is_flag {
             self.flags.insert(target.name().to_string(), value.clone());
         }

@@ -1,4 +1,5 @@
-//! Models against reference results: translated, simulated at the reference's times, compared.
+//! Models against reference results: translated, simulated, compared. The points in time are those of
+//! the reference; if it is sampled, those of the experiment annotation and others between them.
 
 use super::simulation::{self, SimulationOptions};
 use crate::causalize;
@@ -8,7 +9,7 @@ use crate::flatten::{self, Library};
 use crate::name::Name;
 use crate::results::{self, Compared, ResultTable, Series, Values};
 use crate::script::Session;
-use crate::sim::{OutputGrid, Simulator, Trajectory};
+use crate::sim::{OutputGrid, Settings, Simulator, Trajectory, same_time};
 use crate::source::Span;
 use std::fmt;
 use std::sync::Arc;
@@ -87,8 +88,8 @@ pub fn library(session: &mut Session) -> Arc<Library> {
 }
 
 /// Translates and simulates a class as its experiment annotation says, and compares it with the
-/// reference if there is one: then the reference's time span and points in time count. `enter` is
-/// called with each stage as it begins; the flag ends a simulation.
+/// reference if there is one: then the reference's time span counts, and its points in time unless it
+/// is sampled. `enter` is called with each stage as it begins; the flag ends a simulation.
 ///
 /// # Errors
 /// The stage that it did not pass, with everything that is wrong there.
@@ -109,33 +110,47 @@ pub fn verify(
     enter(Stage::Compile);
     let program = Program::compile(sorted).map_err(stuck(Stage::Compile))?;
     enter(Stage::Simulate);
-    let result = simulate(&program, reference.as_ref(), cancel).map_err(stuck(Stage::Simulate))?;
+    let (result, between) =
+        simulate(&program, reference.as_ref(), cancel).map_err(stuck(Stage::Simulate))?;
     let Some(reference) = reference else { return Ok(Vec::new()) };
     enter(Stage::Compare);
-    let compare = match reference.is_sampled {
-        true => results::compare_samples,
-        false => results::compare,
+    let Reference { table, signals, tolerance, is_sampled } = reference;
+    let compared = match is_sampled {
+        true => {
+            let is_written = |t: &f64| between.binary_search_by(|b| b.total_cmp(t)).is_err();
+            let is_written: Vec<bool> = result.time.iter().map(is_written).collect();
+            results::compare_samples(&result, &is_written, table, signals, tolerance)
+        }
+        false => results::compare(&result, table, signals, tolerance),
     };
-    compare(&result, reference.table, reference.signals, reference.tolerance)
-        .map_err(nowhere)
-        .map_err(stuck(Stage::Compare))
+    compared.map_err(nowhere).map_err(stuck(Stage::Compare))
 }
 
-/// The signals of a reference, as simulated.
+/// The signals of a reference, as simulated, and the times that are not those of the experiment
+/// annotation.
 fn simulate(
     program: &Arc<Program>,
     reference: Option<&Reference>,
     cancel: &Arc<AtomicBool>,
-) -> Result<ResultTable, Diagnostic> {
+) -> Result<(ResultTable, Vec<f64>), Diagnostic> {
     let mut settings = simulation::settings(&program.experiment(), &options(program, reference))
         .map_err(|fault| fault.at(Span::NONE))?;
     settings.cancel = Some(cancel.clone());
     settings.max_total_steps = simulation::MOST_STEPS;
+    let mut between = Vec::new();
     if let Some(reference) = reference {
         let mut times = reference.table.time.clone();
         times.dedup();
         if reference.is_sampled {
-            times = results::between_samples(&times);
+            let own = instants(&settings);
+            let is_own = |t: &f64| {
+                let at = own.partition_point(|own| own < t);
+                own[at.saturating_sub(1)..own.len().min(at + 1)].iter().any(|o| same_time(*o, *t))
+            };
+            between = results::between_samples(&times);
+            between.retain(|t| !is_own(t));
+            times = own.iter().chain(&between).copied().collect();
+            times.sort_by(f64::total_cmp);
         }
         settings.output = OutputGrid::At(times);
     }
@@ -148,7 +163,19 @@ fn simulate(
     let mut table = ResultTable::new(trajectory.time().to_vec());
     let column = |(at, name)| Series::new(name, Values::Trajectory(trajectory.column(at).to_vec()));
     table.series = names.into_iter().enumerate().map(column).collect();
-    Ok(table)
+    Ok((table, between))
+}
+
+/// The instants at which a simulation writes its results, beside its events.
+fn instants(settings: &Settings) -> Vec<f64> {
+    let Settings { start, stop, .. } = *settings;
+    match &settings.output {
+        OutputGrid::At(times) => times.clone(),
+        OutputGrid::Intervals(n) => {
+            let at = |step: usize| start + (stop - start) * (step as f64 / *n as f64);
+            (0..=*n).map(|step| if step == *n { stop } else { at(step) }).collect()
+        }
+    }
 }
 
 fn options(program: &Program, reference: Option<&Reference>) -> SimulationOptions {
