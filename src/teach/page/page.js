@@ -150,6 +150,7 @@ function show() {
   showCurve(drawn);
   showLandscape(drawn);
   showFamily(drawn);
+  showWhatIf(drawn);
   showTell();
 }
 
@@ -198,6 +199,7 @@ function begin() {
   at("predicting").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   follow();
+  beginWhatIf();
   window.addEventListener("hashchange", follow);
 }
 function follow() {
