@@ -84,6 +84,7 @@ fn body() -> Markup {
             div.column {
                 section id="population-panel" {
                     h3 { "The population" }
+                    p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
                     div id="population" {}
                     p.legend { (LEGEND) }
                     p id="individual" aria-live="polite" { "\u{a0}" }

@@ -197,6 +197,7 @@ function begin() {
     (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, the largest improvements, and the last" : "");
   at("prediction").addEventListener("submit", predict);
   at("predicting").addEventListener("change", () => show());
+  at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   follow();
   beginWhatIf();
