@@ -68,9 +68,25 @@ const made = {
     builder.onLoad({ filter: /.*/, namespace: "made" }, ({ path }) => ({ contents: values[path](), loader: "js" }));
   },
 };
+/** Folders of the packages that are in a bundle. */
+const packages = new Set();
 async function bundle(entry) {
-  const { outputFiles } = await build({ entryPoints: [join(here, "src", entry)], bundle: true, minify: true, write: false, format: "iife", target: "es2022", plugins: [made], legalComments: "eof" });
+  const { outputFiles, metafile } = await build({ entryPoints: [join(here, "src", entry)], bundle: true, minify: true, write: false, metafile: true, absWorkingDir: here, format: "iife", target: "es2022", plugins: [made], legalComments: "eof" });
+  for (const input of Object.keys(metafile.inputs)) {
+    const [, folder] = /(node_modules\/(?:@[^/]+\/)?[^/]+)\//.exec(input) ?? [];
+    if (folder) packages.add(folder);
+  }
   return outputFiles[0].text;
+}
+/** Their licences, which go wherever the bundle goes. */
+function licences() {
+  const all = [...packages].sort().map((folder) => {
+    const file = readdirSync(join(here, folder)).find((name) => /^licen[cs]e/i.test(name));
+    if (!file) throw new Error(`${folder} has no licence`);
+    return `${folder.slice("node_modules/".length)}\n\n${text(join(here, folder, file))}`;
+  });
+  if (all.length < 5) throw new Error(`licences of ${all.length} packages`);
+  return all.join("\n\n----\n\n");
 }
 
 /** Texts within a script element. */
@@ -87,8 +103,9 @@ put("play/play.js", page);
 put("play/worker.js", worker);
 put("play/run_examples.js", examplesRunner);
 put("play/gapilib.wasm.gz", module);
+put("play/licences.txt", licences());
 // The program is behind the page, which is painted while it is read.
 put("play.html", filled(`<style>${style}</style>`,
-  `<script type="text/plain" id="worker-source">${inline(worker)}</script>\n<script>addEventListener("DOMContentLoaded", () => {${inline(page)}});</script>\n<script type="text/plain" id="module">${module.toString("base64")}</script>`));
+  `<script type="text/plain" id="worker-source">${inline(worker)}</script>\n<script>addEventListener("DOMContentLoaded", () => {${inline(page)}});</script>\n<script type="text/plain" id="licences">${inline(licences())}</script>\n<script type="text/plain" id="module">${module.toString("base64")}</script>`));
 const size = (name) => `${name} ${gzipSync(readFileSync(join(out, name)), { level: 9 }).length}`;
 console.log("bytes, compressed:", ["play/index.html", "play/play.js", "play/worker.js", "play/gapilib.wasm.gz", "play.html"].map(size).join(", "));

@@ -191,6 +191,13 @@ for (const { name, path, options } of BROWSERS) {
       await click(page, "stop");
       await ended(page);
       assert.match(await text(page, "text"), /Identified parameters of CaseStudies.PolarizationCurve[^]*stopped/);
+      // A hundred individuals are folded.
+      const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+      await frame.waitForSelector("#population .row");
+      const rows = () => frame.$$eval("#population .row", (rows) => rows.length);
+      assert.ok(await rows() <= 30, `${await rows()}`);
+      await frame.evaluate(() => document.getElementById("unfold").click());
+      assert.equal(await rows(), 100);
       await closed(page);
     });
 
@@ -224,6 +231,29 @@ for (const { name, path, options } of BROWSERS) {
       await page.$eval("#text a", (link) => link.click());
       const line = await page.$eval(".cm-activeLine", (element) => element.textContent);
       assert.equal(line, "q = missing + 1");
+      await closed(page);
+    });
+
+    test("the keyboard is enough", async () => {
+      const page = await opened();
+      await page.focus("#tab-live");
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await page.$eval("#tab-steps", (tab) => tab.getAttribute("aria-selected")), "true");
+      await page.focus("#files [aria-selected=true]");
+      const shown = () => page.$eval("#files [aria-selected=true]", (tab) => tab.textContent);
+      assert.equal(await shown(), "GAPILib_INI.mos");
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await shown(), "GAPILib_CYCLE.mos");
+      assert.ok(await page.$eval("#files [aria-selected=true]", (tab) => tab === document.activeElement));
+      await page.focus(".cm-content");
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("Tab");
+      assert.ok(await page.evaluate(() => !document.activeElement.closest("#editor")));
+      await page.keyboard.down("Control");
+      await page.keyboard.press("Enter");
+      await page.keyboard.up("Control");
+      await ended(page);
+      assert.match(await text(page, "status"), /^Done/);
       await closed(page);
     });
 

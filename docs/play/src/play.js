@@ -113,9 +113,11 @@ function busy(is) {
   at("change").hidden = !is;
 }
 
+/** Paths as the page shows them: the files of a run are in memory. */
+const here = (text) => text.replaceAll("/memory/", "");
 const LISTENERS = {
-  print: (text) => write(text, ""),
-  eprint: (text) => write(text, "errors"),
+  print: (text) => write(here(text), ""),
+  eprint: (text) => write(here(text), "errors"),
   view(picture) {
     live.add(picture);
     const { done, total, best } = picture.progress;

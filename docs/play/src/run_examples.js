@@ -30,7 +30,7 @@ async function run(button, output, { script, more }) {
   output.textContent = "Loading ...";
   let text = "";
   engine.onevent = ({ print, eprint, view }) => {
-    text += print ?? eprint ?? "";
+    text += (print ?? eprint ?? "").replaceAll("/memory/", "");
     output.textContent = text + (view ? `generation ${view.progress.done}` : "");
   };
   try {
