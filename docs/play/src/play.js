@@ -125,7 +125,7 @@ const LISTENERS = {
   },
   typed(change) {
     typed.push(change);
-    status(`${change.statement} from generation ${change.generation} on.`);
+    say(`${change.statement} from generation ${change.generation} on.`);
   },
   paused: () => status("Paused. Statements that you apply take effect from this generation on."),
 };
@@ -187,7 +187,8 @@ async function showSteps(isQuiet) {
   }
   const frame = document.createElement("iframe");
   frame.title = "The run, step by step";
-  frame.setAttribute("sandbox", "allow-scripts");
+  // Its forms are answered by its own script.
+  frame.setAttribute("sandbox", "allow-scripts allow-forms");
   frame.srcdoc = html;
   at("no-steps").hidden = true;
   at("steps").replaceChildren(at("no-steps"), frame);
