@@ -204,6 +204,11 @@ function begin() {
   at("link").hidden = EMBEDDED;
   follow();
   beginWhatIf();
+  if (EMBEDDED && WHAT_IF) {
+    // The reader has just asked for it.
+    go(DATA.steps.length - 1, true);
+    at("what-if-panel").scrollIntoView();
+  }
   window.addEventListener("hashchange", follow);
 }
 function follow() {
