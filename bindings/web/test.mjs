@@ -13,7 +13,8 @@ import { gzipSync } from "node:zlib";
 const project = join(import.meta.dirname, "../..");
 const folders = join(project, "tests/transcripts");
 const target = process.env.CARGO_TARGET_DIR ?? join(project, "target");
-const binary = readFileSync(join(target, "web/gapilib.wasm"));
+const web = process.env.GAPILIB_WEB_FOLDER ?? join(target, "web");
+const binary = readFileSync(join(web, "gapilib.wasm"));
 const gapilib = await load(binary);
 
 /** Transcripts that cannot be the same, with the reason. */
@@ -68,6 +69,7 @@ test("a wrong script is told so, with its place", () => {
 
 test("a wrong request is refused, and the next one is answered", () => {
   assert.throws(() => gapilib.run("a.mos", {}, { write: 3 }), GapilibError);
+  assert.throws(() => gapilib.ask({ nonsense: {} }), GapilibError);
   assert.match(gapilib.run("a.mos", { "a.mos": "print(\"again\")" }).output, /again/);
 });
 
@@ -76,6 +78,63 @@ test("endless recursion is an error, and the next script is answered", () => {
   const run = gapilib.run("deep.mos", { "deep.mos": script });
   assert.match(run.errors, /error\[.*nested too deeply/);
   assert.match(gapilib.run("a.mos", { "a.mos": "print(\"again\")" }).output, /again/);
+});
+
+test("a panic is an error with its message, and the next script is answered", () => {
+  // The module asks its host for nothing while it makes room for a request: none has so many bytes.
+  const host = { monotonic: () => 0, unix: () => 0, poll: () => 0, next_line: () => 0, tell() {} };
+  const { exports } = new WebAssembly.Instance(new WebAssembly.Module(binary), { host });
+  assert.throws(() => exports.request(-1), WebAssembly.RuntimeError);
+  const place = new Uint8Array(exports.memory.buffer, exports.answer() >>> 0, exports.answer_length() >>> 0);
+  assert.match(new TextDecoder().decode(place), /panicked at.*[^]*capacity overflow/);
+});
+
+/** The search of the guide's first chapter. */
+const chapter = readFileSync(join(project, "docs/src/first_fit.md"), "utf8");
+const search = Object.fromEntries([...chapter.matchAll(/^```\w+,file=(\S+)\n([^]*?)^```/gm)].map(([, name, text]) => [name, text]));
+
+test("a run tells its generations, and its steps make a page", async () => {
+  const told = [];
+  const host = { tell: (event) => told.push(event), poll: () => 0, nextLine: () => null };
+  const run = await gapilib.start("fit.mos", search, {}, host);
+  assert.equal(run.exit_code, 0, run.errors);
+  const printed = told.map(({ print }) => print ?? "").join("");
+  assert.equal(printed, run.output);
+  assert.ok(told.some(({ view }) => view?.progress.done >= 1 && view.fitted.length === 1));
+  assert.ok(!Object.keys(run.files).some((name) => name.endsWith("run.trace")));
+  assert.match(await gapilib.steps(), /Generation|step by step/);
+  const changes = [{ generation: 3, statement: "F_Mut := 0.9" }];
+  const changed = await gapilib.start("fit.mos", search, { changes, compare: true }, host);
+  assert.notEqual(changed.output.replace(/time .*/, ""), run.output.replace(/time .*/, ""));
+  assert.match(await gapilib.steps(), /"statement":"F_Mut := 0.9"/);
+});
+
+test("a run is stopped, and changed while it goes on", async () => {
+  const typed = [], lines = ["F_Mut := 0.9"];
+  // Every script takes longer than the first look for messages in a run that never ends by itself.
+  const endless = { ...search, "fit.mos": search["fit.mos"].replace(/N_Cycle = \d+/, "N_Cycle = 1000000") };
+  assert.notEqual(endless["fit.mos"], search["fit.mos"]);
+  let looks = 0;
+  const host = {
+    tell: (event) => event.typed && typed.push(event.typed),
+    poll: () => (++looks > 5 ? 1 : lines.length > 0 ? 2 : 0),
+    nextLine: () => lines.shift() ?? null,
+  };
+  const run = await gapilib.start("fit.mos", endless, {}, host);
+  assert.equal(run.exit_code, 130);
+  assert.equal(typed.length, 1);
+  assert.ok(typed[0].generation >= 1 && typed[0].statement === "F_Mut := 0.9");
+  const last = await gapilib.start("fit.mos", endless, { last: 7 }, { ...host, poll: () => 0 });
+  assert.match(last.output, /in 7 generations/);
+});
+
+test("lessons are there, and checked", () => {
+  const lessons = gapilib.ask({ lessons: {} });
+  assert.equal(lessons.length, 18);
+  const [{ text, solution, companions }] = lessons;
+  const solved = solution.reduce((text, [gap, filled]) => text.replace(gap, filled), text);
+  assert.equal(gapilib.ask({ check: { lesson: 1, text, companions } }).passed, false);
+  assert.equal(gapilib.ask({ check: { lesson: 1, text: solved, companions } }).passed, true);
 });
 
 for (const folder of readdirSync(folders)) {

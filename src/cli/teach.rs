@@ -11,6 +11,7 @@ use crate::script::{Echo, Options, Reporting, Session};
 use crate::source::Span;
 use crate::teach::bands::{self, Repeated};
 use crate::teach::branches::Branches;
+use crate::teach::page::WhatIf;
 use crate::teach::quiz::{self, Score};
 use crate::teach::screen::Screen;
 use crate::teach::{Trace, Walk, page, picture, plain};
@@ -41,7 +42,7 @@ pub(super) struct TeachArgs {
     #[arg(long, conflicts_with = "html")]
     pub quiz: bool,
     /// Run again with this statement executed at the first generation shown, and compare; repeat the option for several statements
-    #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
+    #[arg(long, value_name = "STATEMENT", conflicts_with = "quiz")]
     pub what_if: Vec<String>,
     /// Compare over this number of runs, each with another seed
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one, requires = "what_if")]
@@ -99,6 +100,11 @@ enum Trouble {
 fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
     if arguments.runs > 1 || arguments.what_if.len() > 1 {
+        if arguments.html.is_some() {
+            let message = "a page compares with one change in one run: give --what-if once and no \
+                           --runs";
+            return Err(Trouble::Message(message.to_owned()));
+        }
         return compare_many(arguments, global);
     }
     let (trace, session) = match is_script {
@@ -106,14 +112,17 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
             .map(|(trace, session)| (trace, Some(session)))?,
         false => (read(&arguments.input)?, None),
     };
-    if let Some(statement) = arguments.what_if.first() {
+    if let (Some(statement), None) = (arguments.what_if.first(), &arguments.html) {
         return compare(arguments, global, &trace, statement);
     }
     if let Some(file) = &arguments.svg {
         return draw(&trace, file, arguments.generation);
     }
     match &arguments.html {
-        Some(page) => write_page(trace, page, &results(arguments)?, is_script),
+        Some(page) => {
+            let what_if = what_if(arguments, global)?;
+            write_page(trace, page, (&results(arguments)?, is_script), what_if.as_ref())
+        }
         None => show(Walk::new(trace), session, arguments, global),
     }
 }
@@ -245,12 +254,25 @@ fn write(file: &Path, text: &str) -> Result<(), Trouble> {
     })
 }
 
+/// What the run would have been with the change that was asked for, if one was.
+fn what_if(arguments: &TeachArgs, global: &Global) -> Result<Option<WhatIf>, Trouble> {
+    let Some(statement) = arguments.what_if.first() else { return Ok(None) };
+    let generation = arguments.generation;
+    let trace = branch(arguments, global, (generation, statement))?;
+    Ok(Some(WhatIf { trace, generation, statement: statement.clone() }))
+}
+
 /// Writes the page of a trace. The report of the run lies in the folder `results`; where the run was
 /// recorded earlier, only if it is the report of that run.
-fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result<(), Trouble> {
+fn write_page(
+    trace: Trace,
+    file: &Path,
+    (results, is_new): (&Path, bool),
+    what_if: Option<&WhatIf>,
+) -> Result<(), Trouble> {
     let report = super::named::read_text(&results.join("result.json")).ok();
     let report = report.filter(|report| is_new || page::belongs(&trace, report));
-    write(file, &page::page(trace, report.as_deref()))?;
+    write(file, &page::page(trace, report.as_deref(), what_if))?;
     terminal::print(&format!("written to {}\n", file.display()));
     Ok(())
 }

@@ -8,6 +8,8 @@ use crate::script::{Echo, Options, Reporting, Session, Strictness};
 use crate::value::Value;
 use crate::value::show::{Style, show};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How often a run in memory asks whether to stop before it is taken to be endless: the longest
 /// solution, that of lesson 14, asks 1.0e5 times.
@@ -20,15 +22,31 @@ pub enum Verdict {
     Passed,
     /// Something does not hold; the text says what, and in which direction to think.
     NotYet(String),
+    /// The user has stopped the check.
+    Stopped,
 }
 
 /// Checks the learner's script, whose companions lie beside it.
 pub fn check(lesson: &Lesson, text: &str, companions: &[(String, String)]) -> Verdict {
+    check_until(&Arc::default(), lesson, text, companions)
+}
+
+/// The same until `stop` is set.
+pub fn check_until(
+    stop: &Arc<AtomicBool>,
+    lesson: &Lesson,
+    text: &str,
+    companions: &[(String, String)],
+) -> Verdict {
     let failed = lesson.checks.iter().find_map(|check| {
-        let done = Run { lesson, check, companions }.done(text);
+        let done = Run { lesson, check, companions, stop }.done(text);
         done.err()
     });
-    failed.map_or(Verdict::Passed, Verdict::NotYet)
+    match failed {
+        _ if stop.load(Ordering::Relaxed) => Verdict::Stopped,
+        Some(why) => Verdict::NotYet(why),
+        None => Verdict::Passed,
+    }
 }
 
 /// One run of the learner's script.
@@ -36,6 +54,7 @@ struct Run<'a> {
     lesson: &'a Lesson,
     check: &'a Check,
     companions: &'a [(String, String)],
+    stop: &'a Arc<AtomicBool>,
 }
 
 impl Run<'_> {
@@ -88,7 +107,7 @@ impl Run<'_> {
     }
 
     fn world(&self, text: &str) -> MemoryWorld {
-        let world = MemoryWorld::new().interrupted_after(PATIENCE);
+        let world = MemoryWorld::new().interrupted_after(PATIENCE).stopped_by(self.stop);
         let world = world.with_file(&self.lesson.file, text);
         let own = self.companions.iter().map(|(name, text)| (name, text));
         own.chain(&self.check.files).fold(world, |world, (name, text)| world.with_file(name, text))
@@ -152,4 +171,18 @@ fn lacking(error: &str) -> String {
          their sizes as the lesson has them, or start again with --reset.",
         error.trim_end()
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lessons::all;
+
+    #[test]
+    fn a_check_that_is_stopped_says_so() {
+        let (text, companions) = all()[0].solved();
+        assert_eq!(check(&all()[0], &text, &companions), Verdict::Passed);
+        let stop = Arc::new(AtomicBool::new(true));
+        assert_eq!(check_until(&stop, &all()[0], &text, &companions), Verdict::Stopped);
+    }
 }

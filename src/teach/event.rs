@@ -51,9 +51,9 @@ pub struct Subject {
     pub parameters: Vec<String>,
     /// Their units; empty where the model gives none.
     pub units: Vec<String>,
-    /// Name of what the measured points are given over.
+    /// Name of what the measured points are given over, with its unit in brackets.
     pub x_name: String,
-    /// Name of what was measured.
+    /// Name of what was measured, with its unit in brackets.
     pub y_name: String,
 }
 

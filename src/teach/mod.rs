@@ -10,6 +10,7 @@
 
 pub mod bands;
 pub mod branches;
+mod changed_run;
 pub mod errors;
 mod event;
 pub mod explain;

@@ -4,6 +4,7 @@
 //! A long run would make a page that no browser opens: the page has the steps of some generations
 //! only, those that `kept` names, and the curve of convergence of all.
 
+pub use super::changed_run::WhatIf;
 use super::explain::explain;
 use super::family::{Member, family};
 use super::generation::{Generation, Origin};
@@ -21,17 +22,20 @@ const STYLE: &str = include_str!("page/style.css");
 const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
 const CHARTS: &str = include_str!("page/charts.js");
+const WHAT_IF: &str = include_str!("page/what_if.js");
 /// Points of the curve of convergence.
 const CURVE_POINTS: usize = 1000;
 
 /// The page of a trace; `result` is the content of the run's `result.json`, if there is one.
-pub fn page(trace: Trace, result: Option<&str>) -> String {
+/// `what_if` is shown beside the run.
+pub fn page(trace: Trace, result: Option<&str>, what_if: Option<&WhatIf>) -> String {
+    let what_if = what_if.map_or(Value::Null, |what_if| what_if.data(&trace));
     let result = result.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(Value::Null);
     let page = Page {
         title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
-        scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();")],
-        data: &[("data", data(trace, result).to_string())],
+        scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n}})();")],
+        data: &[("data", data(trace, result).to_string()), ("what-if-data", what_if.to_string())],
         body: body(),
     };
     page.document()
@@ -65,6 +69,7 @@ fn body() -> Markup {
         main {
             div.column {
                 (panel("drawing", "This step"))
+                (what_if_panel())
                 (script_panel())
                 (panel("fit", "Measured and simulated"))
                 section id="landscape-panel" {
@@ -79,6 +84,7 @@ fn body() -> Markup {
             div.column {
                 section id="population-panel" {
                     h3 { "The population" }
+                    p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
                     div id="population" {}
                     p.legend { (LEGEND) }
                     p id="individual" aria-live="polite" { "\u{a0}" }
@@ -110,6 +116,30 @@ fn script_panel() -> Markup {
             h3 { "The script" }
             p id="script-name" {}
             pre id="script" tabindex="0" {}
+        }
+    }
+}
+
+/// What the reader changes, and both runs beside each other.
+fn what_if_panel() -> Markup {
+    html! {
+        section id="what-if-panel" {
+            h3 { "What if?" }
+            form id="what-if" {
+                label {
+                    "from this generation on, "
+                    select id="changed" {
+                        option value="F_Mut" { "F_Mut" }
+                        option value="N_Parents" { "N_Parents" }
+                        option value="N_Elitism" { "N_Elitism" }
+                        option value="Seed" { "Seed" }
+                    }
+                }
+                label { " := " input id="changed-to" autocomplete="off" size="6" aria-label="New value"; } " "
+                button id="run-what-if" { "Compare" }
+            }
+            p id="what-if-said" aria-live="polite" {}
+            div id="both" {}
         }
     }
 }
@@ -365,7 +395,7 @@ fn ranges(generations: &[Generation]) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Number and best fitness of generations, thinned out to [`CURVE_POINTS`].
-fn curve(generations: &[Generation]) -> Vec<Value> {
+pub(super) fn curve(generations: &[Generation]) -> Vec<Value> {
     let every = generations.len().div_ceil(CURVE_POINTS).max(1);
     let last = generations.len().saturating_sub(1);
     let point = |(k, generation): (usize, &Generation)| {
@@ -375,7 +405,7 @@ fn curve(generations: &[Generation]) -> Vec<Value> {
     generations.iter().enumerate().filter_map(point).collect()
 }
 
-fn rounded(values: &[f64]) -> Vec<f64> {
+pub(super) fn rounded(values: &[f64]) -> Vec<f64> {
     values.iter().copied().map(six_digits).collect()
 }
 

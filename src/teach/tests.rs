@@ -98,7 +98,7 @@ fn damaged_traces_are_no_panic() {
 #[test]
 fn a_page_is_whole_and_needs_no_network() {
     let trace = Trace::read(&sample::run(3, 12345.0).bytes).unwrap();
-    let text = page::page(trace, Some(r#"{"parameters": []}"#));
+    let text = page::page(trace, Some(r#"{"parameters": []}"#), None);
     assert!(text.contains("default-src 'none'"), "the browser may ask somebody");
     // The policy refuses attributes with styles.
     assert!(!text.contains("style:") && !text.contains(" style="));

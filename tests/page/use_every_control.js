@@ -51,6 +51,7 @@
     const fills = all("drawing", "rect").map(r => r.getAttribute("fill"));
     check("children's boxes have their parents' colours", new Set(fills.slice(-data.generations[0].n)).size === 2, fills.join());
     mutation();
+    drawings(count);
     visit(find("selection", 0));
     check("a line parts the parents from the others", all("population", ".cut").length === 1);
     visit(find("fitness", 0));
@@ -60,6 +61,21 @@
     future();
     visit(find("fitness", 0));
     landscapeAndFamily();
+  }
+  function drawings(count) {
+    visit(find("initial population", 0));
+    check("the draw has one place for each gene", all("drawing", ".drawn").length === data.generations[0].n, all("drawing", ".drawn").length);
+    check("and those of the others", all("drawing", ".other").length === (count - 1) * data.generations[0].n);
+    visit(find("fitness", 0));
+    check("each individual has a bar of its fitness", all("drawing", ".bar").length === count, all("drawing", ".bar").length);
+    visit(find("selection", 0));
+    const grey = all("drawing", ".bar[fill='var(--line)']").length;
+    check("who is no parent is grey, behind the cut", grey === count - data.generations[0].parents - all("drawing", "path.bar").length && all("drawing", ".border").length === 1, grey);
+    check("small populations are not folded", at("unfolding").hidden);
+    at("changed").value = "N_Parents"; at("changed").dispatchEvent(new Event("change"));
+    check("another number of parents is proposed", at("changed-to").value === String(Math.floor(data.generations[0].parents / 2)), at("changed-to").value);
+    at("what-if").dispatchEvent(new Event("submit", { cancelable: true }));
+    check("what if: both runs, or the command for them", at("both").hidden ? window.parent !== window || at("what-if-said").textContent.includes("--what-if \"N_Parents := ") : all("both", "svg").length > 0, at("what-if-said").textContent);
   }
   function future() {
     const length = () => all("curve", "path").map(p => p.getAttribute("d").split("L").length);

@@ -55,7 +55,7 @@ fn every_control_of_the_page_does_what_it_should() {
     let open = page.replace("http-equiv=\"Content-Security-Policy\"", "name=\"policy\"");
     let page = open.replace("</body>", &format!("<script>{walk}</script></body>"));
     std::fs::write(here.path().join("tested.html"), page).unwrap();
-    let phone = "<body><script>onmessage = e => document.body.replaceChildren(e.data)</script>\
+    let phone = "<body><script>onmessage = e => typeof e.data === 'string' && document.body.replaceChildren(e.data)</script>\
         <iframe src=\"tested.html\" width=\"390\" height=\"844\" style=\"border: 0\"></iframe>";
     std::fs::write(here.path().join("phone.html"), phone).unwrap();
     for (page, width) in [("tested.html", 1280), ("phone.html", 390)] {

@@ -112,6 +112,13 @@ fn a_run_is_compared_with_what_it_would_have_been() {
     // The change comes after the simulation of its generation.
     assert_eq!(of("3 ")[0], of("3 ")[1], "{out}");
     assert_ne!(of("60")[0], of("60")[1], "{out}");
+    let page = ["teach", "search.mos", "--what-if", "F_Mut := 1.0", "--generation", "3", "--html"];
+    let (code, _, errors) = gapi(&here, &[&page[..], &["both.html"]].concat());
+    assert_eq!(code, 0, "{errors}");
+    let [run, changed] = both_curves(&here.path().join("both.html"));
+    assert_eq!(run.len(), changed.len());
+    assert_eq!(run[..3], changed[..3], "both are the same up to the change");
+    assert_ne!(run, changed);
     let (code, _, errors) = what_if("F_Mut := 1.0", "61");
     assert!(code == 1 && errors.contains("the run has no generation 61"), "{errors}");
     let (code, _, errors) = what_if("F_Mut := := 1", "3");
@@ -138,4 +145,16 @@ fn a_function_that_calls_eval_cannot_be_changed() {
     let (code, _, errors) =
         gapi(&here, &["teach", "in_function.mos", "--what-if", "x := 1", "--generation", "1"]);
     assert!(code == 1 && errors.contains("[cannot-branch]"), "{errors}");
+}
+
+/// The curves of the run and of the changed one that a page has: generations and best fitness.
+fn both_curves(page: &std::path::Path) -> [Vec<serde_json::Value>; 2] {
+    let page = std::fs::read_to_string(page).unwrap();
+    let curve = |id: &str| {
+        let (_, rest) = page.split_once(&format!("id=\"{id}\">")).expect("the data");
+        let (json, _) = rest.split_once("</script>").expect("its end");
+        let data: serde_json::Value = serde_json::from_str(json).unwrap();
+        data["curve"].as_array().expect("a curve").clone()
+    };
+    [curve("data"), curve("what-if-data")]
 }

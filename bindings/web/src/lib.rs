@@ -1,5 +1,5 @@
-//! gapilib as a WebAssembly module without imports: `gapilib.js` puts a request into its memory and
-//! takes the answer out of it, both JSON ([`protocol`]).
+//! gapilib as a WebAssembly module: `gapilib.js` puts a request into its memory and takes the answer
+//! out of it, both JSON ([`protocol`]). While it works it may ask its host ([`host`]).
 //!
 //! ```text
 //!   request(length) ─▶ where the host writes the request
@@ -10,31 +10,51 @@
 //! A panic is a trap: the host finds its message where the answer would be. The module must be
 //! loaded anew after it.
 
+mod host;
+mod lessons;
 mod protocol;
+mod runs;
+mod steps;
+mod world;
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
 static REQUEST: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 static ANSWER: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
-fn lock(buffer: &Mutex<Vec<u8>>) -> MutexGuard<'_, Vec<u8>> {
-    buffer.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What the host has written, once.
+fn take_request() -> Vec<u8> {
+    std::mem::take(&mut *lock(&REQUEST))
+}
+
+/// Keeps the message of a panic for the host.
+fn keep_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        std::panic::set_hook(Box::new(|panic| *lock(&ANSWER) = panic.to_string().into_bytes()));
+    });
 }
 
 /// Makes room for a request of `length` bytes of UTF-8, and returns where it goes.
 #[unsafe(no_mangle)]
 pub extern "C" fn request(length: usize) -> *mut u8 {
+    keep_panics();
+    let room = vec![0; length];
     let mut request = lock(&REQUEST);
-    *request = vec![0; length];
+    *request = room;
     request.as_mut_ptr()
 }
 
 /// Answers the request.
 #[unsafe(no_mangle)]
 pub extern "C" fn run() {
-    std::panic::set_hook(Box::new(|panic| *lock(&ANSWER) = panic.to_string().into_bytes()));
-    let request = std::mem::take(&mut *lock(&REQUEST));
-    let answer = protocol::answer(&request);
+    keep_panics();
+    lock(&ANSWER).clear();
+    let answer = protocol::answer(&take_request());
     *lock(&ANSWER) = answer;
 }
 

@@ -9,11 +9,14 @@ use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::lessons::{self, Lesson, Verdict};
+use crate::script::world::Environment as _;
 use crate::script::{Echo, Options, Reporting, Strictness};
 use clap::{Args, ValueHint};
 use copies::Copies;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Arguments of `gapi lesson`.
 #[derive(Debug, Args)]
@@ -185,14 +188,14 @@ fn run_and_check(
     global: &Global,
     interrupt: Interrupt,
 ) -> Result<ExitCode, String> {
-    let code = run(lesson, copies, global, interrupt)?;
+    let (code, stop) = run(lesson, copies, global, interrupt)?;
     if code == 130 {
         return Ok(ExitCode::from(code));
     }
     let number = lesson.number;
     let (text, companions) = copies.read(lesson)?;
     let verdict = match code {
-        0 => lessons::check(lesson, &text, &companions),
+        0 => lessons::check_until(&stop, lesson, &text, &companions),
         _ => {
             let advice = lessons::advice(lesson, &text).join(" ");
             Verdict::NotYet(format!(
@@ -210,6 +213,10 @@ fn run_and_check(
                 terminal::print(&format!("\nThe next lesson: gapi lesson {}\n", number + 1));
             }
             Ok(ExitCode::SUCCESS)
+        }
+        Verdict::Stopped => {
+            terminal::print("\nThe check was stopped.\n");
+            Ok(ExitCode::from(130))
         }
         Verdict::NotYet(message) => {
             terminal::print(&format!("\nLesson {number} is not passed yet.\n\n"));
@@ -231,18 +238,20 @@ fn filled(text: &str) -> String {
     paragraphs.collect::<Vec<_>>().join("\n")
 }
 
-/// Runs the learner's copy where he sees it; the exit code of the script.
+/// Runs the learner's copy where he sees it; the exit code of the script, and what is set when the
+/// user asks to stop.
 fn run(
     lesson: &Lesson,
     copies: &Copies<'_>,
     global: &Global,
     interrupt: Interrupt,
-) -> Result<u8, String> {
+) -> Result<(u8, Arc<AtomicBool>), String> {
     let file = copies.file(&lesson.file);
     let terminal = Terminal::new(global.color, false);
     let output = Output::below(&copies.folder.join(RESULTS), "gapi lesson", &file)?;
     let world =
         SystemWorld::for_results(terminal, output, None).map_err(|error| error.to_string())?;
+    let stop = world.interrupt_flag().unwrap_or_default();
     if interrupt == Interrupt::Caught {
         world.catch_interrupts();
     }
@@ -254,5 +263,5 @@ fn run(
     if let Some(report) = lesson.report.as_deref().filter(|_| code == 0) {
         terminal::print(&format!("\n{}", filled(report)));
     }
-    Ok(code)
+    Ok((code, stop))
 }

@@ -11,13 +11,14 @@ use std::sync::Arc;
 /// What is to be executed when, and how far the run has come.
 #[derive(Default)]
 pub(super) struct Branching {
-    pending: Option<(usize, Arc<Script>)>,
+    pending: Vec<(usize, Arc<Script>)>,
     simulated: usize,
 }
 
 impl Session {
     /// Executes `text` among the variables of the script as soon as `Eval` has simulated the
-    /// generation of this number, from 1: what follows in the generation uses the new values.
+    /// generation of this number, from 1: what follows in the generation uses the new values. Texts
+    /// for the same generation are executed in the order of the calls.
     ///
     /// # Errors
     ///
@@ -25,13 +26,13 @@ impl Session {
     pub fn branch_at(&mut self, generation: usize, text: &str) -> Result<(), Diagnostic> {
         let source = self.sources.add("what if", text);
         let script = syntax::parse_script(source, text)?;
-        self.extension::<Branching>().pending = Some((generation, Arc::new(script)));
+        self.extension::<Branching>().pending.push((generation, Arc::new(script)));
         Ok(())
     }
 
     /// Whether what [`Session::branch_at`] has prepared was not reached.
     pub fn branch_is_pending(&mut self) -> bool {
-        self.extension::<Branching>().pending.is_some()
+        !self.extension::<Branching>().pending.is_empty()
     }
 
     /// `Eval` has simulated a generation.
@@ -39,9 +40,10 @@ impl Session {
         let branching = self.extension::<Branching>();
         branching.simulated += 1;
         let simulated = branching.simulated;
-        let Some((_, script)) = branching.pending.take_if(|(at, _)| *at == simulated) else {
+        let due: Vec<_> = branching.pending.extract_if(.., |(at, _)| *at == simulated).collect();
+        if due.is_empty() {
             return Ok(());
-        };
+        }
         if self.execution.is_in_function() {
             let reason =
                 "`Eval` is called in a function, whose variables cannot be changed from outside";
@@ -49,7 +51,7 @@ impl Session {
                 help: "call `Eval` from the script itself")
             .into());
         }
-        let mut statements = script.statements.iter();
+        let mut statements = due.iter().flat_map(|(_, script)| &script.statements);
         let done = statements.try_for_each(|statement| self.top_level(statement, false));
         done.map_err(|diagnostic| Failure::Elsewhere(vec![diagnostic]))
     }

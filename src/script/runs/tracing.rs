@@ -1,7 +1,7 @@
 //! A trace of the run for learners, written while scripts run.
 
 use crate::diag::{Diagnostic, Fault};
-use crate::identify::Study;
+use crate::identify::{Quantity, Study};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::source::Span;
@@ -71,8 +71,16 @@ pub(super) fn subject(study: &Study) -> Subject {
         model: study.model.clone(),
         parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
         units: study.parameters.iter().map(|p| p.unit.clone()).collect(),
-        x_name: study.x.name.clone(),
-        y_name: study.y.name.clone(),
+        x_name: titled(&study.x),
+        y_name: titled(&study.y),
+    }
+}
+
+/// A quantity as the title of an axis.
+fn titled(quantity: &Quantity) -> String {
+    match quantity.unit.as_str() {
+        "" | "1" => quantity.name.clone(),
+        unit => format!("{} [{unit}]", quantity.name),
     }
 }
 

@@ -53,7 +53,7 @@ impl Session {
                 .eprint("`Eval` is called in a function, whose variables cannot be changed\n");
             return Ok(());
         }
-        self.world.eprint(HELP);
+        self.world.begin_pause(HELP);
         while let Some(line) = self.world.ask(PROMPT).filter(|line| !line.trim().is_empty()) {
             match self.typed(&line) {
                 Ok(()) => self.journal_typed(&line),

@@ -7,6 +7,7 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// What was written to the two streams of a [`MemoryWorld`], readable while a session owns the
@@ -45,6 +46,8 @@ pub struct MemoryWorld {
     streams: Streams,
     /// How many more times the answer is that nobody asked to stop.
     patience: Cell<u64>,
+    /// What becomes true when the user asks to stop.
+    stop: Option<Arc<AtomicBool>>,
     /// How many more times the answer is that nobody asks to pause, and what is typed then.
     pause: (u64, VecDeque<String>),
     /// What was drawn, where anybody looks.
@@ -68,6 +71,7 @@ impl Default for MemoryWorld {
             stamps: BTreeMap::new(),
             streams: Streams::default(),
             patience: Cell::new(u64::MAX),
+            stop: None,
             pause: (u64::MAX, VecDeque::new()),
             views: None,
         }
@@ -91,6 +95,13 @@ impl MemoryWorld {
     #[must_use]
     pub fn interrupted_after(mut self, questions: u64) -> MemoryWorld {
         self.patience = Cell::new(questions);
+        self
+    }
+
+    /// The same where the user asks to stop by setting `flag`.
+    #[must_use]
+    pub fn stopped_by(mut self, flag: &Arc<AtomicBool>) -> MemoryWorld {
+        self.stop = Some(Arc::clone(flag));
         self
     }
 
@@ -184,9 +195,19 @@ impl Files for MemoryWorld {
     }
 
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        let mut all = self.read(path).unwrap_or_default();
-        all.extend_from_slice(bytes);
-        self.write(path, &all)
+        let known = self.absolute(path);
+        if !self.files.contains_key(&known) {
+            return self.write(path, bytes);
+        }
+        self.permits(path, Access::Write)?;
+        self.policy.note_made(known.clone());
+        self.changes += 1;
+        self.stamps.insert(known.clone(), self.changes);
+        // In place: the trace of a long run grows to 64 MB by pieces of some kilobytes.
+        if let Some(content) = self.files.get_mut(&known) {
+            content.extend_from_slice(bytes);
+        }
+        Ok(())
     }
 
     fn remove(&mut self, path: &Path) -> io::Result<()> {
@@ -270,7 +291,11 @@ impl Environment for MemoryWorld {
     fn interrupted(&self) -> bool {
         let left = self.patience.get();
         self.patience.set(left.saturating_sub(1));
-        left == 0
+        left == 0 || self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.stop.clone()
     }
 
     fn threads(&self) -> usize {

@@ -22,6 +22,10 @@ pub trait Screen {
     fn wants_pause(&mut self) -> bool {
         false
     }
+    /// A pause begins: what the user can do then.
+    fn begin_pause(&mut self, help: &str) {
+        self.eprint(help);
+    }
     /// A line that the user types during a pause; `None` when nothing more comes.
     fn ask(&mut self, _prompt: &str) -> Option<String> {
         None

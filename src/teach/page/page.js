@@ -2,6 +2,8 @@
 // The steps of a run: which one is shown, and the controls. What a step looks like is in the panels.
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
+// Within another page there is no address that a link could lead to.
+const EMBEDDED = location.href === "about:srcdoc";
 let current = 0;
 let timer = null;
 
@@ -62,7 +64,7 @@ const stepsOf = g => (g + 1 < STARTS.length ? STARTS[g + 1] : DATA.steps.length)
 function go(step, keepLink) {
   current = Math.min(Math.max(step, 0), DATA.steps.length - 1);
   show();
-  if (!keepLink) history.replaceState(null, "", "#step=" + (current + 1));
+  if (!keepLink && !EMBEDDED) history.replaceState(null, "", "#step=" + (current + 1));
 }
 function goGeneration(number) {
   if (STARTS[number] >= 0) go(STARTS[number]);
@@ -150,6 +152,7 @@ function show() {
   showCurve(drawn);
   showLandscape(drawn);
   showFamily(drawn);
+  showWhatIf(drawn);
   showTell();
 }
 
@@ -196,8 +199,16 @@ function begin() {
     (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, the largest improvements, and the last" : "");
   at("prediction").addEventListener("submit", predict);
   at("predicting").addEventListener("change", () => show());
+  at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
+  at("link").hidden = EMBEDDED;
   follow();
+  beginWhatIf();
+  if (EMBEDDED && WHAT_IF) {
+    // The reader has just asked for it.
+    go(DATA.steps.length - 1, true);
+    at("what-if-panel").scrollIntoView();
+  }
   window.addEventListener("hashchange", follow);
 }
 function follow() {

@@ -40,43 +40,74 @@ function cameAs(origin) {
 
 // Units of a drawing across; fewer on a phone, so that its text stays readable.
 const WIDE = window.innerWidth < 760 ? 370 : 560;
+// Which places of a long list are shown: the first ones, the last, and those that the step is about
+// with their neighbours; between them, how many are folded. All where there is room.
+const ROOM = 26;
+function folded(count, focus) {
+  if (count <= ROOM || at("unfold").checked) return [...Array(count).keys()].map(place => ({ place }));
+  const shown = new Set([...Array(focus.length ? 3 : 10).keys(), count - 1]);
+  for (const place of focus) for (const near of [place - 1, place, place + 1]) if (near >= 0 && near < count) shown.add(near);
+  const list = [];
+  [...shown].sort((a, b) => a - b).slice(0, ROOM + 4).forEach(place => {
+    const before = list.length ? list[list.length - 1].place : -1;
+    if (place > before + 1) list.push({ left: place - before - 1 });
+    list.push({ place });
+  });
+  return list;
+}
+// The places on the left and the rows on the right that a step is about.
+function focusOf(step, generation, order, made) {
+  const { parents, elites } = generation;
+  const rows = made ? made.map((_, row) => row).filter(row => concerns(step, generation, row)) : [];
+  const from = rows.flatMap(row => made[row] ? made[row].from : []).map(k => order.indexOf(k));
+  if (step.title === "selection") return [[parents - 1, parents], rows];
+  if (step.title === "elite") return [[...Array(Math.min(elites || 0, 5)).keys()], rows];
+  if (step.title === "fitness") { const best = generation.order[0]; return [[order.indexOf(best)], rows]; }
+  return [from, rows];
+}
 function showPopulation(step) {
   const generation = DATA.generations[step.g];
   const count = generation.genes.length / generation.n;
   const order = known(step, "selection") ? generation.order : [...Array(count).keys()];
   const made = known(step, "elite") ? offspring(step, generation) : null;
-  const rows = Math.max(count, made ? made.length : 0);
+  const [left, rightRows] = focusOf(step, generation, order, made);
+  const list = folded(count, left), born = made ? folded(made.length, rightRows) : [];
+  at("unfolding").hidden = Math.max(count, made ? made.length : 0) <= ROOM;
+  const rows = Math.max(list.length, born.length);
   const height = Math.max(9, Math.min(26, 520 / rows));
   const width = made ? WIDE * 0.34 : WIDE - 150;
   const right = WIDE - width - 20;
   const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
   const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (40 + rows * height + 4), role: "group", "aria-label": "population of generation " + number(step.g) });
-  const heading = "generation " + number(step.g) + (known(step, "selection") ? ", best first" : "");
-  image.append(label(44, 14, heading));
+  image.append(label(44, 14, "generation " + number(step.g) + (known(step, "selection") ? ", best first" : "")));
   // The names of the genes above their columns, where there is room for them.
   const cell = width / generation.n;
   for (let j = 0; j < generation.n; j++) {
     const text = name(j).length * 6.5 > cell ? name(j).slice(-Math.max(1, Math.floor(cell / 6.5))) : name(j);
     image.append(label(44 + (j + 0.5) * cell, 30, text, { "text-anchor": "middle", "font-size": 11, class: "remark" }));
   }
-  order.forEach((k, place) => image.append(individual(present(step, generation, k), 44, 36 + place * height, width, height)));
-  if (step.title === "selection" && generation.parents < count) {
-    const y = 35.5 + generation.parents * height;
-    image.append(svg("line", { class: "cut", x1: 20, y1: y, x2: 44 + width + 90, y2: y, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
-  }
-  if (made) {
-    image.append(label(right, 14, "generation " + (number(step.g) + 1)));
-    made.forEach((child, row) => {
-      const y = 36 + row * height;
-      const strong = concerns(step, generation, row);
-      if (child) child.from.forEach((from, which) => {
-        const place = order.indexOf(from);
-        if (place >= 0) image.append(svg("line", { x1: 44 + width + 8, y1: 36 + (place + 0.5) * height, x2: right - 26, y2: y + 0.5 * height,
-          stroke: child.from.length < 2 ? "var(--ink)" : which ? "var(--orange)" : "var(--blue)", "stroke-width": strong ? 2.5 : 0.7, "stroke-dasharray": which ? "6 3" : "none", opacity: strong ? 1 : 0.35 }));
-      });
-      image.append(child ? individual(child, right, y, width, height) : svg("rect", { x: right, y, width: width - 1, height: height - 1, fill: "none", stroke: "var(--line)" }));
+  const top = new Map();
+  list.forEach(({ place, left }, line) => {
+    const y = 36 + line * height;
+    if (left) return image.append(label(44, y + height * 0.75, "\u22ee " + left + " more", { class: "remark", "font-size": Math.min(12, height) }));
+    top.set(order[place], y);
+    image.append(individual(present(step, generation, order[place]), 44, y, width, height));
+    if (step.title === "selection" && place === generation.parents - 1 && generation.parents < count) {
+      const cut = y + height - 0.5;
+      image.append(svg("line", { class: "cut", x1: 20, y1: cut, x2: 44 + width + 90, y2: cut, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
+    }
+  });
+  if (made) image.append(label(right, 14, "generation " + (number(step.g) + 1)));
+  born.forEach(({ place, left }, line) => {
+    const y = 36 + line * height;
+    if (left) return image.append(label(right, y + height * 0.75, "\u22ee " + left + " more", { class: "remark", "font-size": Math.min(12, height) }));
+    const child = made[place], strong = concerns(step, generation, place);
+    if (child) child.from.forEach((from, which) => {
+      if (top.has(from)) image.append(svg("line", { x1: 44 + width + 8, y1: top.get(from) + 0.5 * height, x2: right - 26, y2: y + 0.5 * height,
+        stroke: child.from.length < 2 ? "var(--ink)" : which ? "var(--orange)" : "var(--blue)", "stroke-width": strong ? 2.5 : 0.7, "stroke-dasharray": which ? "6 3" : "none", opacity: strong ? 1 : 0.35 }));
     });
-  }
+    image.append(child ? individual(child, right, y, width, height) : svg("rect", { x: right, y, width: width - 1, height: height - 1, fill: "none", stroke: "var(--line)" }));
+  });
   at("population").replaceChildren(image);
   const all = at("population").querySelectorAll(".row");
   const stop = all[Math.max(0, Math.min(focused, all.length - 1))];
@@ -185,13 +216,61 @@ function genes(values, y, title, fills, marks) {
   });
   return group;
 }
+const DRAWINGS = { "crossover": crossover, "mutation": mutation };
+const CHART_DRAWINGS = { "initial population": drawn, "random completion": drawn, "fitness": ranking, "selection": ranking };
 function showDrawing(step) {
   const generation = DATA.generations[step.g];
-  const parts = step.title === "crossover" ? crossover(step, generation) : step.title === "mutation" ? mutation(step, generation) : null;
-  if (!parts) return note("drawing", "Crossover and mutation are drawn here, one child after the other.");
+  const chart = CHART_DRAWINGS[step.title];
+  const parts = DRAWINGS[step.title] ? DRAWINGS[step.title](step, generation) : chart ? chart(step, generation) : null;
+  if (!parts) return note("drawing", "Draw, fitness, selection, crossover and mutation are drawn here.");
   const cell = (WIDE - 90) / generation.n;
-  const heads = DATA.parameters.map((_, j) => label(90 + (j + 0.5) * cell, 14, name(j), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
+  const heads = chart ? [] : DATA.parameters.map((_, j) => label(90 + (j + 0.5) * cell, 14, name(j), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
   at("drawing").replaceChildren(svg("svg", { viewBox: "0 0 " + WIDE + " " + parts.height, role: "img", "aria-label": step.text }, ...heads, ...parts.rows));
+}
+// A draw: each gene of an individual in its range; grey, those of the others.
+function drawn(step, generation) {
+  const next = step.title === "random completion" ? follows(step.g) : generation;
+  if (!next) return null;
+  const k = step.title === "random completion" ? step.of : 0, n = next.n, high = 44, left = 100, width = WIDE - left - 20;
+  const rows = [label(0, 14, "individual " + (k + 1) + ": a random place in each range" + (k === 0 ? "; grey, the others" : ""))];
+  for (let j = 0; j < n; j++) {
+    const y = 40 + j * high, value = next.genes[k * n + j];
+    const title = titled(j).length > 14 ? titled(j).slice(0, 13) + "\u2026" : titled(j);
+    rows.push(label(0, y + 4, title), svg("line", { x1: left, y1: y, x2: left + width, y2: y, stroke: "var(--soft)", "stroke-width": 2 }));
+    rows.push(label(left, y + 18, short(DATA.minima[j]), { "font-size": 11, class: "remark" }), label(left + width, y + 18, short(DATA.maxima[j]), { "text-anchor": "end", "font-size": 11, class: "remark" }));
+    const place = v => left + Math.min(1, Math.max(0, part(v, j))) * width;
+    if (k === 0) for (let other = 1; other < next.genes.length / n; other++) rows.push(svg("line", { class: "other", x1: place(next.genes[other * n + j]), x2: place(next.genes[other * n + j]), y1: y - 5, y2: y + 5, stroke: "var(--soft)", opacity: 0.5 }));
+    rows.push(svg("circle", { class: "drawn", cx: place(value), cy: y, r: 6, fill: "var(--orange)", stroke: "var(--ink)" }), label(Math.min(left + width - 30, Math.max(left + 30, place(value))), y - 10, short(value), { "text-anchor": "middle", "font-size": 11 }));
+  }
+  return { rows, height: 40 + n * high };
+}
+// Fitness and selection: one bar for each individual, the shorter, the better; at the selection in
+// order, with the cut behind the last parent.
+function ranking(step, generation) {
+  const isSorted = step.title === "selection";
+  const order = isSorted ? generation.order : [...Array(generation.fitness.length).keys()];
+  const good = generation.fitness.filter(v => !failed(v) && v > 0).map(Math.log10);
+  if (!good.length) return null;
+  const [low, high] = [Math.min(...good), Math.max(...good)], left = 66, wide = (WIDE - left - 10) / order.length, floor = 150, tall = 110;
+  const length = v => 8 + (high > low ? (Math.log10(Math.max(v, 10 ** low)) - low) / (high - low) : 0.5) * (tall - 8);
+  const best = generation.order[0];
+  const rows = [label(0, 12, isSorted ? "sorted by fitness: the shorter the bar, the fitter" : "fitness of each individual: the shorter the bar, the fitter")];
+  [[high, short(10 ** high)], [low, short(10 ** low)]].forEach(([v, text]) => rows.push(label(left - 6, floor - length(10 ** v) + 4, text, { "text-anchor": "end", "font-size": 11 })));
+  order.forEach((k, place) => {
+    const v = generation.fitness[k], x = left + place * wide;
+    if (failed(v)) return rows.push(svg("path", { class: "bar", d: "M" + (x + wide / 2 - 3) + " " + (floor - 8) + "l6 6m0 -6l-6 6", stroke: "var(--red)", "stroke-width": 2 }));
+    const fill = isSorted ? (place < (generation.elites || 0) ? "var(--orange)" : place < generation.parents ? "var(--blue)" : "var(--line)") : k === best ? "var(--orange)" : "var(--blue)";
+    rows.push(svg("rect", { class: "bar", x, y: floor - length(v), width: Math.max(1, wide - 1), height: length(v), fill }, svg("title", {}, "individual " + (k + 1) + ": " + short(v))));
+  });
+  if (order.length <= 30) order.forEach((k, place) => rows.push(label(left + (place + 0.5) * wide, floor + 14, String(k + 1), { "text-anchor": "middle", "font-size": 11 })));
+  let text = "orange: the best; \u2715 failed; logarithmic scale";
+  if (isSorted) {
+    const x = left + generation.parents * wide - 0.5;
+    rows.push(svg("line", { class: "border", x1: x, x2: x, y1: 24, y2: floor + 4, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
+    text = "orange: elite; blue: parents, up to the dashed line; grey: no children";
+  }
+  rows.push(label(left, floor + 34, text, { class: "remark", "font-size": 11 }));
+  return { rows, height: floor + 42 };
 }
 function crossover(step, generation) {
   const n = generation.n, elites = generation.elites || 0, other = mate(step.of, generation.parents);

@@ -1,0 +1,377 @@
+// The page in browsers: `node --test docs/play/test.mjs`, behind `docs/play/build`.
+//
+// Chromium and Firefox are found on the path, or named by GAPILIB_CHROMIUM and GAPILIB_FIREFOX; which
+// of them is missing is said. The transcripts are those that the native library is tested with.
+
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { createServer } from "node:http";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { extname, join, relative } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
+import puppeteer from "puppeteer-core";
+
+const here = import.meta.dirname, project = join(here, "../..");
+const target = process.env.CARGO_TARGET_DIR ?? join(project, "target");
+const web = process.env.GAPILIB_WEB_FOLDER ?? join(target, "web");
+const book = join(target, "book");
+const pictures = join(web, "screenshots");
+mkdirSync(pictures, { recursive: true });
+
+/** Transcripts that cannot be the same, with the reason. */
+const SKIPPED = {
+  "experiments/plots": "the module draws SVG only, not PNG (feature `pictures`)",
+  "strings/too_long": "a length of more than 32 bits has another error: addresses have 32 bits",
+};
+/** These two test what a script may not do. */
+const NOT_WRITING = ["permissions", "external_files"];
+
+function program(variable, names) {
+  if (process.env[variable]) return process.env[variable];
+  const folders = (process.env.PATH ?? "").split(":");
+  return names.flatMap((name) => folders.map((folder) => join(folder, name))).find(existsSync);
+}
+const BROWSERS = [
+  { name: "chromium", path: program("GAPILIB_CHROMIUM", ["chromium", "chromium-browser", "google-chrome"]), options: { args: ["--no-sandbox"] } },
+  { name: "firefox", path: program("GAPILIB_FIREFOX", ["firefox-esr", "firefox"]), options: { browser: "firefox" } },
+];
+
+const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
+/** A server that knows nothing but files, with the page in `play`, as beside the book. */
+async function serve(folder) {
+  const server = createServer((request, response) => {
+    const asked = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
+    const path = asked.startsWith("/play/") ? join(web, asked) : join(folder, asked);
+    if (!existsSync(path)) return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": KINDS[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
+  });
+  await new Promise((listening) => server.listen(0, "localhost", listening));
+  return server;
+}
+
+function transcripts() {
+  const folders = join(project, "tests/transcripts"), found = [];
+  for (const folder of readdirSync(folders)) {
+    const inside = join(folders, folder), files = {};
+    for (const entry of readdirSync(inside, { withFileTypes: true, recursive: true })) {
+      const path = join(entry.parentPath, entry.name);
+      if (entry.isFile() && !path.endsWith(".snap")) files[relative(inside, path)] = readFileSync(path).toString("base64");
+    }
+    for (const script of readdirSync(inside).filter((name) => name.endsWith(".mos"))) {
+      const stem = script.slice(0, -".mos".length), name = `${folder}/${stem}`;
+      const snapshot = readFileSync(join(inside, `${stem}.snap`), "utf8");
+      const expected = snapshot.slice(snapshot.indexOf("\n---\n") + "\n---\n".length).trimEnd();
+      if (!SKIPPED[name]) found.push({ name, script, files, write: !NOT_WRITING.includes(stem), expected });
+    }
+  }
+  return found;
+}
+
+/** In the page: runs a transcript in the page's worker. */
+async function transcriptIn({ script, files, write }) {
+  globalThis.asked ??= await (async () => {
+    const worker = new Worker("worker.js"), waiting = [];
+    worker.onmessage = ({ data }) => !data.event && waiting.shift()(data);
+    const ask = (what, value) => new Promise((done) => { waiting.push(done); worker.postMessage({ id: 0, what, value }); });
+    await ask("load", new URL("gapilib.wasm.gz", location.href).href);
+    return ask;
+  })();
+  const decoded = Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))]);
+  const { answer, failed } = await globalThis.asked("plain", { script, files: Object.fromEntries(decoded), write });
+  return failed ?? `${answer.transcript}[exit code ${answer.exit_code}]`;
+}
+
+const text = (page, id) => page.$eval("#" + id, (element) => (element.id === "text" ? [...element.children].map((line) => line.textContent.trimEnd()).join("\n") : element.textContent));
+const wait = (time) => new Promise((done) => setTimeout(done, time));
+const click = (page, id) => page.$eval("#" + id, (element) => element.click());
+const ended = (page, timeout = 120000) => page.waitForFunction(() => /^Done|^The script ended|^The run failed|^Stopped/.test(document.getElementById("status").textContent), { timeout });
+const report = (name, text) => console.log(`${name}: ${text}`);
+
+for (const { name, path, options } of BROWSERS) {
+  describe(name, { skip: path ? false : `${name} is not here` }, () => {
+    let browser, server, at;
+    before(async () => {
+      browser = await puppeteer.launch({ executablePath: path, headless: true, protocolTimeout: 600000, ...options });
+      server = await serve(join(web, "play"));
+      at = `http://localhost:${server.address().port}/index.html`;
+    });
+    after(async () => { await browser?.close(); server?.close(); });
+
+    /** The page when it is ready; what goes wrong in it fails the test. */
+    async function opened(url = at, { width = 1280, height = 800, dark = false } = {}) {
+      const page = await browser.newPage();
+      page.wrong = [];
+      page.on("pageerror", (error) => page.wrong.push(error.message));
+      await page.setViewport({ width, height });
+      if (dark && name === "chromium") await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
+      await page.goto(url);
+      await page.evaluate(() => { try { localStorage.clear(); } catch { /* none */ } });
+      await page.goto("about:blank");
+      await page.goto(url);
+      await page.waitForSelector("body[data-ready]", { timeout: 60000 });
+      return page;
+    }
+    async function closed(page) {
+      assert.deepEqual(page.wrong, []);
+      await page.close();
+    }
+    const open = (page, value) => page.$eval("#open", (select, value) => { select.value = value; select.dispatchEvent(new Event("change")); }, value);
+
+    test("first paint below 1 s, download below 4 MB", async () => {
+      const page = await opened();
+      const paint = await page.evaluate(() => performance.getEntriesByType("paint").find(({ name }) => name === "first-contentful-paint")?.startTime);
+      const loaded = await page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name));
+      // The page and its script as a server sends them compressed; the module is compressed itself.
+      const sizes = ["index.html", "play.js", "worker.js"].map((file) => gzipSync(readFileSync(join(web, "play", file)), { level: 9 }).length);
+      const bytes = sizes.reduce((sum, size) => sum + size, readFileSync(join(web, "play/gapilib.wasm.gz")).length);
+      report(name, `first contentful paint ${paint?.toFixed(0)} ms, download ${bytes} bytes`);
+      assert.ok(paint < 1000, `${paint}`);
+      assert.ok(loaded.every((name) => /\/(play\.js|worker\.js|gapilib\.wasm\.gz|favicon\.ico)$/.test(name)), loaded.join());
+      if (!process.env.GAPILIB_WEB_FOLDER) assert.ok(bytes < 4e6, `${bytes}`);
+      await closed(page);
+    });
+
+    test("the transcripts have the same bytes", async () => {
+      const page = await opened();
+      const wrong = [];
+      const all = transcripts();
+      for (const one of all) {
+        const said = (await page.evaluate(transcriptIn, one)).trimEnd();
+        if (said !== one.expected) wrong.push(one.name);
+      }
+      report(name, `${all.length - wrong.length} of ${all.length} transcripts the same, ${Object.keys(SKIPPED).length} left out`);
+      assert.deepEqual(wrong, []);
+      assert.ok(all.length > 150);
+      await closed(page);
+    });
+
+    test("the four scripts run, and their steps can be walked through", async () => {
+      const page = await opened();
+      await page.screenshot({ path: join(pictures, `${name}-edit.png`) });
+      await click(page, "run");
+      await ended(page);
+      assert.match(await text(page, "text"), /Identified parameters of Tank[^]*800 in 40 generations, 280 failed/);
+      const generation = async () => Number(/generation (\d+) of 40/.exec(await text(page, "headline"))[1]);
+      const last = await generation();
+      // The last picture is drawn before its generation is rated.
+      assert.equal(last, 39);
+      await page.screenshot({ path: join(pictures, `${name}-live.png`) });
+      await click(page, "before");
+      assert.equal(await generation(), last - 1);
+      await click(page, "tab-steps");
+      const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+      await frame.waitForSelector("#title");
+      const times = await frame.evaluate(() => [...Array(40)].map(() => {
+        const before = performance.now();
+        document.getElementById("next").click();
+        document.body.getBoundingClientRect();
+        return performance.now() - before;
+      }).sort((a, b) => a - b));
+      report(name, `step: median ${times[20].toFixed(1)} ms, largest ${times[39].toFixed(1)} ms`);
+      assert.ok(times[20] < 50);
+      await page.screenshot({ path: join(pictures, `${name}-steps.png`) });
+      // What if: the page within asks, both runs come beside each other.
+      await frame.evaluate(() => { document.getElementById("changed-to").value = "0.9"; document.getElementById("run-what-if").click(); });
+      await page.waitForFunction(() => /^Compared/.test(document.getElementById("status").textContent), { timeout: 60000 });
+      const second = await (await page.waitForSelector("#steps iframe")).contentFrame();
+      await second.waitForSelector("#last");
+      await second.evaluate(() => document.getElementById("last").click());
+      assert.match(await second.$eval("#both", (element) => element.textContent), /F_Mut := 0.9/);
+      await second.$eval("#what-if-panel", (element) => element.scrollIntoView());
+      await page.screenshot({ path: join(pictures, `${name}-what-if.png`) });
+      await closed(page);
+    });
+
+    test("a run is stopped, and changed while it goes on", async () => {
+      const page = await opened();
+      await open(page, "example 2");
+      await click(page, "run");
+      await page.waitForFunction(() => /generation [1-9]\d+ of/.test(document.getElementById("headline").textContent), { timeout: 60000 });
+      const suspends = await page.evaluate(() => typeof WebAssembly.Suspending === "function");
+      report(name, `can suspend a run: ${suspends}`);
+      await page.$eval("#statement", (input) => { input.value = "F_Mut := 0.5"; });
+      await page.$eval("#change button", (button) => button.click());
+      await page.waitForFunction(() => /F_Mut := 0.5 from generation \d+/.test(document.getElementById("status").textContent + document.getElementById("said").textContent), { timeout: 60000, polling: 5 });
+      await wait(1000);
+      await click(page, "stop");
+      await ended(page);
+      assert.match(await text(page, "text"), /Identified parameters of CaseStudies.PolarizationCurve[^]*stopped/);
+      // A hundred individuals are folded.
+      const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+      await frame.waitForSelector("#population .row");
+      const rows = () => frame.$$eval("#population .row", (rows) => rows.length);
+      assert.ok(await rows() <= 30, `${await rows()}`);
+      await frame.evaluate(() => document.getElementById("unfold").click());
+      assert.equal(await rows(), 100);
+      await closed(page);
+    });
+
+    test("case 4.1 with the settings of the paper below 15 s", { skip: process.env.GAPILIB_WEB_FOLDER ? "not optimized" : false }, async () => {
+      const page = await opened();
+      await open(page, "example 2");
+      const start = performance.now();
+      await click(page, "run");
+      await ended(page);
+      const seconds = (performance.now() - start) / 1000;
+      report(name, `case 4.1: ${seconds.toFixed(1)} s; ${await text(page, "status")}`);
+      const table = readFileSync(join(project, "README.md"), "utf8").split("\n").filter((line) => /^  (A|In|Io|B|R|Ilim) +\d/.test(line));
+      const output = await text(page, "text");
+      assert.equal(table.length, 6);
+      for (const row of table) assert.ok(output.includes(row.trimEnd()), row);
+      assert.ok(seconds < 15, `${seconds}`);
+      await closed(page);
+    });
+
+    test("an error leads to its place", async () => {
+      const page = await opened();
+      await page.click(".cm-content");
+      await page.keyboard.down("Control");
+      await page.keyboard.press("Home");
+      await page.keyboard.up("Control");
+      await page.keyboard.type("q = missing + 1\n");
+      await click(page, "run");
+      await ended(page);
+      assert.match(await text(page, "text"), /error\[.*missing/);
+      await page.screenshot({ path: join(pictures, `${name}-error.png`) });
+      await page.$eval("#text a", (link) => link.click());
+      const line = await page.$eval(".cm-activeLine", (element) => element.textContent);
+      assert.equal(line, "q = missing + 1");
+      await closed(page);
+    });
+
+    test("the keyboard is enough", async () => {
+      const page = await opened();
+      await page.focus("#tab-live");
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await page.$eval("#tab-steps", (tab) => tab.getAttribute("aria-selected")), "true");
+      await page.focus("#files [aria-selected=true]");
+      const shown = () => page.$eval("#files [aria-selected=true]", (tab) => tab.textContent);
+      assert.equal(await shown(), "GAPILib_INI.mos");
+      await page.keyboard.press("ArrowRight");
+      assert.equal(await shown(), "GAPILib_CYCLE.mos");
+      assert.ok(await page.$eval("#files [aria-selected=true]", (tab) => tab === document.activeElement));
+      await page.focus(".cm-content");
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("Tab");
+      assert.ok(await page.evaluate(() => !document.activeElement.closest("#editor")));
+      await page.keyboard.down("Control");
+      await page.keyboard.press("Enter");
+      await page.keyboard.up("Control");
+      await ended(page);
+      assert.match(await text(page, "status"), /^Done/);
+      await closed(page);
+    });
+
+    test("a lesson is failed, hinted at, solved and remembered", async () => {
+      const page = await opened();
+      await open(page, "lesson 1");
+      await page.click("#check");
+      await page.waitForFunction(() => /not passed yet/.test(document.getElementById("lesson-said").textContent));
+      await page.click("#hint");
+      assert.match(await text(page, "lesson-said"), /Hint 1 of/);
+      await page.screenshot({ path: join(pictures, `${name}-lesson.png`) });
+      const [solution] = await page.evaluate(() => { document.getElementById("solution").click(); return [[...document.querySelectorAll("#lesson-said pre")].map((pre) => pre.textContent)]; });
+      const script = await page.evaluate(() => JSON.parse(localStorage.getItem("gapilib-work")));
+      let solved = script.files[script.main];
+      for (let k = 0; k < solution.length; k += 2) solved = solved.replace(solution[k], solution[k + 1]);
+      const { packed } = await import("./src/share.js");
+      const link = await packed({ ...script, files: { ...script.files, [script.main]: solved } });
+      await page.evaluate((link) => { location.hash = "p=" + link; }, link);
+      await wait(500);
+      await page.click("#check");
+      await page.waitForFunction(() => /is passed/.test(document.getElementById("lesson-said").textContent));
+      assert.match(await page.$eval("#open", (select) => select.textContent), /\u2713 1\./);
+      await closed(page);
+    });
+
+    test("files are dropped, shared as a link, and downloaded for the command line", async () => {
+      const page = await opened();
+      await page.evaluate(() => {
+        const data = new DataTransfer();
+        data.items.add(new File(["t,level\n0,1.4\n2,1.2\n4,1.0\n6,0.8\n"], "levels.csv", { type: "text/csv" }));
+        dispatchEvent(new DragEvent("drop", { dataTransfer: data }));
+      });
+      await page.waitForFunction(() => /levels.csv is here/.test(document.getElementById("said").textContent));
+      await click(page, "share");
+      await page.waitForFunction(() => location.hash.startsWith("#p="));
+      const link = await page.evaluate(() => location.href);
+      const other = await opened(link);
+      const work = await other.evaluate(() => JSON.parse(localStorage.getItem("gapilib-work")));
+      assert.equal(work.files["levels.csv"], "t,level\n0,1.4\n2,1.2\n4,1.0\n6,0.8\n");
+      report(name, `a link with the four scripts, model and data has ${link.length} characters`);
+      await other.close();
+      const { oneScript } = await import("./src/share.js");
+      const native = [join(target, "release/gapi"), join(target, "debug/gapi")].find(existsSync);
+      const script = oneScript(work.files, work.main), folder = mkdtempSync(join(tmpdir(), "gapilib-"));
+      writeFileSync(join(folder, "GAPILib.mos"), script);
+      await click(page, "run");
+      await ended(page);
+      const own = /objective +(.*)/.exec(await text(page, "text"))[1];
+      if (native) {
+        const { stdout, status } = spawnSync(native, ["run", "GAPILib.mos"], { cwd: folder, encoding: "utf8" });
+        assert.equal(status, 0);
+        assert.equal(/objective +(.*)/.exec(stdout)[1], own);
+      }
+      await closed(page);
+    });
+
+    test("one file runs without a server", async () => {
+      const page = await opened(pathToFileURL(join(web, "play.html")).href);
+      const paint = await page.evaluate(() => performance.getEntriesByType("paint").find(({ name }) => name === "first-contentful-paint")?.startTime);
+      report(name, `one file: first contentful paint ${paint?.toFixed(0)} ms`);
+      await click(page, "run");
+      await ended(page);
+      assert.match(await text(page, "text"), /Identified parameters of Tank/);
+      await closed(page);
+    });
+
+    test("the examples of the guide run where they stand", { skip: existsSync(join(book, "first_fit.html")) ? false : "no book: mdbook build docs" }, async () => {
+      const library = await serve(book);
+      const page = await browser.newPage();
+      await page.goto(`http://localhost:${library.address().port}/first_fit.html`);
+      const button = await page.waitForSelector("button.run-example");
+      await button.evaluate((button) => button.click());
+      await page.waitForFunction(() => /written to/.test(document.querySelector("button.run-example + pre").textContent), { timeout: 60000 });
+      assert.match(await page.$eval("button.run-example + pre", (pre) => pre.textContent), /tau +3.9701 +3.9917/);
+      await button.evaluate((button) => button.scrollIntoView());
+      await page.screenshot({ path: join(pictures, `${name}-book.png`) });
+      await page.goto(`http://localhost:${library.address().port}/polarization_curve.html`);
+      const second = await page.waitForSelector("button.run-example");
+      await second.evaluate((button) => button.click());
+      await page.waitForFunction(() => /written to/.test(document.querySelector("button.run-example + pre").textContent), { timeout: 60000 });
+      assert.match(await page.$eval("button.run-example + pre", (pre) => pre.textContent), /iL +2.0283/);
+      await page.close();
+      library.close();
+    });
+
+    test("nothing that axe finds, and nothing wider than a phone", async () => {
+      const axe = readFileSync(join(here, "node_modules/axe-core/axe.min.js"), "utf8");
+      for (const [width, height, dark] of [[1280, 800, false], [1280, 800, true], [390, 844, false], [390, 844, true]]) {
+        const page = await opened(at, { width, height, dark });
+        const look = async (state) => {
+          await page.evaluate(axe);
+          const { violations } = await page.evaluate(() => globalThis.axe.run(document, { iframes: false }));
+          const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ") + " " + (node.any[0]?.message ?? "")).join("; ")}`);
+          assert.deepEqual(found, [], `${width} ${dark ? "dark" : "light"} ${state}`);
+          const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+          assert.ok(wide <= width, `${wide} in ${width}, ${state}`);
+          await page.screenshot({ path: join(pictures, `${name}-${width}${dark ? "-dark" : ""}-${state}.png`) });
+        };
+        await look("edit");
+        await click(page, "run");
+        await ended(page);
+        for (const tab of ["live", "output", "results", "steps"]) {
+          await click(page, "tab-" + tab);
+          if (tab === "steps") await wait(1000);
+          await look(tab);
+        }
+        await open(page, "lesson 4");
+        await look("lesson");
+        await closed(page);
+      }
+    });
+  });
+}
