@@ -336,10 +336,9 @@ fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
     let ratio = own.rmse / fitted;
     if !ratio.is_finite() {
         let sentence = format!(
-            "{label}, held out for validation, has an RMSE of {} {}; the fit of {} has no error \
+            "{label}, held out for validation, has an RMSE of {}; the fit of {} has no error \
              to compare it with.",
-            significant(own.rmse, 3),
-            own.y[1],
+            format!("{} {}", significant(own.rmse, 3), own.y[1]).trim_end(),
             own.y[0]
         );
         let finding = Finding::new(FindingKind::Validation, sentence);

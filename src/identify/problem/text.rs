@@ -299,7 +299,8 @@ fn series_line(series: &SolvedSeries) -> String {
     if series.points.iter().all(|point| point[1].is_nan()) {
         return line + ", whose measured values are known only to the script";
     }
-    _ = write!(line, ", RMSE {} {}", significant(series.rmse, 4), series.y[1]);
+    let rmse = format!("{} {}", significant(series.rmse, 4), series.y[1]);
+    _ = write!(line, ", RMSE {}", rmse.trim_end());
     if let Some(sigma) = series.sigma {
         let how = if series.sigma_estimated { "estimated" } else { "given" };
         _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));
