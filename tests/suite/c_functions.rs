@@ -148,6 +148,24 @@ fn objects_have_a_state_and_are_freed() {
     assert_eq!(values, ["6", "7", "1", "51", "1"], "{out}{errors}");
 }
 
+/// It is neither pure nor impure by its declaration, and gives other values without other inputs.
+#[test]
+fn functions_without_inputs_are_called_at_every_event() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let model = "model M\n  function f\n    output Real y;\n    external \"C\" y = f()\n      \
+                 annotation(Include = \"double f(void) { static double x = 0; return ++x; }\");\n  \
+                 end f;\n  discrete Real x(start = 0, fixed = true);\n  \
+                 discrete Real step(start = 1, fixed = true);\nequation\n  \
+                 when sample(0.1, 0.1) then\n    x = f();\n    step = x - pre(x);\n  end when;\n  \
+                 assert(abs(step - 1) < 1e-9, \"a call is missing\");\nend M;\n";
+    let here = folder(&[("M.mo", model)]);
+    let (code, out, errors) =
+        gapi(&here, &["simulate", "M.mo", "--allow-external", "--output", "r.csv"]);
+    assert_eq!(code, 0, "{out}{errors}");
+}
+
 #[test]
 fn models_call_scalars_and_arrays() {
     if !is_there_a_compiler() {

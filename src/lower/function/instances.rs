@@ -291,12 +291,15 @@ impl Instances {
     }
 
     /// Whether a function writes, or reads or changes the hidden state, itself or by what it calls.
+    /// A function in C without inputs counts as if it did: it would be called for nothing else, and
+    /// a declaration that says neither `pure` nor `impure` promises nothing (MLS §12.3).
     fn has_effects(&self, code: &Code) -> bool {
         let of_call = |instruction: &Instruction| match instruction {
             Instruction::Call { function, .. } => self.functions.codes[*function as usize].impure,
             _ => false,
         };
-        let has_effect = |call: &ExternalCall| call.entry.effect != Effect::None;
+        let is_alone = |call: &ExternalCall| call.entry.c.is_some() && code.n_inputs == 0;
+        let has_effect = |call: &ExternalCall| call.entry.effect != Effect::None || is_alone(call);
         code.externals.iter().any(has_effect) || code.instructions.iter().any(of_call)
     }
 
