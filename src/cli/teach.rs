@@ -283,6 +283,10 @@ fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
     if generation > has {
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
+    if trace.generations[generation - 1].operation.is_some() {
+        let message = "calls of operators have no figure of generations: use --html or --plain";
+        return Err(Trouble::Message(message.to_owned()));
+    }
     if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("svg")) {
         let message = format!("`{}` does not end in `.svg`: --svg writes SVG only", file.display());
         return Err(Trouble::Message(message));

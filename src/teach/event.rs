@@ -1,19 +1,13 @@
-//! What a trace records: the calls of the paper's functions, each with the line that made it.
+//! What a trace records: the calls of the paper's functions and of operators by name, each with the
+//! line that made it.
 //!
 //! What follows from the events before is left out, so that a trace stays small: the numbers of a
 //! draw follow from its seed, the children from the parents and the crossing points, the mutated
 //! genes from the numbers and the factor.
 
+use super::operation::Operation;
+pub use super::place::Place;
 use serde::{Deserialize, Serialize};
-
-/// A line of a script.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Place {
-    /// Which of the trace's scripts, from 0.
-    pub script: u32,
-    /// Its line, from 1.
-    pub line: u32,
-}
 
 /// Genomes that an event was given: what the run has produced already is not stored again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -155,4 +149,7 @@ pub enum Event {
         /// Number of genes of each of them.
         n_genes: u32,
     },
+    /// An operator is called by name, in a script that has called none of the paper's functions
+    /// `Eval`, `Fit_Order`, `Cross` and `Mutation` before.
+    Operate(Operation),
 }

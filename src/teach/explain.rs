@@ -2,9 +2,11 @@
 //! of the paper's Table 1.
 
 use super::generation::{Generation, mate};
+use super::operation_told;
 use super::step::Step;
 use super::walk::Walk;
-use crate::elementary;
+use super::words::counted;
+pub use super::words::short;
 use crate::ga::has_failed;
 
 /// What happens in the step that `walk` stands at, and why.
@@ -21,26 +23,8 @@ pub fn explain(walk: &Walk) -> String {
         Step::Complete(row) => complete(walk, row),
         Step::Renew => renew(walk),
         Step::Stop => stop(walk),
+        Step::Operate(_, row) => operate(walk, row),
     }
-}
-
-/// A number as short as it can be read.
-pub fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    match value {
-        _ if value == 0.0 => "0".to_owned(),
-        _ if !value.is_finite() => format!("{value}"),
-        _ if !(1e-3..1e5).contains(&magnitude) => format!("{value:.3e}"),
-        _ => {
-            let digits = (3 - elementary::log10(magnitude).floor() as i32).clamp(0, 6) as usize;
-            format!("{value:.digits$}")
-        }
-    }
-}
-
-/// `1 individual`, `2 individuals`.
-fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 fn draw(generation: &Generation) -> String {
@@ -190,6 +174,15 @@ fn renew(walk: &Walk) -> String {
          condition is not yet met.",
         counted(next, "individual")
     )
+}
+
+fn operate(walk: &Walk, row: usize) -> String {
+    let Some(operation) = &walk.generation().operation else { return String::new() };
+    let told = operation_told::told(operation, row, &walk.trace().subject.parameters);
+    match walk.is_last() && walk.trace().full {
+        true => format!("{told} The trace reached its maximum size and ends here."),
+        false => told,
+    }
 }
 
 fn stop(walk: &Walk) -> String {

@@ -1,6 +1,7 @@
 //! One generation, put together from the events of a trace.
 
 use super::event::Place;
+use super::operation::Operation;
 
 /// How an individual came into its generation.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +93,8 @@ pub struct Drawn {
 pub struct Generation {
     /// Whether nothing was simulated: operators were called on individuals that the script made.
     pub is_call: bool,
+    /// The call of an operator by name; all the rest is empty then, but for the number of genes.
+    pub operation: Option<Operation>,
     /// The random numbers drawn before it was simulated and after the one before was mutated: the
     /// initial population, or its random completion.
     pub drawn: Vec<Drawn>,

@@ -2,6 +2,7 @@
 //! browser opens and no mail takes.
 
 use super::generation::Generation;
+use super::operation::{Action, Operation};
 use super::step::steps;
 use std::collections::BTreeSet;
 
@@ -12,6 +13,11 @@ const MOST: usize = 2_300_000;
 const IMPROVEMENTS: usize = 7;
 /// Bytes of one gene: before and after crossover and mutation, and its random number.
 const PER_GENE: usize = 36;
+/// No table of a page has more rows than this.
+pub const MOST_ROWS: usize = 100;
+/// Bytes of one row of the table of an operator's call, and of one number of it.
+const PER_ROW: usize = 60;
+const PER_NUMBER: usize = 16;
 /// Bytes of one step: its sentence.
 const PER_STEP: usize = 260;
 
@@ -40,7 +46,22 @@ pub fn kept(generations: &[Generation]) -> Vec<usize> {
 
 fn cost(generations: &[Generation], at: usize) -> usize {
     let steps = steps(at, &generations[at], generations.get(at + 1)).len();
-    PER_GENE * generations[at].genes.len() + PER_STEP * steps
+    let operation = generations[at].operation.as_ref().map_or(0, rows);
+    PER_GENE * generations[at].genes.len() + PER_STEP * steps + operation
+}
+
+/// Bytes of the rows of an operator's call: their names and notes, and the numbers.
+fn rows(operation: &Operation) -> usize {
+    let count = match &operation.action {
+        Action::Sampling { sampled, .. } => operation.count(sampled).min(MOST_ROWS),
+        Action::Selection { fitness, .. } => fitness.len().min(MOST_ROWS),
+        Action::Crossover { parents, .. } => 2 * operation.count(parents),
+        Action::Mutation { before, .. } => 2 * operation.count(before),
+        Action::Survival { fitness, fitness_offspring, .. } => {
+            (fitness.len() + fitness_offspring.len()).min(MOST_ROWS)
+        }
+    };
+    count * (PER_ROW + PER_NUMBER * (1 + operation.n_genes as usize))
 }
 
 /// The generations after the first whose best is better than all before, the largest gain first.

@@ -1,6 +1,7 @@
 //! Watching a genetic algorithm think: a run of scripts is recorded first, as a trace of what the
 //! functions of the paper were given and what they decided, and then walked through, forward and
-//! back.
+//! back. Where a script calls none of them but operators by name, their calls are what is walked
+//! through.
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
 //! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
@@ -18,8 +19,12 @@ pub mod family;
 mod file;
 mod generation;
 mod kept;
+mod operation;
+mod operation_table;
+mod operation_told;
 pub mod page;
 pub mod picture;
+mod place;
 pub mod plain;
 mod produced;
 pub mod quiz;
@@ -34,9 +39,11 @@ mod tests;
 mod trace;
 mod tracer;
 mod walk;
+mod words;
 
 pub use event::{Event, Place, Subject};
 pub use generation::{Generation, Origin};
+pub use operation::{Action, Operation};
 pub use step::Step;
 pub use trace::Trace;
 pub use tracer::{MutationCall, Tracer};

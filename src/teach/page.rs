@@ -8,7 +8,8 @@ pub use super::changed_run::WhatIf;
 use super::explain::explain;
 use super::family::{Member, family};
 use super::generation::{Generation, Origin};
-use super::kept::kept;
+use super::kept::{MOST_ROWS, kept};
+use super::operation_table::{self, Row};
 use super::plain::title;
 use super::quiz;
 use super::step::Step;
@@ -23,6 +24,7 @@ const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
 const CHARTS: &str = include_str!("page/charts.js");
 const WHAT_IF: &str = include_str!("page/what_if.js");
+const OPERATORS: &str = include_str!("page/operators.js");
 /// Points of the curve of convergence.
 const CURVE_POINTS: usize = 1000;
 
@@ -34,7 +36,9 @@ pub fn page(trace: Trace, result: Option<&str>, what_if: Option<&WhatIf>) -> Str
     let page = Page {
         title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
-        scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n}})();")],
+        scripts: &[&format!(
+            "(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n{OPERATORS}\n}})();"
+        )],
         data: &[("data", data(trace, result).to_string()), ("what-if-data", what_if.to_string())],
         body: body(),
     };
@@ -329,16 +333,37 @@ fn step(walk: &Walk, g: usize) -> Value {
     let step = walk.step();
     let place = walk.place();
     let of = match step {
-        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
+        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) | Step::Operate(_, k) => Some(k),
         _ => None,
     };
-    json!({
+    let mut told = json!({
         "g": g,
         "title": title(step),
         "of": of,
         "place": place.map(|place| (place.script, place.line)),
         "text": explain(walk),
         "question": quiz::question(walk).map(|question| json!(question)),
+    });
+    if let Step::Operate(_, row) = step {
+        told["table"] = table(walk, row);
+    }
+    told
+}
+
+/// What an operator was given and what it returned.
+fn table(walk: &Walk, row: usize) -> Value {
+    let Some(operation) = &walk.generation().operation else { return Value::Null };
+    let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
+    let row = |row: &Row| {
+        let cells = row.cells.iter().map(|&(value, mark)| (six_digits(value), mark));
+        Row { cells: cells.collect(), ..row.clone() }
+    };
+    let rows: Vec<Row> = table.rows.iter().take(MOST_ROWS).map(row).collect();
+    json!({
+        "columns": table.columns,
+        "rows": rows,
+        "left": table.rows.len() - rows.len(),
+        "legend": table.legend,
     })
 }
 

@@ -2,6 +2,7 @@
 
 use super::explain::{explain, short};
 use super::generation::{Generation, Origin};
+use super::operation_table::{self, Row};
 use super::step::Step;
 use super::walk::Walk;
 use crate::ga::has_failed;
@@ -49,6 +50,7 @@ pub fn title(step: Step) -> &'static str {
         Step::Complete(_) => "random completion",
         Step::Renew => "next generation",
         Step::Stop => "stop",
+        Step::Operate(kind, _) => kind.title(),
     }
 }
 
@@ -109,6 +111,7 @@ fn table(walk: &Walk) -> String {
             Some(next) => individuals(walk, next, &in_sequence(next), Known::Genes),
             None => String::new(),
         },
+        Step::Operate(_, row) => operated(walk, row),
     }
 }
 
@@ -262,6 +265,30 @@ fn mutation(walk: &Walk, row: usize) -> String {
     let marks: String = marks.collect();
     if !changed.is_empty() {
         let _ = writeln!(text, "{}", format!("{:<16}{marks}", "").trim_end());
+    }
+    text
+}
+
+/// What an operator was given and what it returned.
+fn operated(walk: &Walk, row: usize) -> String {
+    let Some(operation) = &walk.generation().operation else { return String::new() };
+    let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
+    if table.rows.is_empty() {
+        return String::new();
+    }
+    let names = table.columns.iter().map(|name| format!("{:>10} ", shortened(name)));
+    let line = format!("{:<10}{}", "", names.collect::<String>());
+    let mut text = format!("{}\n", line.trim_end());
+    for Row { name, cells, note } in table.rows.iter().take(LISTED) {
+        let cells = cells.iter().map(|(value, mark)| format!("{:>10}{mark}", short(*value)));
+        let line = format!("{name:<10}{}  {note}", cells.collect::<String>());
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    if let Some(more @ 1..) = table.rows.len().checked_sub(LISTED) {
+        let _ = writeln!(text, "  ... and {more} more");
+    }
+    if !table.legend.is_empty() {
+        let _ = writeln!(text, "{}", table.legend);
     }
     text
 }

@@ -136,7 +136,11 @@ impl Produced {
                 let (n_genes, numbers) = (*n_genes as usize, std::mem::take(&mut self.numbers));
                 *self = Produced { n_genes, numbers, ended: true, ..Produced::default() };
             }
-            Event::Script { .. } | Event::Subject(_) | Event::Measured { .. } | Event::Full => {}
+            Event::Script { .. }
+            | Event::Subject(_)
+            | Event::Measured { .. }
+            | Event::Full
+            | Event::Operate(_) => {}
         }
         Some(())
     }

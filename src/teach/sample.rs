@@ -1,6 +1,7 @@
 //! A small run for the tests: two genes, a straight line to fit, the paper's loop.
 
 use super::event::Place;
+use super::operation::{Action, Operation};
 use super::tracer::{MutationCall, Tracer};
 use super::{Subject, Trace, Walk};
 use crate::elementary;
@@ -124,4 +125,41 @@ fn mutate(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, pla
     tracer.mutated(place, &call);
     let genes = [0, 1].map(|j| Gene::new(format!("{j}"), MINIMA[j], MAXIMA[j]).expect("a range"));
     mutation::mutate_uniform(population, ELITES, &genes, FACTOR, &numbers);
+}
+
+/// The bytes of a trace of three calls of operators by name: on three parents with two genes, on two
+/// individuals, and the survival of both.
+pub(super) fn operators() -> Vec<u8> {
+    let mut tracer = Tracer::default();
+    let place = tracer.place(Path::new("scripts/sample.mos"), SCRIPT, 3);
+    let (parents, children) =
+        (vec![1.0, 2.0, 3.0, 4.0, 5.0, 2.0], vec![1.0, 4.0, 2.5, 2.0, 5.0, 2.0]);
+    let after = vec![1.0, 4.0, 0.25, 2.0];
+    let actions = [
+        ("one_point", Action::Crossover { parents: parents.clone(), children: children.clone() }),
+        (
+            "uniform",
+            Action::Mutation {
+                before: children[..4].to_vec(),
+                after: after.clone(),
+                elites: 0,
+                factor: 0.5,
+            },
+        ),
+        (
+            "mu_plus_lambda",
+            Action::Survival {
+                old: parents,
+                fitness: vec![3.0, 1.0, f64::NAN],
+                offspring: after,
+                fitness_offspring: vec![0.5, 9.0],
+                survivors: vec![3, 1, 0],
+            },
+        ),
+    ];
+    for (operator, action) in actions {
+        let operator = operator.to_owned();
+        tracer.operated(Operation { place, operator, is_own: false, n_genes: 2, action });
+    }
+    tracer.take_bytes()
 }

@@ -2,6 +2,7 @@
 
 use super::event::Place;
 use super::generation::{Generation, Origin, mate};
+use super::operation::Kind;
 
 /// One step of a generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +27,8 @@ pub enum Step {
     Renew,
     /// The run ends with this generation.
     Stop,
+    /// An operator is called by name: the first of the rows that the step is about, from 0.
+    Operate(Kind, usize),
 }
 
 /// The parts of a generation that a learner may want to skip as a whole.
@@ -55,6 +58,13 @@ impl Step {
             Step::Cross(_) => Phase::Crossing,
             Step::Mutate(_) => Phase::Mutating,
             Step::Complete(_) | Step::Renew | Step::Stop => Phase::Renewing,
+            Step::Operate(kind, _) => match kind {
+                Kind::Sampling => Phase::Drawing,
+                Kind::Selection => Phase::Selecting,
+                Kind::Crossover => Phase::Crossing,
+                Kind::Mutation => Phase::Mutating,
+                Kind::Survival => Phase::Renewing,
+            },
         }
     }
 
@@ -72,12 +82,17 @@ impl Step {
             Step::Mutate(_) => mutated,
             Step::Complete(_) => next.and_then(|next| next.drawn.last()).map(|drawn| drawn.place),
             Step::Renew | Step::Stop => sorted.or(generation.rated),
+            Step::Operate(..) => generation.operation.as_ref().map(|operation| operation.place),
         }
     }
 }
 
 /// The steps of `generation` number `number`, which `next` follows.
 pub fn steps(number: usize, generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
+    if let Some(operation) = &generation.operation {
+        let rows = operation.rows_of_steps().into_iter();
+        return rows.map(|row| Step::Operate(operation.kind(), row)).collect();
+    }
     let mut steps = Vec::new();
     if number == 0 && !generation.drawn.is_empty() && !generation.is_call {
         steps.push(Step::Draw);

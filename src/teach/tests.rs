@@ -96,6 +96,24 @@ fn damaged_traces_are_no_panic() {
 }
 
 #[test]
+fn damaged_traces_of_operators_are_no_panic() {
+    let bytes = sample::operators();
+    for at in 16..bytes.len() {
+        for flip in [1, 2, 0x80, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= flip;
+            if let Ok(trace) = Trace::read(&damaged) {
+                page::page(trace.clone(), None, None);
+                let mut walk = Walk::new(trace);
+                while walk.forward() {
+                    plain::step(&walk);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_page_is_whole_and_needs_no_network() {
     let trace = Trace::read(&sample::run(3, 12345.0).bytes).unwrap();
     let text = page::page(trace, Some(r#"{"parameters": []}"#), None);

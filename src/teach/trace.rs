@@ -4,6 +4,7 @@ use super::errors::BAD_TRACE;
 use super::event::{Event, Genes, Numbers, Subject};
 use super::file;
 use super::generation::{Crossed, Drawn, Generation, Mutated, Origin, Sorted};
+use super::operation::Operation;
 use super::produced::Produced;
 use crate::bail;
 use crate::diag::Fault;
@@ -47,11 +48,16 @@ impl Trace {
         events.into_iter().for_each(|event| reading.follow(event));
         let mut trace = reading.trace;
         trace.cut = !whole;
+        // What a script does with the functions of the paper is a run or a call of theirs, whatever
+        // else it calls.
         if trace.generations.iter().all(Generation::is_empty) {
+            trace.generations = reading.operations;
+        }
+        if trace.generations.is_empty() {
             bail!(
                 BAD_TRACE, "the trace contains no generation: no individual was simulated, and no operator was called";
                 help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`, or an \
-                       operator such as `Cross`"
+                       operator such as `Cross` or `Op_Crossover`"
             );
         }
         if trace.subject.parameters.is_empty() {
@@ -70,12 +76,18 @@ struct Reading {
     drawn: Vec<Drawn>,
     /// Whether something was simulated.
     is_run: bool,
+    /// The calls of operators by name.
+    operations: Vec<Generation>,
 }
 
 impl Reading {
     fn follow(&mut self, event: Event) {
         // Only a damaged file has individuals without genes.
         if matches!(event, Event::Simulate { n_genes: 0, .. }) {
+            return;
+        }
+        if let Event::Operate(operation) = event {
+            self.operations.extend(called(operation));
             return;
         }
         self.is_run |= matches!(event, Event::Simulate { .. });
@@ -147,6 +159,7 @@ impl Reading {
             }
             Event::Full => self.trace.full = true,
             Event::Alone { .. }
+            | Event::Operate(_)
             | Event::Rate { .. }
             | Event::Sort { .. }
             | Event::Cross { .. }
@@ -236,4 +249,15 @@ impl Reading {
             _ => {}
         }
     }
+}
+
+/// A call of an operator by name, where a generation is otherwise; none that is damaged.
+fn called(operation: Operation) -> Option<Generation> {
+    let n_genes = operation.n_genes as usize;
+    operation.is_whole().then(|| Generation {
+        is_call: true,
+        n_genes,
+        operation: Some(operation),
+        ..Generation::default()
+    })
 }

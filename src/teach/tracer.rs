@@ -2,6 +2,7 @@
 
 use super::event::{Event, Genes, Numbers, Place, Subject};
 use super::file;
+use super::operation::Operation;
 use super::produced::Produced;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,8 @@ pub struct Tracer {
     produced: Produced,
     /// Whether something was simulated.
     is_run: bool,
+    /// Whether individuals were simulated, sorted, crossed or mutated by the functions of the paper.
+    uses_paper: bool,
     unwritten: Vec<u8>,
     size: usize,
     largest: usize,
@@ -58,6 +61,7 @@ impl Tracer {
             points: (Vec::new(), Vec::new()),
             produced: Produced::default(),
             is_run: false,
+            uses_paper: false,
             size: unwritten.len(),
             unwritten,
             largest,
@@ -102,7 +106,7 @@ impl Tracer {
         genes: &[f64],
         failures: Vec<(u32, String)>,
     ) {
-        self.is_run = true;
+        (self.is_run, self.uses_paper) = (true, true);
         if self.subject.as_ref() != Some(subject) {
             self.push(&Event::Subject(subject.clone()));
             self.subject = Some(subject.clone());
@@ -175,9 +179,23 @@ impl Tracer {
         });
     }
 
+    /// Whether calls of operators by name are recorded: not beside functions of the paper, whose
+    /// steps are what the trace shows then.
+    pub fn takes_operations(&self) -> bool {
+        !self.uses_paper && !self.full
+    }
+
+    /// An operator was called by name.
+    pub fn operated(&mut self, operation: Operation) {
+        if self.takes_operations() {
+            self.push(&Event::Operate(operation));
+        }
+    }
+
     /// An operator is called on individuals with so many genes. In a run the simulations say how many
     /// these are.
     fn alone(&mut self, n_genes: usize) {
+        self.uses_paper = true;
         if !self.is_run && n_genes != self.produced.n_genes {
             self.push(&Event::Alone { n_genes: n_genes as u32 });
         }

@@ -58,6 +58,11 @@ impl Walk {
         (self.at, self.steps.len())
     }
 
+    /// Whether this is the last step of all.
+    pub fn is_last(&self) -> bool {
+        self.at + 1 == self.steps.len() && self.next_generation().is_none()
+    }
+
     /// The script and the line, from 1, behind the step.
     pub fn line(&self) -> Option<(&Script, usize)> {
         let place = self.place()?;

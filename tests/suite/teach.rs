@@ -5,6 +5,9 @@ use crate::cli::{folder, gapi};
 /// Two searches of thirty generations with twelve individuals, without an elite and with one.
 pub(crate) const SEARCH: &str = include_str!("../teach/search.mos");
 
+/// A generation put together from operators by name, one of them a function of the script.
+pub(crate) const OPERATORS: &str = include_str!("../teach/operators.mos");
+
 /// A folder with it.
 fn with_search() -> tempfile::TempDir {
     folder(&[("search.mos", SEARCH)])
@@ -72,6 +75,97 @@ fn operators_alone_are_watched() {
     assert_eq!(code, 0, "{errors}");
     let page = std::fs::read_to_string(here.path().join("calls.html")).unwrap();
     assert!(page.contains("calls.mos - step by step") && page.contains("\"call\":true"));
+}
+
+/// Scripts that call operators by name and nothing of the paper have these calls.
+#[test]
+fn operators_by_name_are_watched() {
+    let here = folder(&[("operators.mos", OPERATORS)]);
+    let (code, out, errors) = gapi(&here, &["teach", "operators.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/teach"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!("operators_by_name", out));
+    let (code, _, errors) = gapi(&here, &["teach", "operators.mos", "--svg", "figure.svg"]);
+    assert!(code == 1 && errors.contains("calls of operators have no figure"), "{errors}");
+}
+
+#[test]
+fn a_crossover_alone_is_watched() {
+    let script = "Seed := {1, 2, 3, 4, 5, 6};\n\
+        (Children, Seed) := Op_Crossover(\"one_point\", [1, 2, 3; 4, 5, 6; 7, 2, 9], {0, 0, 0}, \
+        {9, 9, 9}, Seed);\n";
+    let here = folder(&[("cross.mos", script)]);
+    let (code, out, errors) = gapi(&here, &["teach", "cross.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    for part in [
+        "Call 1, step 1 of 2: crossover",
+        "Child 1 has 1 gene of parent a, 2",
+        "child 1        1.000a     5.000b     6.000b",
+        "child 2        4.000b     2.000a     3.000a",
+        "Call 1, step 2 of 2: crossover",
+        // The second gene of both parents is the same.
+        "child 3        7.000a     2.000=     3.000b",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+}
+
+/// What is called on nobody is told all the same, and an operator that does not exist is an error.
+#[test]
+fn operators_on_nobody() {
+    let seed = "Seed := {1, 2, 3, 4, 5, 6};\n";
+    let nobody = "(P, Seed) := Op_Sampling(\"uniform\", 0, {0, 0}, {1, 1}, Seed);\n\
+        (C, Seed) := Op_Crossover(\"uniform\", P, {0, 0}, {1, 1}, Seed);\n\
+        (M, Seed) := Op_Mutation(\"uniform\", P, 0.5, {0, 0}, {1, 1}, Seed);\n\
+        (Q, Seed) := Op_Selection(\"tournament\", {1.0}, 0, Seed);\n\
+        (N, F) := Op_Survival(\"mu_plus_lambda\", P, fill(0.0, 0), P, fill(0.0, 0), 0);\n\
+        (C, Seed) := Op_Crossover(\"uniform\", [0.1, 0.2], {0, 0}, {1, 1}, Seed);\n";
+    let unknown = "(C, Seed) := Op_Crossover(\"unifrom\", [0, 1], {0, 0}, {1, 1}, Seed);\n";
+    let here = folder(&[
+        ("nobody.mos", &format!("{seed}{nobody}")),
+        ("unknown.mos", &format!("{seed}{unknown}")),
+    ]);
+    let (code, out, errors) = gapi(&here, &["teach", "nobody.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    for part in [
+        "Op_Sampling with `uniform` returns no individuals.",
+        "is given no parents and returns no children.",
+        "Op_Mutation with `uniform` is given no individuals and returns none.",
+        "returns 0 parents.",
+        "Call 5, step 1 of 1: survivor selection",
+        "row 1, the only one, has a",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+    let (code, _, errors) = gapi(&here, &["teach", "nobody.mos", "--html", "nobody.html"]);
+    assert_eq!(code, 0, "{errors}");
+    let (code, _, errors) = gapi(&here, &["teach", "unknown.mos"]);
+    assert!(code == 1 && errors.contains("unknown crossover `unifrom`"), "{errors}");
+}
+
+/// Beside functions of the paper, whose steps are what is shown, operators by name change nothing.
+#[test]
+fn operators_beside_functions_of_the_paper_change_nothing() {
+    let operator = "(C, s) := Op_Crossover(\"uniform\", [1; 2], {0}, {9}, Seed);\n";
+    let seed = "Seed := {1, 2, 3, 4, 5, 6};\n";
+    let paper = "Alone := Cross(2, 0, [5, 6, 7; 8, 9, 10], {2});\n";
+    let other = "s := Seed;\n";
+    let here = folder(&[
+        ("before.mos", &format!("{seed}{operator}{paper}{other}")),
+        ("after.mos", &format!("{seed}{other}{paper}{operator}")),
+        ("without.mos", &format!("{seed}{other}{paper}{other}")),
+    ]);
+    let steps = |name: &str| {
+        let (code, out, errors) = gapi(&here, &["teach", &format!("{name}.mos")]);
+        assert_eq!(code, 0, "{errors}");
+        out.lines().filter(|line| !line.contains(".mos:")).collect::<Vec<_>>().join("\n")
+    };
+    assert!(steps("without").contains("Call 1, step 1 of 1: crossover"));
+    assert_eq!(steps("before"), steps("without"));
+    assert_eq!(steps("after"), steps("without"));
 }
 
 #[test]

@@ -13,11 +13,12 @@ use crate::ga::crossover::Parents;
 use crate::ga::errors::{BAD_OPERATOR, BAD_POPULATION, SIZE_MISMATCH};
 use crate::ga::mutation::{Child, Course};
 use crate::ga::operators::{self, Kind, Size};
-use crate::ga::survival::{Brood, Rated, Wanted};
+use crate::ga::survival::{Brood, Rated, Survivor, Wanted};
 use crate::ga::{Genomes, Mrg32k3a, crossover, mutation, sampling, selection, survival};
 use crate::registry::{BAD_OPTION, Choice};
 use crate::script::Session;
 use crate::script::runs::problem::{operators as chosen, own_function};
+use crate::teach::{Action, Operation};
 use crate::value::{RealMatrix, Value};
 use crate::{bail, fault};
 use std::sync::Arc;
@@ -40,6 +41,8 @@ const MOST: i64 = 1_000_000;
 
 /// An operator that a script names.
 struct Operator {
+    /// The name with its settings, as the script has it.
+    text: String,
     choice: Choice,
     /// The script's function of that name.
     function: Option<Arc<eval::Function>>,
@@ -63,7 +66,7 @@ impl Operator {
             choice.options.clone().finish()?;
             function = Some(found);
         }
-        Ok(Operator { choice, function, kind, error: None })
+        Ok(Operator { text, choice, function, kind, error: None })
     }
 
     /// Calls the script's function with the numbers of its inputs.
@@ -113,6 +116,23 @@ impl Operator {
                 Err(Fault::new(BAD_OPERATOR, message))
             }
         }
+    }
+
+    /// Records the call for learners, where that is asked for.
+    fn traced(
+        &self,
+        session: &mut Session,
+        n_genes: usize,
+        action: impl FnOnce() -> Action,
+    ) -> Result<(), Fault> {
+        if !session.traces_operations() {
+            return Ok(());
+        }
+        let (operator, is_own) = (self.text.clone(), self.function.is_some());
+        let n_genes = n_genes as u32;
+        session.traced(|tracer, place| {
+            tracer.operated(Operation { place, operator, is_own, n_genes, action: action() });
+        })
     }
 
     /// What a function has said itself comes before what was made of it.
@@ -191,6 +211,11 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         ),
     };
     let genomes = genomes.map_err(|fault| operator.failure(fault))?;
+    operator.traced(session, genes.len(), || Action::Sampling {
+        sampled: genomes.values().to_vec(),
+        minima,
+        maxima,
+    })?;
     Ok(draws.outputs(session, genomes_value(genomes)))
 }
 
@@ -232,6 +257,10 @@ fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         ),
     };
     let places = places.map_err(|fault| operator.failure(fault))?;
+    operator.traced(session, 0, || {
+        let places = places.iter().map(|&place| place as u32).collect();
+        Action::Selection { fitness, places }
+    })?;
     let places: Vec<i64> = places.into_iter().map(|k| k as i64 + 1).collect();
     Ok(draws.outputs(session, places.into()))
 }
@@ -277,6 +306,10 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         }),
     };
     let children = children.map_err(|fault| operator.failure(fault))?;
+    operator.traced(session, n_genes, || Action::Crossover {
+        parents: parents.values().to_vec(),
+        children: children.values().to_vec(),
+    })?;
     Ok(draws.outputs(session, genomes_value(children)))
 }
 
@@ -302,6 +335,7 @@ function Op_Mutation "Mutates each gene with probability F_Mut."
 fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut operator = Operator::take(session, &mut args, "mutation")?;
     let mut genomes = take_genomes(&mut args, "Nparameters")?;
+    let before = genomes.values().to_vec();
     let rate: f64 = args.take("F_Mut")?;
     mutation::check_factor(rate)?;
     let n_genes = genomes.n_genes();
@@ -335,6 +369,12 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         };
         mutated.map_err(|fault| operator.failure(fault))?;
     }
+    operator.traced(session, n_genes, || Action::Mutation {
+        before,
+        after: genomes.values().to_vec(),
+        elites: elites as u32,
+        factor: rate,
+    })?;
     Ok(draws.outputs(session, genomes_value(genomes)))
 }
 
@@ -402,10 +442,26 @@ fn survive(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         (None, None) => Ok(Vec::new()),
     };
     let survivors = survivors.map_err(|fault| operator.failure(fault))?;
+    operator.traced(session, old.n_genes(), || traced_survival(&brood, &survivors))?;
     let mut next = Genomes::with_capacity(old.n_genes(), survivors.len());
     survivors.iter().for_each(|&one| next.push(brood.genome(one)));
     let next_fitness: Vec<f64> = survivors.iter().map(|&one| brood.fitness(one)).collect();
     Ok(Value::Tuple(vec![genomes_value(next), next_fitness.into()]))
+}
+
+/// Who lives on, as a trace has it.
+fn traced_survival(brood: &Brood, survivors: &[Survivor]) -> Action {
+    let row = |survivor: &Survivor| match survivor {
+        Survivor::Old(k) => *k as u32,
+        Survivor::Offspring(k) => (brood.old.genomes.len() + k) as u32,
+    };
+    Action::Survival {
+        old: brood.old.genomes.values().to_vec(),
+        fitness: brood.old.fitness.to_vec(),
+        offspring: brood.offspring.genomes.values().to_vec(),
+        fitness_offspring: brood.offspring.fitness.to_vec(),
+        survivors: survivors.iter().map(row).collect(),
+    }
 }
 
 /// The parents of each child, from rows in the order of `Op_Selection`: the children of a pair stand

@@ -33,6 +33,12 @@ impl Session {
         Ok(())
     }
 
+    /// Whether there is a tracer that records calls of operators by name.
+    pub(in crate::script) fn traces_operations(&mut self) -> bool {
+        let active = &self.extension::<Tracing>().active;
+        active.as_ref().is_some_and(|(_, tracer)| tracer.takes_operations())
+    }
+
     /// Tells the tracer, if there is one, what the call at hand has done.
     pub(in crate::script) fn traced(
         &mut self,

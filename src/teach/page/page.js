@@ -146,6 +146,7 @@ function show() {
   showPrediction(step);
   const drawn = waits() && current > 0 ? DATA.steps[current - 1] : step;
   showScript(step);
+  if (step.table) return showOperation(step);
   showPopulation(drawn);
   showDrawing(drawn);
   showFit(drawn);

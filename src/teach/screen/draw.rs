@@ -3,6 +3,7 @@
 use super::{Screen, View, compare, inspect, step_panel};
 use crate::teach::explain::explain;
 use crate::teach::plain::{place_in_run, title};
+use crate::teach::step::Step;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -91,7 +92,11 @@ fn step(screen: &Screen, frame: &mut Frame, area: Rect) {
     let needed = if shown >= height { shown + 1 - height } else { 0 };
     // No further than to the last row.
     let offset = (needed + screen.scrolled).min(lines.len().saturating_sub(height));
-    let panel = Paragraph::new(lines).block(titled(" population ")).scroll((offset as u16, 0));
+    let what = match screen.walk.step() {
+        Step::Operate(kind, _) => format!(" {} ", kind.command()),
+        _ => " population ".to_owned(),
+    };
+    let panel = Paragraph::new(lines).block(titled(&what)).scroll((offset as u16, 0));
     frame.render_widget(panel, right);
 }
 

@@ -1,9 +1,11 @@
-//! The right side: the population, or what crossover and mutation do to genes.
+//! The right side: the population, or what crossover, mutation and operators by name do to genes.
 
 use super::Screen;
 use crate::ga::has_failed;
 use crate::teach::explain::short;
 use crate::teach::generation::{Generation, Origin, mate};
+use crate::teach::operation::Kind;
+use crate::teach::operation_table::{self, Row, Table};
 use crate::teach::step::{Phase, Step};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
@@ -24,6 +26,7 @@ pub fn lines(screen: &Screen, width: u16) -> (Vec<Line<'static>>, usize) {
     match walk.step() {
         Step::Cross(rank) => (crossover(screen, rank), 0),
         Step::Mutate(row) => (mutation(screen, row), 0),
+        Step::Operate(kind, row) => (operation(screen, kind, row), 0),
         _ => population(screen, width >= width_of_numbers(screen)),
     }
 }
@@ -189,6 +192,63 @@ fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
         }
         lines.push(Line::from(spans));
     }
+    lines
+}
+
+/// What an operator was given and what it returned: one gene a line for a family, whose rows are
+/// few, else one individual a line.
+fn operation(screen: &Screen, kind: Kind, row: usize) -> Vec<Line<'static>> {
+    let Some(operation) = &screen.walk.generation().operation else { return Vec::new() };
+    let table = operation_table::table(operation, row, &screen.walk.trace().subject.parameters);
+    let mut lines = match kind {
+        Kind::Crossover | Kind::Mutation => genes_down(screen, &table),
+        Kind::Sampling | Kind::Selection | Kind::Survival => rows_down(&table),
+    };
+    lines.extend(table.legend.split("; ").map(Line::from).filter(|line| line.width() > 0));
+    lines
+}
+
+/// One gene a line, marked as the table has it.
+fn genes_down(screen: &Screen, table: &Table) -> Vec<Line<'static>> {
+    let names = table.rows.iter().map(|row| format!("{:>8}", row.name.replace(' ', "")));
+    let mut lines = vec![Line::from(format!("{:<7}{}", "", names.collect::<String>()))];
+    let style = |mark: char| match mark {
+        'a' => screen.styled(Color::Cyan),
+        'b' => screen.styled(Color::Yellow),
+        '*' => screen.styled(Color::Yellow).add_modifier(Modifier::BOLD),
+        _ => Style::new(),
+    };
+    for j in 0..table.columns.len() {
+        let cells = table.rows.iter().map(|row| row.cells[j]);
+        let cells = cells
+            .map(|(value, mark)| Span::styled(format!("{:>7}{mark}", narrow(value)), style(mark)));
+        let name = Span::raw(format!("{:<7}", gene_name(screen, j)));
+        lines.push(Line::from([vec![name], cells.collect()].concat()));
+    }
+    lines
+}
+
+/// One individual a line; what became of it stands before its genes, which may be many.
+fn rows_down(table: &Table) -> Vec<Line<'static>> {
+    let wide = table.rows.iter().map(|row| row.note.chars().count()).max().unwrap_or(0);
+    let line = |name: &str, cells: &[String], note: &str| {
+        let (first, rest) = if wide == 0 { (0, cells) } else { (1, &cells[1..]) };
+        let number = |cell: &String| format!("{cell:>11}");
+        let first: String = cells[..first].iter().map(number).collect();
+        let rest: String = rest.iter().map(number).collect();
+        let note = if wide == 0 { String::new() } else { format!(" {note:<wide$}") };
+        Line::from(format!("{name:<9}{first}{note}{rest}"))
+    };
+    let last = |name: &String| {
+        let skipped = name.chars().count().saturating_sub(10);
+        name.chars().skip(skipped).collect::<String>()
+    };
+    let heads: Vec<String> = table.columns.iter().map(last).collect();
+    let mut lines = vec![line("", &heads, "")];
+    lines.extend(table.rows.iter().map(|Row { name, cells, note }| {
+        let cells: Vec<String> = cells.iter().map(|(value, _)| short(*value)).collect();
+        line(name, &cells, note)
+    }));
     lines
 }
 

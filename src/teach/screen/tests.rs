@@ -47,6 +47,23 @@ fn screens() {
 }
 
 #[test]
+fn screens_of_operators() {
+    let cases = [("crossover", 0), ("mutation", 3), ("survival", 4)];
+    for (name, steps) in cases {
+        let trace = Trace::read(&sample::operators()).unwrap();
+        let mut screen = Screen::new(crate::teach::Walk::new(trace), false);
+        (0..steps).for_each(|_| assert!(screen.press(Key::Right)));
+        let text = drawn(&screen);
+        sample::snapshots().bind(|| insta::assert_snapshot!(format!("screen_op_{name}"), text));
+        // Nobody can be followed or inspected there; the keys say so.
+        for key in typed('i', "1").into_iter().chain(typed('f', "")).chain([Key::Char('j')]) {
+            assert!(screen.press(key));
+        }
+        drawn(&screen);
+    }
+}
+
+#[test]
 fn keys_move() {
     let first_line = |keys: &[Key]| shown(keys).lines().next().unwrap_or_default().to_owned();
     assert!(first_line(&[Key::Down]).starts_with("Generation 2 of 3, step 1 "));
