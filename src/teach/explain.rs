@@ -2,7 +2,7 @@
 //! of the paper's Table 1.
 
 use super::generation::{Generation, mate};
-use super::operation_told;
+use super::operation_text;
 use super::step::Step;
 use super::walk::Walk;
 use super::words::counted;
@@ -178,10 +178,10 @@ fn renew(walk: &Walk) -> String {
 
 fn operate(walk: &Walk, row: usize) -> String {
     let Some(operation) = &walk.generation().operation else { return String::new() };
-    let told = operation_told::told(operation, row, &walk.trace().subject.parameters);
+    let text = operation_text::text(operation, row, &walk.trace().subject.parameters);
     match walk.is_last() && walk.trace().full {
-        true => format!("{told} The trace reached its maximum size and ends here."),
-        false => told,
+        true => format!("{text} The trace reached its maximum size and ends here."),
+        false => text,
     }
 }
 

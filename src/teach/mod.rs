@@ -21,7 +21,7 @@ mod generation;
 mod kept;
 mod operation;
 mod operation_table;
-mod operation_told;
+mod operation_text;
 pub mod page;
 pub mod picture;
 mod place;

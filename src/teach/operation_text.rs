@@ -10,7 +10,7 @@ use crate::ga::{has_failed, order};
 const LISTED: usize = 12;
 
 /// What the step at `row` of the call did; `names` are those of the genes.
-pub fn told(operation: &Operation, row: usize, names: &[String]) -> String {
+pub fn text(operation: &Operation, row: usize, names: &[String]) -> String {
     let named = named(operation);
     match &operation.action {
         Action::Sampling { sampled, minima, maxima } => {
@@ -18,8 +18,8 @@ pub fn told(operation: &Operation, row: usize, names: &[String]) -> String {
         }
         Action::Selection { fitness, places } => selection(&named, fitness, places),
         Action::Crossover { parents, children } => {
-            let told = crossover(operation, row, parents, children);
-            format!("{named} {told}")
+            let text = crossover(operation, row, parents, children);
+            format!("{named} {text}")
         }
         Action::Mutation { before, after, elites, factor } => {
             let count = operation.count(before);
