@@ -118,9 +118,12 @@ fn found_or_compiled(session: &mut Session, problem: &str) -> Result<Translated,
     if let Some(model) = request.find(session, problem) {
         return Ok(model);
     }
-    let model = compiled(session, problem)?;
-    request.keep(session, &model);
-    Ok(model)
+    let model = compiled(session, problem);
+    match &model {
+        Ok(model) => request.keep(session, model),
+        Err(_) => session.output.overheard = None,
+    }
+    model
 }
 
 /// The flat model of a translated one.

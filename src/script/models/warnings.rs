@@ -8,6 +8,9 @@ pub(super) fn warn(session: &mut Session, warnings: &[Diagnostic]) {
     for warning in warnings {
         if session.models.is_new_warning(warning.span(), &warning.message) {
             session.report(warning.clone());
+        } else if let Some(overheard) = &mut session.output.overheard {
+            // Another session that finds the model has not reported it.
+            overheard.push(warning.clone());
         }
     }
 }

@@ -46,7 +46,7 @@ impl Entry {
         });
         let texts = sources.into_iter().map(|source| text_of(session, source));
         let entry = Entry {
-            answers: session.classes.reads.answers(),
+            answers: session.classes.reads.answers()?,
             searches: session.classes.history.searches().to_vec(),
             after: session.classes.history.digest(),
             texts: texts.collect::<Option<_>>()?,
@@ -72,6 +72,8 @@ impl Entry {
                 contents.insert(path, bytes);
             }
         }
+        // What this session has read before must be the same, too.
+        session.classes.reads.answers()?;
         let texts = self.texts.iter().map(|text| match text {
             Text::File(shown, path) => {
                 let (text, _) = syntax::decode(contents.get(path)?);

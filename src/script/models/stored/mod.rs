@@ -46,6 +46,7 @@ impl Request {
             return None;
         }
         let (model, warnings) = entry.model(problem, texts)?;
+        session.output.overheard = None;
         warn(session, &warnings);
         Some(model)
     }

@@ -38,6 +38,8 @@ pub struct Reads(Arc<Mutex<Notes>>);
 #[derive(Debug, Default)]
 struct Notes {
     answers: BTreeMap<Question, Answer>,
+    /// Whether a question had two answers: classes may come from what is there no longer.
+    has_changed: bool,
     /// The files of texts.
     files: HashMap<SourceId, PathBuf>,
 }
@@ -56,12 +58,16 @@ impl Reads {
         self.notes().files.get(&source).cloned()
     }
 
-    pub(super) fn answers(&self) -> BTreeMap<Question, Answer> {
-        self.notes().answers.clone()
+    /// The answers, if none has changed meanwhile.
+    pub(super) fn answers(&self) -> Option<BTreeMap<Question, Answer>> {
+        let notes = self.notes();
+        (!notes.has_changed).then(|| notes.answers.clone())
     }
 
     fn note(&self, question: Question, answer: Answer) {
-        self.notes().answers.insert(question, answer);
+        let mut notes = self.notes();
+        let former = notes.answers.insert(question, answer);
+        notes.has_changed |= former.is_some_and(|former| former != answer);
     }
 }
 
@@ -117,5 +123,23 @@ pub(super) fn ask(files: &dyn FileReader, question: &Question) -> (Answer, Optio
         }
         Question::List(path) => (of_names(&files.list_dir(path)), None),
         Question::IsFile(path) => (of_whether(files.is_file(path)), None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_known_once_an_answer_has_changed() {
+        let reads = Reads::default();
+        let question = || Question::Read(PathBuf::from("/a.mo"));
+        reads.note(question(), Some(digest(b"one")));
+        reads.note(question(), Some(digest(b"one")));
+        assert_eq!(reads.answers().map(|answers| answers.len()), Some(1));
+        reads.note(question(), Some(digest(b"two")));
+        assert_eq!(reads.answers(), None);
+        reads.note(question(), Some(digest(b"two")));
+        assert_eq!(reads.answers(), None, "a class may still be that of the first text");
     }
 }
