@@ -7,8 +7,16 @@ use super::tape::Tape;
 /// A step of solving for all variables, the states (or nothing, at the start) given.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Step {
-    Run(Tape),
+    Run(CompiledRun),
     Solve(CompiledLoop),
+}
+
+/// Assignments one after another.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct CompiledRun {
+    pub(crate) tape: Tape,
+    #[serde(skip)]
+    pub(crate) machine_code: MachineCode,
 }
 
 /// A torn loop with its Jacobian.
@@ -22,6 +30,8 @@ pub(crate) struct CompiledLoop {
     /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
     pub(crate) has_residuals: Register,
     pub(crate) block: u32,
+    #[serde(skip)]
+    pub(crate) machine_code: MachineCode,
 }
 
 /// A frozen relation, compiled.

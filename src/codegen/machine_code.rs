@@ -10,7 +10,7 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::instruction::Register;
+use super::instruction::{Instruction, Register};
 use super::memory::Memory;
 use super::pieces::{Piece, pieces};
 use super::routines::without_routines;
@@ -20,6 +20,7 @@ use crate::bytecode::Functions;
 use crate::codegen::tape::Tape;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
+use rustc_hash::FxHashSet;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, OnceLock};
 
@@ -68,15 +69,41 @@ impl MachineCode {
             let function = function.as_ref().filter(|function| function.n_outputs <= out.len());
             return function.is_some_and(|function| function.call(memory, out));
         }
+        self.count(tape, || {
+            Function::new((tape, outputs, memory.calls.functions()), Results::InArray)
+        });
+        false
+    }
+
+    /// Computes what the tape leaves in the registers: the variables that it assigns and these other
+    /// results; whether it did. If not, the tape must be run.
+    pub(crate) fn run_in_place(
+        &self,
+        tape: &Tape,
+        others: [&[Register]; 2],
+        memory: &mut Memory,
+    ) -> bool {
+        if let Some(function) = self.function.get() {
+            let done = function.as_ref().is_some_and(|function| function.call(memory, &mut []));
+            if done {
+                memory.overflow = None;
+            }
+            return done;
+        }
+        self.count(tape, || {
+            let results = left_by(tape, memory.n_variables, others);
+            Function::new((tape, &results, memory.calls.functions()), Results::InRegisters)
+        });
+        false
+    }
+
+    /// Counts a run of the tape, and translates it where it has run often.
+    fn count(&self, tape: &Tape, translated: impl FnOnce() -> Option<Function>) {
         let often = if tape.code.len() <= LONG { OFTEN } else { OFTEN_LONG };
         if self.runs.fetch_add(1, Ordering::Relaxed) == often {
             let interpreted = INTERPRETED.load(Ordering::Relaxed);
-            let functions = memory.calls.functions();
-            let translated =
-                || if interpreted { None } else { Function::new(tape, outputs, functions) };
-            self.function.get_or_init(translated);
+            self.function.get_or_init(|| if interpreted { None } else { translated() });
         }
-        false
     }
 }
 
@@ -92,15 +119,38 @@ impl std::fmt::Debug for MachineCode {
     }
 }
 
+/// The variables that a tape assigns, and which of `others` it computes.
+fn left_by(tape: &Tape, n_variables: usize, others: [&[Register]; 2]) -> Vec<Register> {
+    let others: FxHashSet<Register> = others.into_iter().flatten().copied().collect();
+    let is_left =
+        |register: &Register| (*register as usize) < n_variables || others.contains(register);
+    let mut left: Vec<Register> =
+        tape.code.iter().filter_map(Instruction::result).filter(is_left).collect();
+    left.sort_unstable();
+    left.dedup();
+    left
+}
+
+/// Where machine code writes its results to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Results {
+    /// One after another into an array.
+    InArray,
+    /// Where the tape has them.
+    InRegisters,
+}
+
 /// What the machine code is called as: registers, outputs, workspaces of linear systems and
 /// functions; zero if all values are finite.
 type Entry = unsafe extern "C" fn(*const f64, *mut f64, *mut Workspaces) -> f64;
 
 /// A function in memory of its own.
 pub(super) struct Function {
-    /// More than one where the tape was cut into pieces: these write to registers.
+    /// More than one where the tape was cut into pieces.
     entries: Vec<Entry>,
-    /// The registers of the outputs, where the tape was cut.
+    /// Whether they write to registers.
+    in_registers: bool,
+    /// The registers of the outputs that are copied into an array.
     outputs: Vec<Register>,
     /// One more than the last register read or written.
     n_registers: usize,
@@ -112,21 +162,22 @@ pub(super) struct Function {
 
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
-    fn new(tape: &Tape, outputs: &[Register], functions: &Functions) -> Option<Function> {
+    fn new(code: Code, results: Results) -> Option<Function> {
+        let (tape, _, functions) = code;
         let length =
             without_routines(tape, LONGEST)?.len() + Upcalls::of(tape, functions)?.length();
-        let code = (tape, outputs, functions);
         match length {
-            0..=LONG => Function::translated(code, LONG, ["speed", "backtracking"]),
+            0..=LONG => Function::translated(code, results, LONG, ["speed", "backtracking"]),
             // Better code would take too long.
-            _ => Function::translated(code, PIECE, ["none", "single_pass"]),
+            _ => Function::translated(code, results, PIECE, ["none", "single_pass"]),
         }
     }
 
     /// Translates in pieces of at most so many instructions, with options of Cranelift for
     /// optimization and register allocation.
     fn translated(
-        (tape, outputs, functions): (&Tape, &[Register], &Functions),
+        (tape, outputs, functions): Code,
+        results: Results,
         longest: usize,
         [opt_level, regalloc_algorithm]: [&str; 2],
     ) -> Option<Function> {
@@ -141,17 +192,17 @@ impl Function {
         let mut module = JITModule::new(builder);
         let instructions = without_routines(tape, LONGEST)?;
         let upcalls = Upcalls::of(tape, functions)?;
-        let whole = |instructions| vec![Piece { instructions, left: Vec::new() }];
+        let whole = |instructions| vec![Piece { instructions, left: outputs.to_vec() }];
         let pieces = match pieces(&instructions, longest, outputs, (tape, &upcalls)) {
             Some(pieces) => pieces,
             None if instructions.len() <= WHOLE => whole(instructions),
             None => return None,
         };
-        let is_cut = pieces.len() > 1;
+        let in_registers = pieces.len() > 1 || results == Results::InRegisters;
         let mut matrices = Matrices::default();
         let mut ids = Vec::new();
         for (number, piece) in pieces.iter().enumerate() {
-            let places: Vec<(Register, usize)> = match is_cut {
+            let places: Vec<(Register, usize)> = match in_registers {
                 true => piece.left.iter().map(|register| (*register, *register as usize)).collect(),
                 false => outputs.iter().copied().zip(0..).collect(),
             };
@@ -160,7 +211,7 @@ impl Function {
                 upcalls: &upcalls,
                 instructions: &piece.instructions,
                 outputs: &places,
-                keeps: is_cut,
+                keeps: in_registers,
             };
             ids.push(define(&mut module, &format!("tape_{number}"), part, &mut matrices)?);
         }
@@ -171,11 +222,13 @@ impl Function {
             // the module, which the result keeps.
             unsafe { std::mem::transmute::<*const u8, Entry>(address) }
         };
+        let copied = in_registers && results == Results::InArray;
         Some(Function {
             entries: ids.into_iter().map(entry).collect(),
-            outputs: if is_cut { outputs.to_vec() } else { Vec::new() },
+            in_registers,
+            outputs: if copied { outputs.to_vec() } else { Vec::new() },
             n_registers: registers_used(tape, outputs, &upcalls),
-            n_outputs: outputs.len(),
+            n_outputs: if results == Results::InArray { outputs.len() } else { 0 },
             _upcalls: upcalls,
             module: Mutex::new(Some(module)),
         })
@@ -187,7 +240,7 @@ impl Function {
         assert!(self.n_registers <= registers.len(), "registers are those the tape was made for");
         assert!(self.n_outputs <= out.len(), "there is room for every output");
         let registers_start = registers.as_mut_ptr();
-        if let [entry] = self.entries[..] {
+        if let ([entry], false) = (&self.entries[..], self.in_registers) {
             // SAFETY: the code reads registers below `n_registers`, writes outputs below
             // `n_outputs`, and hands the workspaces to its upcalls alone.
             let check = unsafe { entry(registers_start, out.as_mut_ptr(), &raw mut workspaces) };
@@ -207,6 +260,9 @@ impl Function {
         true
     }
 }
+
+/// A tape, the registers of its outputs, and the functions that it calls.
+type Code<'a> = (&'a Tape, &'a [Register], &'a Functions);
 
 /// Adds the code of a part of a tape to a module.
 fn define(
@@ -261,6 +317,7 @@ mod tests {
     use crate::codegen::memory::Memory;
     use crate::codegen::registers::Registers;
     use crate::codegen::sequence::compile_continuous;
+    use crate::codegen::tape_builder::TapeBuilder;
     use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -354,18 +411,28 @@ mod tests {
             let (code, mut memory) = compiled(&pool, &outputs);
             let functions = Functions::default();
             let code_of = (&code.tape, &*code.outputs, &functions);
-            let best = Function::translated(code_of, LONG, ["speed", "backtracking"]);
-            let quick = Function::translated(code_of, LONG, ["none", "single_pass"]);
+            let best = Function::translated(code_of, Results::InArray, LONG, ["speed", "backtracking"]);
+            let quick = Function::translated(code_of, Results::InArray, LONG, ["none", "single_pass"]);
             let whole = [best, quick].map(|f| f.expect("all of it can be translated"));
             let cut = [5, 20, 60].map(|longest| {
-                Function::translated(code_of, longest, ["none", "single_pass"])
+                Function::translated(code_of, Results::InArray, longest, ["none", "single_pass"])
             });
             let cut = cut.map(|f| f.expect("all of it can be translated"));
-            let functions: Vec<Function> = whole.into_iter().chain(cut).collect();
-            let mut out = vec![f64::NAN; outputs.len()];
-            for (values, function) in values.iter().flat_map(|v| functions.iter().map(move |f| (v, f))) {
+            let left = left_by(&code.tape, VARIABLES, [&code.outputs, &[]]);
+            let in_place = [LONG, 20].map(|longest| {
+                let code = (&code.tape, &*left, &functions);
+                Function::translated(code, Results::InRegisters, longest, ["none", "single_pass"])
+            });
+            let in_place = in_place.map(|f| f.expect("all of it can be translated"));
+            let made: Vec<Function> = whole.into_iter().chain(cut).chain(in_place).collect();
+            for (values, function) in values.iter().flat_map(|v| made.iter().map(move |f| (v, f))) {
                 memory[..VARIABLES].copy_from_slice(values);
+                left.iter().for_each(|register| memory[*register as usize] = f64::NAN);
+                let mut out = vec![f64::NAN; function.n_outputs];
                 let done = function.call(&mut memory, &mut out);
+                if function.n_outputs == 0 {
+                    out = code.outputs.iter().map(|register| memory[*register as usize]).collect();
+                }
                 let succeeds = code.tape.run(&mut memory).is_ok();
                 // Machine code may leave to the tape what is nearly singular, but nothing else.
                 prop_assert!(!done || succeeds);
@@ -397,7 +464,8 @@ mod tests {
         let (code, mut memory) = compiled(&pool, &outputs);
         let functions = Functions::default();
         let code_of = (&code.tape, &*code.outputs, &functions);
-        let function = Function::translated(code_of, PIECE, ["speed", "backtracking"]);
+        let function =
+            Function::translated(code_of, Results::InArray, PIECE, ["speed", "backtracking"]);
         let function = function.expect("all of it can be translated");
         for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
             memory[0] = x;
@@ -425,5 +493,24 @@ mod tests {
             !code.machine_code.run(&code.tape, &code.outputs, &mut memory, &mut out),
             "the tape tells what is wrong"
         );
+    }
+
+    #[test]
+    fn assignments_become_machine_code_that_leaves_variables_in_the_registers() {
+        let mut pool = Pool::new();
+        let x = pool.variable(VarId(0));
+        let root = pool.function("sqrt", &[x]);
+        let mut registers = Registers::new(VARIABLES, Arc::new(Functions::default()));
+        let mut builder = TapeBuilder::new(&pool, &mut registers);
+        builder.store(VarId(1), root);
+        let (tape, code) = (builder.finish(), MachineCode::default());
+        let mut memory = Memory::new(&registers);
+        memory[0] = 2.0;
+        let run = |memory: &mut Memory| code.run_in_place(&tape, [&[], &[]], memory);
+        let first = (0..2 * OFTEN).position(|_| run(&mut memory));
+        assert_eq!(first, Some(OFTEN as usize + 1));
+        assert_eq!(memory[1].to_bits(), 2f64.sqrt().to_bits());
+        memory[0] = -1.0;
+        assert!(!run(&mut memory), "the tape tells what is wrong");
     }
 }

@@ -1,8 +1,9 @@
 //! Code for outputs, and only for what they need: slices of the sequence of assignments as tapes.
 
-use super::code::{CompiledLoop, Outputs, Step};
+use super::code::{CompiledLoop, CompiledRun, Outputs, Step};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
+use super::machine_code::MachineCode;
 use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape_builder::TapeBuilder;
@@ -126,6 +127,7 @@ pub(super) fn compile_steps(
             jacobian,
             has_residuals,
             block: number as u32,
+            machine_code: MachineCode::default(),
         }));
     }
     steps.extend(compile_run(pool, registers, &mut run));
@@ -141,7 +143,7 @@ fn compile_run(pool: &Pool, registers: &mut Registers, run: &mut Vec<Assignment>
         builder.origin(assignment.equation as u32);
         builder.store(assignment.variable, assignment.value);
     }
-    Some(Step::Run(builder.finish()))
+    Some(Step::Run(CompiledRun { tape: builder.finish(), machine_code: MachineCode::default() }))
 }
 
 /// A variable's representative, with its sign.

@@ -16,4 +16,9 @@ impl MachineCode {
     pub(crate) fn run(&self, _: &Tape, _: &[Register], _: &mut Memory, _: &mut [f64]) -> bool {
         false
     }
+
+    /// The tape must be run.
+    pub(crate) fn run_in_place(&self, _: &Tape, _: [&[Register]; 2], _: &mut Memory) -> bool {
+        false
+    }
 }

@@ -1,7 +1,7 @@
 //! Execution of code on the registers of a system, with failures that say which operation of which
 //! equation failed.
 
-use crate::codegen::code::Outputs;
+use crate::codegen::code::{CompiledLoop, CompiledRun, Outputs};
 use crate::codegen::instruction::Instruction;
 use crate::codegen::memory::Memory;
 use crate::codegen::tape::Tape;
@@ -69,7 +69,25 @@ pub fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     tape.run(registers).map_err(|at| failure(tape, registers, at))
 }
 
-/// The same where what the tape computes is used long after: an overflow is a failure at once.
+/// Runs assignments, whose results stay in the registers.
+pub fn run_assignments(code: &CompiledRun, registers: &mut Memory) -> Result<(), Failure> {
+    match code.machine_code.run_in_place(&code.tape, [&[], &[]], registers) {
+        true => Ok(()),
+        false => run(&code.tape, registers),
+    }
+}
+
+/// Computes residuals and Jacobian of a loop from its unknowns, in the registers.
+pub fn run_loop(torn: &CompiledLoop, registers: &mut Memory) -> Result<(), Failure> {
+    let others = [&*torn.residuals, &*torn.jacobian];
+    if !torn.machine_code.run_in_place(&torn.tape, others, registers) {
+        return run(&torn.tape, registers);
+    }
+    registers[torn.has_residuals as usize] = 1.0;
+    Ok(())
+}
+
+/// Runs a tape where what it computes is used long after: an overflow is a failure at once.
 pub fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     run(tape, registers)?;
     match registers.overflow {

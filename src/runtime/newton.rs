@@ -15,7 +15,7 @@
 //! is an error.
 
 use super::difference_quotients::quotient;
-use super::execution::run;
+use super::execution::run_loop;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
@@ -245,7 +245,7 @@ impl Evaluation<'_> {
             self.r[*unknown as usize] = *value;
         }
         self.count += 1;
-        let done = run(&self.torn.tape, self.r);
+        let done = run_loop(self.torn, self.r);
         self.has_jacobian = done.is_ok();
         match done {
             Err(Failure::Domain { .. }) if self.r[self.torn.has_residuals as usize] == 1.0 => {

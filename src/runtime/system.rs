@@ -1,7 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run, run_parameter, run_strictly};
+use super::execution::{read, run, run_assignments, run_parameter, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
@@ -421,7 +421,7 @@ impl System {
         let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
-                Step::Run(tape) => run(tape, &mut self.registers)?,
+                Step::Run(code) => run_assignments(code, &mut self.registers)?,
                 Step::Solve(torn) => {
                     let solver = solvers.next().expect("every loop has its solver");
                     solver.solve(torn, &mut self.registers, initial, may_jump).map_err(
