@@ -298,8 +298,9 @@ impl System {
     /// Evaluates an assertion.
     fn assert(&mut self, at: usize) -> Result<(), Failure> {
         let (number, condition) = &self.program.assertions[at];
-        run(&condition.tape, &mut self.registers)?;
-        match self.registers[condition.outputs[0] as usize] == 0.0 {
+        let mut holds = [0.0];
+        read(condition, &mut self.registers, &mut holds)?;
+        match holds == [0.0] {
             true => Err(Failure::Assertion { assertion: *number as u32 }),
             false => Ok(()),
         }
