@@ -33,7 +33,7 @@ const OFTEN_LONG: u32 = 100;
 const LONG: usize = 3_000;
 /// Longer tapes are translated in pieces of at most this many instructions: the time that a
 /// translation takes is more than linear.
-const PIECE: usize = 20_000;
+const PIECE: usize = 8_000;
 /// A tape that cannot be cut is translated as a whole up to this length.
 const WHOLE: usize = 100_000;
 /// Tapes longer than this are not translated.

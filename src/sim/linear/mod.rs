@@ -1,7 +1,6 @@
 //! Linear systems of a pattern that stays: analysed once, factorised and solved often.
 
 mod dense;
-mod operations;
 mod sparse;
 #[cfg(test)]
 mod tests;

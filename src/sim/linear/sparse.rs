@@ -18,13 +18,9 @@
 //! pivot is too small for its row, others are chosen for the values at hand, until
 //! [`SparseLu::forget`].
 //!
-//! Small matrices are factorised and solved by [lists of operations](super::operations), with the same
-//! bits but for the sign of zeros.
-//!
 //! Not the one of a crate: those choose pivots from the values of the first matrix, so that a simulation
 //! would depend on what was simulated before with the same workspace.
 
-use super::operations::{Operations, Rows};
 use super::{DenseLu, SingularMatrix};
 use crate::elementary;
 use crate::sim::Pattern;
@@ -81,8 +77,6 @@ struct Factors {
     inverse_diagonal: Vec<f64>,
     /// The rows after these, and the columns after these.
     last: DenseLu,
-    /// What is done with small matrices in the place of loops; then the values are there.
-    operations: Option<Box<Operations>>,
 }
 
 impl SparseLu {
@@ -101,8 +95,7 @@ impl SparseLu {
         if !self.is_analysed {
             let values = large_diagonal(&self.pattern);
             let pivots = Elimination::new(&self.pattern, &values).keep(&self.coupled).run();
-            let factors = pivots.ok().map(|pivots| pivots.factors(&self.pattern));
-            self.first = factors.map(Factors::with_operations);
+            self.first = pivots.ok().map(|pivots| pivots.factors(&self.pattern));
             self.is_analysed = true;
         }
         let (factors, threshold) = match &mut self.others {
@@ -114,8 +107,7 @@ impl SparseLu {
         {
             return Ok(());
         }
-        let factors = Elimination::new(&self.pattern, values).run()?.factors(&self.pattern);
-        let mut factors = factors.with_operations();
+        let mut factors = Elimination::new(&self.pattern, values).run()?.factors(&self.pattern);
         factors.factorize(values, &mut self.work, 0.0)?;
         self.others = Some(factors);
         Ok(())
@@ -126,13 +118,6 @@ impl SparseLu {
     pub(super) fn nonzeros(&self) -> usize {
         let factors = self.others.as_ref().or(self.first.as_ref());
         factors.map_or(0, |f| f.rows.len() + f.lower.len() + f.upper.len())
-    }
-
-    /// From now on the factors at hand are made by loops.
-    #[cfg(test)]
-    pub(super) fn drop_operations(&mut self) -> bool {
-        let factors = self.first.iter_mut().chain(&mut self.others);
-        factors.fold(false, |had, factors| factors.operations.take().is_some() | had)
     }
 
     /// Leaves NaN if nothing has been factorised.
@@ -161,10 +146,6 @@ impl Factors {
         work: &mut [f64],
         threshold: f64,
     ) -> Result<(), SingularMatrix> {
-        if let Some(operations) = &mut self.operations {
-            operations.factorize(values, self.last.matrix(), threshold)?;
-            return self.last.factorize();
-        }
         let n = self.inverse_diagonal.len();
         for i in 0..n {
             let upper = row(&self.upper_starts, i);
@@ -214,9 +195,6 @@ impl Factors {
     }
 
     fn solve(&self, b: &mut [f64], work: &mut [f64]) {
-        if let Some(operations) = &self.operations {
-            return self.solve_by(operations, b, work);
-        }
         let n = self.inverse_diagonal.len();
         for i in 0..self.rows.len() {
             let mut sum = b[self.rows[i] as usize];
@@ -239,30 +217,6 @@ impl Factors {
             work[i] = sum * self.inverse_diagonal[i];
             b[self.columns[i] as usize] = work[i];
         }
-    }
-
-    fn solve_by(&self, operations: &Operations, b: &mut [f64], work: &mut [f64]) {
-        for (value, row) in work.iter_mut().zip(&self.rows) {
-            *value = b[*row as usize];
-        }
-        operations.forward(work);
-        self.last.solve(&mut work[self.inverse_diagonal.len()..]);
-        operations.backward(work);
-        for (value, column) in work.iter().zip(&self.columns) {
-            b[*column as usize] = *value;
-        }
-    }
-
-    /// With lists of operations, where the matrix is small enough.
-    fn with_operations(mut self) -> Factors {
-        let rows = Rows {
-            n: self.inverse_diagonal.len(),
-            entries: (&self.entry_starts, &self.entries),
-            lower: (&self.lower_starts, &self.lower_columns),
-            upper: (&self.upper_starts, &self.upper_columns),
-        };
-        self.operations = Operations::new(&rows).map(Box::new);
-        self
     }
 }
 
@@ -433,7 +387,6 @@ impl Elimination {
             upper_columns,
             inverse_diagonal: vec![0.0; n - kept.len()],
             last: DenseLu::new(kept.len()),
-            operations: None,
         }
     }
 }

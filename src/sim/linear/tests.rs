@@ -74,27 +74,6 @@ proptest! {
     }
 
     #[test]
-    fn operations_have_the_bits_of_loops(
-        (pattern, values) in sparse_matrix(30),
-        coupled in prop::collection::btree_set(0usize..30, 0..4),
-    ) {
-        let coupled: Vec<usize> = coupled.into_iter().collect();
-        let mut lu = SparseLu::new(&pattern, &coupled);
-        if lu.factorize(&values).is_ok() {
-            let solve = |lu: &mut SparseLu| {
-                let mut x: Vec<f64> = (0..pattern.n).map(|i| (i as f64).sin() + 1.0).collect();
-                lu.factorize(&values).expect("it had factors before");
-                lu.solve(&mut x);
-                x
-            };
-            let by_operations = solve(&mut lu);
-            prop_assert!(lu.drop_operations());
-            let by_loops = solve(&mut lu);
-            prop_assert_eq!(by_operations, by_loops);
-        }
-    }
-
-    #[test]
     fn dense_factors_solve((pattern, values) in sparse_matrix(8)) {
         let mut dense = Factorization::new(&pattern, &[]);
         prop_assert!(matches!(dense, Factorization::Dense(_)));
