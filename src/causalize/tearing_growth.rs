@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 const LARGEST: f64 = 1e6;
 /// A dependence that is too strong beside a variable that has become iterated: a recurrence of second
 /// order carries two values, and begins again with both. Without, a chain of 120 gets 53 iteration
-/// variables in the place of 17.
+/// variables in the place of 15.
 const LARGEST_BESIDE: f64 = 1e3;
 /// Shorter chains would need factors of three and more at every step.
 const SHORTEST: usize = 12;

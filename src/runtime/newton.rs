@@ -11,14 +11,16 @@
 //! ```
 //!
 //! A loop whose Jacobian is singular at an isolated solution is solved. Otherwise it need not have
-//! only this one: at the start the one nearest to the start values is taken, with a warning; later it
-//! is an error.
+//! only this one: at the start the one nearest to the start values is taken, with a warning. Later the
+//! one nearest to the values at hand is, with a warning as well, where equations that depend on each
+//! other leave unknowns open; at a turning point it is an error.
 
 use super::difference_quotients::quotient;
 use super::execution::run;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
+use super::open_loops::is_open;
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
@@ -174,6 +176,12 @@ impl LoopSolver {
                 Err(NewtonFailure::Singular)
                     if is_isolated(equations, &self.start, &self.nominal) =>
                 {
+                    self.x.copy_from_slice(&self.start);
+                    return Ok(());
+                }
+                // A pivot that is a rounding error makes steps without end of a singular Jacobian.
+                Err(_) if !initial && is_open(equations, &self.start, &self.nominal) => {
+                    self.is_singular = true;
                     self.x.copy_from_slice(&self.start);
                     return Ok(());
                 }

@@ -655,6 +655,7 @@ impl DaeSystem for System {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
         self.leave_event(outcome)?;
+        self.note_open(t);
         self.reschedule();
         self.unload(y);
         Ok(outcome)
