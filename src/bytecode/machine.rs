@@ -3,6 +3,7 @@
 use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
+use super::memo::{Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
@@ -23,6 +24,12 @@ pub struct Machine {
     slopes: Vec<f64>,
     externals: Externals,
     budget: u64,
+    /// The last calls between functions, where these are always the same.
+    memos: Option<Box<Memos>>,
+    /// For each function whether its calls are kept; found when the first is called.
+    kept: Option<Box<[bool]>>,
+    /// How many calls had the results of the one before.
+    recalled: u64,
 }
 
 /// Where to go on when a function ends.
@@ -31,10 +38,18 @@ struct Caller {
     function: u32,
     at: u32,
     base: u32,
+    arguments: u32,
     results: u32,
+    /// What was left of the budget.
+    budget: u64,
 }
 
 impl Machine {
+    /// A machine that always runs the same functions: it keeps results of calls between them.
+    pub fn of_fixed_functions() -> Machine {
+        Machine { memos: Some(Box::default()), ..Machine::default() }
+    }
+
     /// Forgets all external objects and the hidden state of random numbers.
     pub fn restart(&mut self) {
         self.externals.restart();
@@ -43,6 +58,11 @@ impl Machine {
     /// How many instructions the call before this took.
     pub(crate) fn spent(&self) -> u64 {
         instruction_limit().saturating_sub(self.budget)
+    }
+
+    /// How many calls between functions had the results of the call before.
+    pub fn recalled(&self) -> u64 {
+        self.recalled
     }
 
     /// What the external function said that failed last.
@@ -181,6 +201,7 @@ impl Machine {
                         return Ok(());
                     }
                     let Some(caller) = self.callers.pop() else { return Ok(()) };
+                    self.keep(functions, function, caller, &stack[..], outputs.clone());
                     stack.copy_within(outputs, (caller.base + caller.results) as usize);
                     (function, at, base) =
                         (caller.function, caller.at as usize, caller.base as usize);
@@ -202,6 +223,11 @@ impl Machine {
                     }
                     grow(stack, next + callee.frame as usize);
                     let first = base + call.arguments as usize;
+                    let known = first..first + callee.n_inputs as usize;
+                    let results = base + call.results as usize;
+                    if self.recall(functions, call.function, stack, known, results) {
+                        continue;
+                    }
                     if let Some(derivative) = &callee.derivative {
                         let arguments = first..first + callee.n_inputs as usize;
                         let results = base + call.results as usize;
@@ -222,7 +248,9 @@ impl Machine {
                         function,
                         at: at as u32,
                         base: base as u32,
+                        arguments: call.arguments,
                         results: call.results,
+                        budget: self.budget,
                     });
                     (function, at, base) = (call.function, 0, next);
                     code = callee;
@@ -232,6 +260,56 @@ impl Machine {
                     return Err(Failure { function, at: at as u32 - 1, reason });
                 }
             }
+        }
+    }
+}
+
+impl Machine {
+    /// Whether calls of a function are kept.
+    fn keeps(&mut self, functions: &Functions, function: u32) -> bool {
+        self.memos.is_some()
+            && self.kept.get_or_insert_with(|| worth_keeping(functions))[function as usize]
+    }
+
+    /// Writes the results of a call that is known; whether it is, and the budget suffices.
+    fn recall<T: Number>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        stack: &mut [T],
+        arguments: std::ops::Range<usize>,
+        results: usize,
+    ) -> bool {
+        if !self.keeps(functions, function) {
+            return false;
+        }
+        let Some(memos) = &mut self.memos else { return false };
+        let found = T::memo(memos).find(function, &stack[arguments]);
+        let Some((known, cost)) = found else { return false };
+        let Some(left) = self.budget.checked_sub(cost) else { return false };
+        self.budget = left;
+        self.recalled += 1;
+        stack[results..results + known.len()].copy_from_slice(known);
+        true
+    }
+
+    /// Keeps a call that has ended.
+    fn keep<T: Number>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        caller: Caller,
+        stack: &[T],
+        outputs: std::ops::Range<usize>,
+    ) {
+        if !self.keeps(functions, function) {
+            return;
+        }
+        let cost = caller.budget.saturating_sub(self.budget);
+        let n_inputs = functions.codes[function as usize].n_inputs as usize;
+        let arguments = &stack[(caller.base + caller.arguments) as usize..][..n_inputs];
+        if let Some(memos) = &mut self.memos {
+            T::memo(memos).keep(function, arguments, &stack[outputs], cost);
         }
     }
 }

@@ -18,6 +18,7 @@ mod elementary;
 mod external;
 mod failure;
 mod machine;
+mod memo;
 mod number;
 
 pub use crate::external::Journal;

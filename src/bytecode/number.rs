@@ -1,6 +1,7 @@
 //! Numbers that instructions compute with.
 
 use super::elementary::Elementary;
+use super::memo::{Memo, Memos};
 use crate::elementary;
 
 /// A number with its derivatives, or without.
@@ -29,6 +30,10 @@ pub trait Number: Copy {
     fn binary(self, b: Self, function: &Elementary) -> Self;
     /// The stack of a machine for such numbers.
     fn stack(stacks: &mut Stacks) -> &mut Vec<Self>;
+    /// The calls that a machine keeps for such numbers.
+    fn memo(memos: &mut Memos) -> &mut Memo<Self>;
+    /// Whether all bits are the same.
+    fn has_bits_of(self, other: Self) -> bool;
 }
 
 /// Frames of all calls, for each kind of number.
@@ -86,6 +91,14 @@ impl Number for f64 {
 
     fn stack(stacks: &mut Stacks) -> &mut Vec<f64> {
         &mut stacks.values
+    }
+
+    fn memo(memos: &mut Memos) -> &mut Memo<f64> {
+        &mut memos.values
+    }
+
+    fn has_bits_of(self, other: f64) -> bool {
+        self.to_bits() == other.to_bits()
     }
 }
 
@@ -179,6 +192,14 @@ macro_rules! dual {
 
             fn stack(stacks: &mut Stacks) -> &mut Vec<Self> {
                 &mut stacks.$stack
+            }
+
+            fn memo(memos: &mut Memos) -> &mut Memo<Self> {
+                &mut memos.$stack
+            }
+
+            fn has_bits_of(self, other: Self) -> bool {
+                self.v.has_bits_of(other.v) && self.d.has_bits_of(other.d)
             }
         }
     };

@@ -2,6 +2,7 @@
 
 use super::causalized::{Assignment, Block, Loop};
 use super::linear_loops::{is_safe, solve_linear};
+use super::tearing_growth::limit_growth;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
@@ -102,7 +103,7 @@ pub(super) fn solve_block(
         .map(|row| (dae.pool.sub(local[*row].left, local[*row].right), block[*row]))
         .collect();
     let iteration = torn.iteration_unknowns.iter().map(|u| members[*u]).collect();
-    let torn = Loop { iteration, assignments, residuals };
+    let torn = limit_growth(dae, Loop { iteration, assignments, residuals });
     Ok(match solve_linear(dae, &torn) {
         Some(solved) => Block::Linear(solved),
         None => Block::Loop(torn),

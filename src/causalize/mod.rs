@@ -35,6 +35,7 @@ mod parameter_order;
 mod passes;
 mod reinit;
 mod report;
+mod tearing_growth;
 mod used_variables;
 mod zero_coefficients;
 mod zero_derivatives;

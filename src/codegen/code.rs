@@ -3,6 +3,7 @@
 use super::instruction::Register;
 use super::machine_code::MachineCode;
 use super::tape::Tape;
+use crate::sim::Pattern;
 
 /// A step of solving for all variables, the states (or nothing, at the start) given.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -25,7 +26,9 @@ pub(crate) struct CompiledLoop {
     pub(crate) tape: Tape,
     pub(crate) unknowns: Vec<Register>,
     pub(crate) residuals: Vec<Register>,
-    /// Row-major.
+    /// Where the entries of the Jacobian are that are not always zero.
+    pub(crate) pattern: Pattern,
+    /// These entries, by columns.
     pub(crate) jacobian: Vec<Register>,
     /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
     pub(crate) has_residuals: Register,
@@ -39,8 +42,10 @@ pub(crate) struct CompiledLoop {
 pub(crate) struct CompiledRelation {
     pub(crate) register: Register,
     pub(crate) operator: crate::symbolic::RelationOperator,
-    /// For a relation on time alone: registers of the factor of time and of the rest.
+    /// For a relation on time alone: the factor of time, and the register of the rest.
     pub(crate) time: Option<(f64, Register)>,
+    /// Whether that rest changes at events.
+    pub(crate) is_rescheduled: bool,
 }
 
 /// States chosen at run time, as registers.

@@ -4,7 +4,7 @@
 //! the bits of results where sums are formed: it is part of the contract of equal bytes.
 
 use super::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
-use super::event_code::{compile_events, linear_in_time};
+use super::event_code::{compile_events, linear_in_time, scheduled_in_time};
 use super::events::CompiledRounding;
 use super::hoist::Hoisting;
 use super::instruction::Register;
@@ -14,7 +14,9 @@ use super::memory::Memory;
 use super::program::{Access, Literal, ParameterInfo, Program, VariableInfo, number_of_equations};
 use super::registers::Registers;
 use super::relation_groups::{memoryless, relations_of_blocks};
-use super::sequence::{compile_continuous, compile_outputs, compile_steps, resolved, slice};
+use super::sequence::{
+    by_columns, compile_continuous, compile_outputs, compile_steps, resolved, slice,
+};
 use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, CausalizedDae};
@@ -26,7 +28,6 @@ use crate::lower::{Assertion, Kind, Level, Variable};
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, Pool, VarId};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl Program {
@@ -50,7 +51,7 @@ impl Program {
         let values = compilation.values();
         let Compilation { mut causalized, pool, registers, sequence, observed, .. } = compilation;
         let relations_of_blocks = relations_of_blocks(&pool, &causalized);
-        let memoryless = memoryless(&pool, &causalized);
+        let memoryless = memoryless(&pool, &causalized, &relations.relations);
         causalized.dae.pool = pool;
         let mut program = Program {
             variables: variables(&causalized, &observed),
@@ -74,6 +75,7 @@ impl Program {
             relations: relations.relations,
             relation_sides: relations.sides,
             time_rests: relations.time_rests,
+            rescheduled_rests: relations.rescheduled_rests,
             rhs: continuous.rhs,
             jacobian: continuous.jacobian,
             pattern: continuous.pattern,
@@ -148,6 +150,7 @@ struct Relations {
     sides: Vec<Outputs>,
     roundings: Vec<CompiledRounding>,
     time_rests: Tape,
+    rescheduled_rests: Option<Tape>,
     crossing_relations: Vec<usize>,
     crossings_vary_in_time: bool,
     crossings: Outputs,
@@ -236,20 +239,29 @@ impl Compilation {
         let mut crossing_relations = Vec::new();
         let mut differences = Vec::new();
         let mut rests = Vec::new();
+        let mut rescheduled = Vec::new();
         for relation in &causalized.dae.relations {
             let difference = pool.sub(relation.left, relation.right);
-            let time = linear_in_time(pool, causalized, difference);
+            let known = linear_in_time(pool, causalized, difference);
+            let kept = match known {
+                None => scheduled_in_time(pool, causalized, difference),
+                Some(_) => None,
+            };
+            rescheduled.extend(kept.map(|(_, rest)| (relations.len(), rest)));
+            let time = known.or(kept);
             match time {
                 None => {
                     crossing_relations.push(relations.len());
                     differences.extend([relation.left, relation.right]);
                 }
-                Some((_, rest)) => rests.push((relations.len(), rest)),
+                Some((_, rest)) if kept.is_none() => rests.push((relations.len(), rest)),
+                Some(_) => {}
             }
             relations.push(CompiledRelation {
                 register: relation.variable.0,
                 operator: relation.operator,
                 time: time.map(|(factor, _)| (factor, 0)),
+                is_rescheduled: kept.is_some(),
             });
             let both = [relation.left, relation.right];
             sides.push(compile_outputs(pool, registers, &[], &both));
@@ -280,6 +292,14 @@ impl Compilation {
                 time.1 = *register;
             }
         }
+        let expressions: Vec<Expr> = rescheduled.iter().map(|(_, rest)| *rest).collect();
+        let later = compile_outputs(pool, registers, &[], &expressions);
+        for ((at, _), register) in rescheduled.iter().zip(&later.outputs) {
+            if let Some(time) = &mut relations[*at].time {
+                time.1 = *register;
+            }
+        }
+        let rescheduled_rests = (!rescheduled.is_empty()).then_some(later.tape);
         let crossings_vary_in_time = depend_on_time(pool, sequence, &differences);
         let crossings =
             compile_continuous(pool, registers, sequence, &differences, Hoisting::Total);
@@ -289,6 +309,7 @@ impl Compilation {
             sides,
             roundings,
             time_rests,
+            rescheduled_rests,
             crossing_relations,
             crossings_vary_in_time,
             crossings,
@@ -444,26 +465,6 @@ fn lacking(program: &Program, parameter: VarId, function: u32) -> Diagnostic {
         help: "assign it in the function, at least for the case that it is not used")
     .at(variable.span)
     .warning()
-}
-
-/// Entries of a Jacobian by columns.
-fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) {
-    let mut columns: Vec<Vec<(usize, Expr)>> = vec![Vec::new(); n];
-    for (row, entries) in rows.iter().enumerate() {
-        for (column, entry) in entries {
-            columns[*column].push((row, *entry));
-        }
-    }
-    let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
-    let mut values = Vec::new();
-    for column in columns {
-        for (row, entry) in column {
-            pattern.rows.push(row);
-            values.push(entry);
-        }
-        pattern.column_starts.push(pattern.rows.len());
-    }
-    (pattern, values)
 }
 
 fn parameters(sorted: &CausalizedDae) -> Vec<ParameterInfo> {

@@ -124,9 +124,28 @@ pub(super) fn linear_in_time(
     sorted: &CausalizedDae,
     e: Expr,
 ) -> Option<(f64, Expr)> {
-    let varies =
-        |v: VarId| v != VarId(0) && !matches!(sorted.dae.variable(v).kind, Kind::Parameter { .. });
-    if pool.any_variable(e, varies) {
+    linear_with(pool, e, |v| matches!(sorted.dae.variable(v).kind, Kind::Parameter { .. }))
+}
+
+/// The same with a rest that changes at events only, as in `time >= pre(next)`: each event tells
+/// when the next one is due.
+pub(super) fn scheduled_in_time(
+    pool: &mut Pool,
+    sorted: &CausalizedDae,
+    e: Expr,
+) -> Option<(f64, Expr)> {
+    let is_kept = |kind| {
+        matches!(kind, Kind::Parameter { .. } | Kind::Solved | Kind::Discrete | Kind::Previous(_))
+    };
+    linear_with(pool, e, |v| is_kept(sorted.dae.variable(v).kind))
+}
+
+fn linear_with(
+    pool: &mut Pool,
+    e: Expr,
+    may_be_in_rest: impl Fn(VarId) -> bool,
+) -> Option<(f64, Expr)> {
+    if pool.any_variable(e, |v| v != VarId(0) && !may_be_in_rest(v)) {
         return None;
     }
     let linear = linear_in(pool, e, VarId(0))?;

@@ -45,7 +45,7 @@ impl Memory {
     pub(crate) fn new(registers: &Registers) -> Memory {
         let calls = Calls {
             functions: registers.functions().clone(),
-            machine: Machine::default(),
+            machine: Machine::of_fixed_functions(),
             impure: Vec::new(),
             failure: None,
         };

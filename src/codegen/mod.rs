@@ -50,3 +50,4 @@ mod upcalls;
 pub use machine_code::interpret;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
+pub(crate) use stored::bytes_of;

@@ -141,6 +141,8 @@ pub struct Program {
     pub(crate) relation_sides: Vec<Outputs>,
     /// The part of [`CompiledRelation::time`] that parameters make.
     pub(crate) time_rests: Tape,
+    /// The same for rests that change at events; `None` where there are none.
+    pub(crate) rescheduled_rests: Option<Tape>,
     pub(crate) rhs: Outputs,
     pub(crate) jacobian: Outputs,
     pub(crate) pattern: Pattern,

@@ -88,11 +88,6 @@ impl Registers {
         self.next - n as Register
     }
 
-    /// The register of the constant 0, if a tape uses it.
-    pub(crate) fn zero(&self) -> Option<Register> {
-        self.constants.get(&0.0f64.to_bits()).copied()
-    }
-
     pub(super) fn constant(&mut self, value: f64) -> Register {
         if let Some(known) = self.constants.get(&value.to_bits()) {
             return *known;

@@ -1,6 +1,7 @@
 //! Which relations belong together: those of one algebraic loop, and those from which nothing but
 //! functions of the relations follows at events. Mode search and sliding need it.
 
+use super::code::CompiledRelation;
 use crate::causalize::CausalizedDae;
 use crate::lower::Kind;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
@@ -29,7 +30,11 @@ pub(super) fn relations_of_blocks(pool: &Pool, sorted: &CausalizedDae) -> Vec<Ve
 
 /// For every relation, whether nothing follows from it at events but values that are functions of
 /// the relations at hand.
-pub(super) fn memoryless(pool: &Pool, sorted: &CausalizedDae) -> Vec<bool> {
+pub(super) fn memoryless(
+    pool: &Pool,
+    sorted: &CausalizedDae,
+    compiled: &[CompiledRelation],
+) -> Vec<bool> {
     let dae = &sorted.dae;
     let events = &dae.events;
     let mut remembered: FxHashSet<VarId> = FxHashSet::default();
@@ -45,6 +50,12 @@ pub(super) fn memoryless(pool: &Pool, sorted: &CausalizedDae) -> Vec<bool> {
     let ends = events.terminations.iter().map(|t| t.condition);
     for e in conditions.chain(assertions).chain(ends) {
         remember(&mut remembered, e);
+    }
+    // Between events nothing tells that another time has become the next.
+    let pairs = dae.relations.iter().zip(compiled);
+    for (relation, _) in pairs.filter(|(_, compiled)| compiled.is_rescheduled) {
+        remember(&mut remembered, relation.left);
+        remember(&mut remembered, relation.right);
     }
     let has_memory = |v: VarId| matches!(dae.variable(v).kind, Kind::Previous(_) | Kind::Signal);
     for equation in &events.equations {

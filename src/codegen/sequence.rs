@@ -2,14 +2,17 @@
 
 use super::code::{CompiledLoop, CompiledRun, Outputs, Step};
 use super::hoist::Hoisting;
+use super::instruction::Register;
 use super::jacobian::differentiate_sequence;
 use super::machine_code::MachineCode;
 use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, Block, CausalizedDae};
+use crate::sim::Pattern;
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
 use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
 
 /// A set of variables with all that they are computed from.
 pub(super) fn close(
@@ -112,18 +115,19 @@ pub(super) fn compile_steps(
                 builder.define(*variable, *value);
             }
         }
-        let mut jacobian = Vec::new();
-        for (row, (_, equation)) in torn.residuals.iter().enumerate() {
+        // Only what is not always zero: large loops have few entries in every row.
+        let mut entries: Vec<BTreeMap<usize, Register>> = Vec::new();
+        for (row, (_, equation)) in slopes.rows.iter().zip(&torn.residuals) {
             builder.origin(*equation as u32);
-            for column in 0..torn.iteration.len() {
-                let entry = slopes.rows[row].get(&column).copied().unwrap_or(zero);
-                jacobian.push(builder.emit(entry));
-            }
+            let emitted = row.iter().map(|(column, entry)| (*column, builder.emit(*entry)));
+            entries.push(emitted.collect());
         }
+        let (pattern, jacobian) = by_columns(&entries, torn.iteration.len());
         steps.push(Step::Solve(CompiledLoop {
             tape: builder.finish(),
             unknowns: torn.iteration.iter().map(|v| v.0).collect(),
             residuals: results,
+            pattern,
             jacobian,
             has_residuals,
             block: number as u32,
@@ -132,6 +136,29 @@ pub(super) fn compile_steps(
     }
     steps.extend(compile_run(pool, registers, &mut run));
     steps
+}
+
+/// Entries of a Jacobian by columns.
+pub(super) fn by_columns<Entry: Copy>(
+    rows: &[BTreeMap<usize, Entry>],
+    n: usize,
+) -> (Pattern, Vec<Entry>) {
+    let mut columns: Vec<Vec<(usize, Entry)>> = vec![Vec::new(); n];
+    for (row, entries) in rows.iter().enumerate() {
+        for (column, entry) in entries {
+            columns[*column].push((row, *entry));
+        }
+    }
+    let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+    let mut values = Vec::new();
+    for column in columns {
+        for (row, entry) in column {
+            pattern.rows.push(row);
+            values.push(entry);
+        }
+        pattern.column_starts.push(pattern.rows.len());
+    }
+    (pattern, values)
 }
 
 fn compile_run(pool: &Pool, registers: &mut Registers, run: &mut Vec<Assignment>) -> Option<Step> {

@@ -146,6 +146,44 @@ proptest! {
         let used = tearing.assignments.len();
         prop_assert_eq!(used + tearing.residual_equations.len(), graph.n_equations());
         prop_assert_eq!(used + tearing.iteration_unknowns.len(), graph.n_unknowns());
+        prop_assert_eq!(tearing.iteration_unknowns, greedy(&graph, solvable));
+    }
+}
+
+/// Iteration unknowns by the definition of the greedy choice, everything counted at every choice.
+fn greedy(graph: &Bipartite, solvable: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let (mut known, mut used) = (vec![false; graph.n_unknowns()], vec![false; graph.n_equations()]);
+    let mut chosen = Vec::new();
+    let left = |known: &[bool], e: usize| -> Vec<usize> {
+        graph.unknowns(e).iter().copied().filter(|u| !known[*u]).collect()
+    };
+    loop {
+        let determines = |known: &[bool], used: &[bool]| {
+            (0..graph.n_equations()).filter(|e| !used[*e]).find_map(|e| match left(known, e)[..] {
+                [u] if solvable(e, u) => Some((e, u)),
+                _ => None,
+            })
+        };
+        while let Some((e, u)) = determines(&known, &used) {
+            (used[e], known[u]) = (true, true);
+        }
+        let gain = |u: usize| {
+            let open = (0..graph.n_equations()).filter(|e| !used[*e]);
+            let open: Vec<usize> = open.filter(|e| graph.unknowns(*e).contains(&u)).collect();
+            let releases = |e: &&usize| {
+                let others: Vec<usize> =
+                    left(&known, **e).into_iter().filter(|other| *other != u).collect();
+                matches!(others[..], [other] if solvable(**e, other))
+            };
+            let never = !open.iter().any(|e| solvable(*e, u));
+            (open.iter().filter(releases).count(), never, open.len())
+        };
+        let undetermined = (0..graph.n_unknowns()).filter(|u| !known[*u]);
+        let Some(best) = undetermined.max_by_key(|u| (gain(*u), std::cmp::Reverse(*u))) else {
+            return chosen;
+        };
+        known[best] = true;
+        chosen.push(best);
     }
 }
 

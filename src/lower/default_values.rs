@@ -27,6 +27,17 @@ impl DefaultValues {
         defaults
     }
 
+    /// With start values for the other variables, zero where they have none.
+    pub(crate) fn with_starts(&self, dae: &Dae) -> DefaultValues {
+        let start = |variable: VarId| {
+            let start = dae.variable(variable).start.map_or(0.0, |start| self.of(dae, start));
+            if start.is_finite() { start } else { 0.0 }
+        };
+        let known = (0..dae.variables.len() as u32).map(VarId).map(|v| (v, self.get(v)));
+        let values = known.map(|(v, value)| if value.is_nan() { start(v) } else { value });
+        DefaultValues { values: values.collect() }
+    }
+
     /// The value of an expression, NaN where it has none, or contains a variable without one.
     pub(crate) fn of(&self, dae: &Dae, e: Expr) -> f64 {
         // A condition on what is not known would choose a branch.

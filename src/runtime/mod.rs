@@ -30,6 +30,7 @@ mod modes;
 mod multiple_roots;
 mod newton;
 mod noevent_relations;
+mod open_loops;
 mod profile;
 mod relations;
 mod sensitivity;

@@ -86,6 +86,7 @@ impl System {
     /// Marks the relations that do not hold; whether there are any.
     fn note_restless(&mut self, t: f64) -> bool {
         let mut any = false;
+        self.reschedule();
         for at in 0..self.program.relations.len() {
             let value = self.registers[self.program.relations[at].register as usize] != 0.0;
             if self.relation_value(at, value, t) != value {

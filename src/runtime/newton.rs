@@ -11,15 +11,16 @@
 //! ```
 //!
 //! A loop whose Jacobian is singular at an isolated solution is solved. Otherwise it need not have
-//! only this one: at the start the one nearest to the start values is taken, with a warning; later it
-//! is an error.
+//! only this one: at the start the one nearest to the start values is taken, with a warning. Later the
+//! one nearest to the values at hand is, with a warning as well, where equations that depend on each
+//! other leave unknowns open; at a turning point it is an error.
 
 use super::difference_quotients::quotient;
 use super::execution::run_loop;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
-use crate::bytecode::Register;
+use super::open_loops::is_open;
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
@@ -33,8 +34,6 @@ const DISPLACEMENT: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(super) struct LoopSolver {
     newton: Newton,
-    /// Where the entries of the Jacobian are that are not always zero, by columns.
-    entries: Arc<[Register]>,
     /// Made where Newton's method fails: large loops need much memory for it.
     least_squares: Option<Box<LeastSquares>>,
     continuation: Option<Box<Continuation>>,
@@ -54,17 +53,11 @@ pub(super) struct LoopSolver {
 }
 
 impl LoopSolver {
-    /// For a loop whose unknowns have these magnitudes; `zero` is the register of the constant 0.
-    pub(super) fn new(
-        nominal: Vec<f64>,
-        torn: &CompiledLoop,
-        zero: Option<Register>,
-    ) -> LoopSolver {
+    /// For a loop whose unknowns have these magnitudes.
+    pub(super) fn new(nominal: Vec<f64>, torn: &CompiledLoop) -> LoopSolver {
         let n = nominal.len();
-        let (pattern, entries) = nonzeros(n, &torn.jacobian, zero);
         LoopSolver {
-            newton: Newton::of_pattern(pattern),
-            entries: entries.into(),
+            newton: Newton::of_pattern(torn.pattern.clone()),
             least_squares: None,
             continuation: None,
             nominal: nominal.into(),
@@ -97,8 +90,7 @@ impl LoopSolver {
         }
         self.x.copy_from_slice(&self.guess);
         let nominal = self.nominal.clone();
-        let entries = self.entries.clone();
-        let mut equations = Evaluation { torn, r, entries, nominal, has_jacobian: false, count: 0 };
+        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false, count: 0 };
         let mut outcome = self.attempt(&mut equations, initial);
         if initial {
             outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
@@ -187,6 +179,12 @@ impl LoopSolver {
                     self.x.copy_from_slice(&self.start);
                     return Ok(());
                 }
+                // A pivot that is a rounding error makes steps without end of a singular Jacobian.
+                Err(_) if !initial && is_open(equations, &self.start, &self.nominal) => {
+                    self.is_singular = true;
+                    self.x.copy_from_slice(&self.start);
+                    return Ok(());
+                }
                 Err(NewtonFailure::Singular) if !initial => {
                     return Err(Failure::Singular { block });
                 }
@@ -210,27 +208,10 @@ impl LoopSolver {
     }
 }
 
-/// The pattern of a Jacobian given by rows, and where its entries are, by columns.
-fn nonzeros(n: usize, jacobian: &[Register], zero: Option<Register>) -> (Pattern, Vec<Register>) {
-    let (mut column_starts, mut rows, mut entries) = (vec![0], Vec::new(), Vec::new());
-    for column in 0..n {
-        for row in 0..n {
-            let register = jacobian[row * n + column];
-            if Some(register) != zero {
-                rows.push(row);
-                entries.push(register);
-            }
-        }
-        column_starts.push(rows.len());
-    }
-    (Pattern { n, column_starts, rows }, entries)
-}
-
 /// A loop evaluated in the registers.
 struct Evaluation<'a> {
     torn: &'a CompiledLoop,
     r: &'a mut Memory,
-    entries: Arc<[Register]>,
     nominal: Arc<[f64]>,
     /// Whether the registers hold the Jacobian at the unknowns that they hold.
     has_jacobian: bool,
@@ -292,9 +273,12 @@ impl Equations for Evaluation<'_> {
             return self.difference_jacobian(x, out);
         }
         let n = x.len();
-        for (at, register) in self.torn.jacobian.iter().enumerate() {
-            let (row, column) = (at / n, at % n);
-            out[column * n + row] = self.r[*register as usize];
+        out.fill(0.0);
+        let pattern = &self.torn.pattern;
+        for column in 0..n {
+            for at in pattern.column(column) {
+                out[column * n + pattern.rows[at]] = self.r[self.torn.jacobian[at] as usize];
+            }
         }
         Ok(())
     }
@@ -307,7 +291,7 @@ impl Equations for Evaluation<'_> {
             gather(&all, pattern, out);
             return Ok(());
         }
-        for (out, register) in out.iter_mut().zip(self.entries.iter()) {
+        for (out, register) in out.iter_mut().zip(&self.torn.jacobian) {
             *out = self.r[*register as usize];
         }
         Ok(())

@@ -79,6 +79,7 @@ impl System {
         let program = self.program.clone();
         run(&program.registers.hoisted.tape, &mut self.registers)?;
         run(&program.time_rests, &mut self.registers)?;
+        self.reschedule();
         for at in known..program.relations.len() {
             let holds = self.relation_value(at, false, t);
             let register = program.relations[at].register as usize;

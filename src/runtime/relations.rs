@@ -17,7 +17,7 @@
 //! that decides which equations hold, and that they bring to its very limit (a friction element
 //! that just begins to slide), would depend on rounding errors and never come to rest.
 
-use super::execution::read;
+use super::execution::{read, run};
 use super::instants::{Change, same_time};
 use super::system::System;
 use crate::sim::Failure;
@@ -47,6 +47,7 @@ impl System {
     /// Evaluates the relations at the values of the variables; whether one changed.
     pub(super) fn update_relations(&mut self, t: f64, change: Change) -> bool {
         let program = self.program.clone();
+        self.reschedule();
         let mut changed = self.update_roundings(t);
         for at in 0..program.relations.len() {
             if changed && change == Change::First {
@@ -64,6 +65,19 @@ impl System {
             }
         }
         changed
+    }
+
+    /// The times of relations on time whose other terms change at events, with their values at hand.
+    pub(super) fn reschedule(&mut self) {
+        let program = self.program.clone();
+        let Some(rests) = &program.rescheduled_rests else { return };
+        let is_known = run(rests, &mut self.registers).is_ok();
+        for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
+            if let (Some((factor, rest)), true) = (relation.time, relation.is_rescheduled) {
+                let time = -self.registers[rest as usize] / factor;
+                *switch = (is_known && time.is_finite()).then_some(time);
+            }
+        }
     }
 
     pub(super) fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {

@@ -101,7 +101,10 @@ impl System {
                 self.solve(Stage::Continuous)?;
                 own.is_smooth = self.time_of_crossing(crossing, &code, own.span)?;
             }
-            Some(None) => own.is_smooth = self.time_of_switch(t, &code),
+            Some(None) => {
+                run(&code.rescheduled, &mut self.registers)?;
+                own.is_smooth = self.time_of_switch(t, &code);
+            }
             None => {}
         }
         if code.time.iter().all(|time| self.registers[*time as usize] == 0.0) {

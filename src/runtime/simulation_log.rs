@@ -60,6 +60,8 @@ pub(super) enum OpenLoop {
     Linear { system: u32, places: Vec<usize> },
     /// A torn loop of the initial system.
     Initial { block: u32 },
+    /// Another torn loop; those of events are numbered behind those between events.
+    Later { block: u32 },
 }
 
 impl SimulationLog {

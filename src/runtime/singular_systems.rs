@@ -4,7 +4,7 @@
 use super::simulation_log::OpenLoop;
 use super::system::System;
 use crate::causalize::{Block, LinearLoop, Loop};
-use crate::codegen::code::Step;
+use crate::codegen::code::{CompiledLoop, Step};
 use crate::codegen::program::Program;
 use crate::source::Span;
 use crate::symbolic::{Node, VarId};
@@ -27,8 +27,23 @@ pub struct Undetermined {
     pub span: Span,
 }
 
+impl Undetermined {
+    /// Whether it names the same unknowns, in any order.
+    fn names_the_same(&self, other: &Undetermined) -> bool {
+        let same = self.names.len() == other.names.len() && self.omitted == other.omitted;
+        same && self.names.iter().all(|name| other.names.contains(name))
+    }
+}
+
+fn loops_of(steps: &[Step]) -> impl Iterator<Item = &CompiledLoop> {
+    steps.iter().filter_map(|step| match step {
+        Step::Solve(torn) => Some(torn),
+        Step::Run(_) => None,
+    })
+}
+
 impl System {
-    /// Notes linear systems that had many solutions in the evaluation before.
+    /// Notes linear systems and torn loops that had many solutions in the evaluation before.
     pub(super) fn note_open(&mut self, t: f64) {
         let Some(log) = &mut self.log else { return };
         for (system, solved) in (0..).zip(&self.registers.systems) {
@@ -37,17 +52,20 @@ impl System {
                 log.note_open(t, OpenLoop::Linear { system, places });
             }
         }
+        let between = loops_of(&self.program.steps).zip(&self.solvers);
+        let at_events = loops_of(&self.program.events.steps).zip(&self.event_solvers);
+        for (torn, solver) in between.chain(at_events) {
+            if solver.is_singular {
+                log.note_open(t, OpenLoop::Later { block: torn.block });
+            }
+        }
     }
 
     /// As [`System::note_open`], for the initial system with its torn loops.
     pub(super) fn note_open_at_start(&mut self, t: f64) {
         self.note_open(t);
         let Some(log) = &mut self.log else { return };
-        let loops = self.program.initial_steps.iter().filter_map(|step| match step {
-            Step::Solve(torn) => Some(torn),
-            Step::Run(_) => None,
-        });
-        for (torn, solver) in loops.zip(&self.initial_solvers) {
+        for (torn, solver) in loops_of(&self.program.initial_steps).zip(&self.initial_solvers) {
             if solver.is_singular {
                 log.note_open(t, OpenLoop::Initial { block: torn.block });
             }
@@ -63,10 +81,18 @@ impl System {
                 OpenLoop::Linear { system, places } => {
                     self.program.open_linear(*system, places, open.time)
                 }
-                OpenLoop::Initial { block } => self.program.open_initial(*block, open.time),
+                OpenLoop::Initial { block } => {
+                    let blocks = &self.program.sorted.initial_blocks;
+                    self.program.open_loop(blocks.get(*block as usize), open.time)
+                }
+                OpenLoop::Later { block } => {
+                    let sorted = &self.program.sorted;
+                    let mut blocks = sorted.blocks.iter().chain(&sorted.event_blocks);
+                    self.program.open_loop(blocks.nth(*block as usize), open.time)
+                }
             };
             // The initial system and the others may have the same loop.
-            found.extend(of.filter(|of| !found.iter().any(|known| known.names == of.names)));
+            found.extend(of.filter(|of| !found.iter().any(|known| known.names_the_same(of))));
         }
         found
     }
@@ -123,12 +149,8 @@ impl Program {
         }
     }
 
-    fn open_initial(&self, block: u32, time: f64) -> Option<Undetermined> {
-        let Some(Block::Loop(Loop { iteration, residuals, .. })) =
-            self.sorted.initial_blocks.get(block as usize)
-        else {
-            return None;
-        };
+    fn open_loop(&self, block: Option<&Block>, time: f64) -> Option<Undetermined> {
+        let Some(Block::Loop(Loop { iteration, residuals, .. })) = block else { return None };
         let names = iteration.iter().map(|v| format!("`{}`", self.sorted.dae.variable(*v).name));
         Some(self.undetermined(time, names.collect(), residuals.first()?.1, false))
     }

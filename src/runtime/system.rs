@@ -347,6 +347,7 @@ impl System {
         for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
             *switch = relation
                 .time
+                .filter(|_| !relation.is_rescheduled)
                 .map(|(factor, rest)| -self.registers[rest as usize] / factor)
                 .filter(|time| time.is_finite());
         }
@@ -381,19 +382,20 @@ impl System {
             Step::Solve(torn) => Some(torn),
             Step::Run(_) => None,
         });
-        let zero = self.program.registers.zero();
         loops
             .map(|torn| {
                 let unknowns = torn.unknowns.iter();
                 let nominal = unknowns.map(|u| self.nominal_of(VarId(*u))).collect();
-                LoopSolver::new(nominal, torn, zero)
+                LoopSolver::new(nominal, torn)
             })
             .collect()
     }
 
     fn nominal_of(&mut self, variable: VarId) -> f64 {
         let program = self.program.clone();
-        let value = match program.nominals.iter().find(|(v, ..)| *v == variable) {
+        // They stand in the order of the variables.
+        let known = program.nominals.binary_search_by_key(&variable, |(v, ..)| *v);
+        let value = match known.ok().map(|at| &program.nominals[at]) {
             Some((_, tape, register)) => match tape.run(&mut self.registers) {
                 Ok(()) => self.registers[*register as usize],
                 Err(_) => 1.0,
@@ -602,6 +604,7 @@ impl DaeSystem for System {
         self.start_sensitivities()?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
+        self.reschedule();
         self.unload(y);
         self.assert_all()?;
         self.log_assertions(t)
@@ -653,6 +656,8 @@ impl DaeSystem for System {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
         self.leave_event(outcome)?;
+        self.note_open(t);
+        self.reschedule();
         self.unload(y);
         Ok(outcome)
     }

@@ -5,7 +5,7 @@ use gapilib::codegen::{Access, Program};
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::{FlatModel, Library, flatten};
 use gapilib::runtime::System;
-use gapilib::sim::{OutputGrid, Settings, SimError, Simulator, Trajectory};
+use gapilib::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Trajectory};
 use gapilib::source::SourceMap;
 use gapilib::syntax::parse_stored_definition;
 use std::sync::Arc;
@@ -147,6 +147,30 @@ fn a_sampled_controller_follows_its_difference_equation() {
     assert_eq!(run.last("n"), 21.0);
     let times: Vec<f64> = (1..=20).map(|n| n as f64 * 0.1).collect();
     assert_eq!(run.jumps("n"), times);
+}
+
+/// `time >= pre(next)` is a time event where what it is compared with changes at events only.
+#[test]
+fn what_events_schedule_happens_at_the_exact_times() {
+    let text = "model Scheduled Real x(start = 0, fixed = true);
+        discrete Real next(start = 0.1, fixed = true); Integer n(start = 0, fixed = true);
+        discrete Real at(start = 0, fixed = true); Boolean late;
+        equation der(x) = cos(20*time); late = time > next - 0.01;
+          when time >= pre(next) then
+            n = pre(n) + 1; at = time; next = pre(next) + 0.1 + 0.01*n;
+          end when;
+        end Scheduled;";
+    let run = simulated(text, 2.0);
+    let (mut next, mut times) = (0.1, Vec::new());
+    while next < 2.0 {
+        times.push(next);
+        next = next + 0.1 + 0.01 * times.len() as f64;
+    }
+    assert_eq!(run.jumps("n"), times);
+    assert_eq!(run.last("at"), *times.last().unwrap());
+    assert_eq!(run.system.n_crossings(), 0);
+    let began: Vec<f64> = times.iter().map(|time| time - 0.01).collect();
+    all_near(&run.jumps("late").into_iter().step_by(2).collect::<Vec<_>>()[..], &began, 1e-15);
 }
 
 #[test]

@@ -174,3 +174,61 @@ fn nodes_may_have_any_number_of_connectors() {
     let sum: f64 = (1..=900).map(|i| 1.0 / f64::from(i)).sum();
     Run::of(text, 1.0).follows("source.p.i", 1e-10, |t| -(2.0 + t) * sum);
 }
+
+/// A chain of neighbours whose assignments, from one to the next, would multiply rounding errors by
+/// 2.6 at every step. The exact solution is cos(i) (1 + time).
+fn chain(cubic: &str) -> String {
+    format!(
+        "model Chain parameter Integer n = 120; Real z[n + 2];
+        function c input Integer i; output Real y; algorithm y := cos(i); end c;
+        equation
+          z[1] = 1 + time;
+          for i in 2:n + 1 loop
+            3*z[i] - z[i - 1] - z[i + 1] {cubic} = (3 - 2*cos(1))*c(i - 1)*(1 + time);
+          end for;
+          z[n + 2] = c(n + 1)*(1 + time);
+        end Chain;"
+    )
+}
+
+#[test]
+fn errors_do_not_grow_along_the_assignments_of_a_loop() {
+    let run = Run::of(&chain(""), 1.0);
+    for i in [2, 3, 40, 61, 100, 120, 121] {
+        let cosine = f64::from(i - 1).cos();
+        run.follows(&format!("z[{i}]"), 1e-9, |t| cosine * (1.0 + t));
+    }
+    let (linear, torn) = loops(&run.program);
+    assert!(torn.is_empty() && linear.iter().all(|n| (2..30).contains(n)), "{linear:?} {torn:?}");
+}
+
+#[test]
+fn errors_do_not_grow_along_the_assignments_of_a_nonlinear_loop() {
+    let run = Run::of(&chain("+ 0.1*(tanh(z[i]) - tanh(c(i - 1)*(1 + time)))"), 1.0);
+    for i in [2, 3, 40, 61, 100, 120, 121] {
+        let cosine = f64::from(i - 1).cos();
+        run.follows(&format!("z[{i}]"), 1e-7, |t| cosine * (1.0 + t));
+    }
+    let (_, torn) = loops(&run.program);
+    assert!(torn.iter().all(|n| (2..30).contains(n)), "{torn:?}");
+}
+
+#[test]
+fn a_program_grows_with_the_entries_of_a_loop_not_with_their_square() {
+    // In each equation all unknowns are squares: none can be solved for, all are iterated.
+    let size = |n: usize| {
+        let text = format!(
+            "model Squares Real z[{n}](each start = 1);
+            equation
+              z[1]^2 + z[2]^2 + z[1]*z[2] = 3;
+              for i in 2:{n} - 1 loop z[i]^2 + z[i - 1]^2 + z[i + 1]^2 = 3 + time; end for;
+              z[{n}]^2 + z[{n} - 1]^2 = 2;
+            end Squares;"
+        );
+        let program = compiled(&text);
+        assert_eq!(loops(&program), (vec![], vec![n]));
+        program.to_bytes().expect("a program without external functions").len()
+    };
+    let (small, large) = (size(100), size(400));
+    assert!(large < 5 * small, "{small} and {large} bytes");
+}

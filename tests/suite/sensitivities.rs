@@ -206,6 +206,22 @@ fn switches_at_times_that_are_parameters() {
     check(text, &["t0", "a"], &["x"], &[0.2, 0.8, 2.0], &[0.55, 1.6], 1e-5);
 }
 
+/// x grows by n after k periods: x = sum of (t - k p), so that dx/dp is the negative sum of k.
+#[test]
+fn switches_at_times_that_events_schedule() {
+    let text = "model M parameter Real p = 0.3; discrete Real next(start = p, fixed = true); \
+                Integer n(start = 0, fixed = true); Real x(start = 0, fixed = true); \
+                equation der(x) = n; when time >= pre(next) then n = pre(n) + 1; \
+                next = pre(next) + p; end when; end M;";
+    let mut simulator = simulator(text, &["p"], &["x"], &[0.4, 1.0, 2.0], 1e-10);
+    let (values, derivatives) = sensitivities(&mut simulator, &[0.3], 3);
+    for (at, (t, n)) in [(0.4f64, 1u32), (1.0, 3), (2.0, 6)].into_iter().enumerate() {
+        let exact: f64 = (1..=n).map(|k| t - f64::from(k) * 0.3).sum();
+        near(values[at], exact, 1e-9);
+        near(derivatives[at], -f64::from((1..=n).sum::<u32>()), 1e-9);
+    }
+}
+
 #[test]
 fn switches_at_states_and_discrete_variables() {
     let text = "model M parameter Real k = 1; parameter Real limit = 0.5; parameter Real a = 2; \

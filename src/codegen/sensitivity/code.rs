@@ -1,7 +1,7 @@
 //! The code that computes sensitivities: compiled once for a program, the parameters and the
 //! variables asked for, and shared by all systems.
 
-use super::super::event_code::linear_in_time;
+use super::super::event_code::{linear_in_time, scheduled_in_time};
 use super::super::hoist::Hoisting;
 use super::super::instruction::Register;
 use super::super::jacobian::Forward;
@@ -51,6 +51,8 @@ pub struct SensitivityCode {
     pub(crate) switches: OfTimes,
     /// The same for roundings of time.
     pub(crate) roundings: OfTimes,
+    /// Derivatives of the switches whose times change at events.
+    pub(crate) rescheduled: Tape,
     /// Derivatives of the initial values, behind the initial system.
     pub(crate) initial: Tape,
     /// Derivatives of all that an event sets, behind its equations.
@@ -195,7 +197,8 @@ impl<'a> Compiler<'a> {
     }
 
     fn compile(mut self, observed: &[Expr]) -> Result<SensitivityCode, String> {
-        let (constants, switches, roundings) = self.constants();
+        let (constants, mut switches, roundings) = self.constants();
+        let rescheduled = self.rescheduled(&mut switches);
         self.check_samples()?;
         let sorted = &self.program.sorted;
         let initial = self.stored(&sorted.initial_blocks, &[Seed::Parameters], &[]).0;
@@ -220,6 +223,7 @@ impl<'a> Compiler<'a> {
             constants,
             switches,
             roundings,
+            rescheduled,
             initial,
             event,
             reinits,
@@ -302,6 +306,34 @@ impl<'a> Compiler<'a> {
         let tape = self.tape(&made, &stores);
         let roundings = of_times.split_off(sorted.dae.relations.len());
         (tape, of_times, roundings)
+    }
+
+    /// Derivatives of the times of relations that events schedule, from those of what these set.
+    fn rescheduled(&mut self, switches: &mut OfTimes) -> Tape {
+        let sorted = &self.program.sorted;
+        let mut times = Vec::new();
+        for (at, relation) in sorted.dae.relations.iter().enumerate() {
+            if switches[at].is_none() {
+                let difference = self.pool.sub(relation.left, relation.right);
+                let time = scheduled_in_time(&mut self.pool, sorted, difference);
+                times.extend(time.map(|time| (at, time)));
+            }
+        }
+        let seeds = self.seeds(&[Seed::Parameters, Seed::Kept]);
+        let mut forward = seeded(&mut self.pool, &mut self.next, seeds);
+        let mut rows = Vec::new();
+        for (at, (factor, rest)) in times {
+            let mut row = forward.row(rest);
+            let factor = forward.pool.constant(-factor);
+            row.values_mut().for_each(|value| *value = forward.pool.div(*value, factor));
+            rows.push((at, row));
+        }
+        let (mut stores, columns) = (Vec::new(), self.parameters.len());
+        for (at, row) in rows {
+            switches[at] = Some(self.registers_for(&row, columns, &mut stores));
+        }
+        self.next = self.next.max(self.registers.len() as u32);
+        self.tape(&[], &stores)
     }
 
     /// New registers for derivatives, zeros included.

@@ -1,7 +1,7 @@
 //! A model as it is kept.
 
 use super::reads::{Answer, Digest, Question, Watched, ask};
-use crate::codegen::Program;
+use crate::codegen::{Program, bytes_of};
 use crate::diag::Diagnostic;
 use crate::name::Ident;
 use crate::script::Session;
@@ -42,7 +42,7 @@ impl Entry {
     ) -> Option<Vec<u8>> {
         let (content, sources) = noting_texts(|| {
             let program = model.program.to_bytes()?;
-            postcard::to_allocvec(&(&model.declarations, program, warnings)).ok()
+            bytes_of(&(&model.declarations, program, warnings))
         });
         let texts = sources.into_iter().map(|source| text_of(session, source));
         let entry = Entry {
@@ -52,7 +52,7 @@ impl Entry {
             texts: texts.collect::<Option<_>>()?,
             content: content?,
         };
-        postcard::to_allocvec(&entry).ok()
+        bytes_of(&entry)
     }
 
     pub(super) fn read(bytes: &[u8]) -> Option<Entry> {
