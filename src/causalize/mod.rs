@@ -35,7 +35,8 @@ mod parameter_order;
 mod passes;
 mod reinit;
 mod report;
-mod used_variables;
+mod singularity;
+mod state_select;
 mod zero_coefficients;
 mod zero_derivatives;
 
