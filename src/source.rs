@@ -1,4 +1,4 @@
-//! Source texts and places in them.
+//! Modelica source and places in it.
 //!
 //! A [`Span`] is a pair of byte offsets into one text of a [`SourceMap`]; line and column are
 //! computed only when somebody looks at them.
@@ -16,49 +16,49 @@ impl SourceId {
 }
 
 thread_local! {
-    /// The texts that the numbers in a file stand for, while it is read or written.
-    static TEXTS: RefCell<Vec<SourceId>> = const { RefCell::new(Vec::new()) };
+    /// The sources that the numbers in a file stand for, while it is read or written.
+    static SOURCES: RefCell<Vec<SourceId>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Writes something with places to a file: the result with the texts that the numbers of texts in
+/// Writes something with places to a file: the result with the sources that the numbers of sources in
 /// the file stand for, by their positions.
-pub fn noting_texts<T>(write: impl FnOnce() -> T) -> (T, Vec<SourceId>) {
-    let former = TEXTS.take();
+pub fn noting_sources<T>(write: impl FnOnce() -> T) -> (T, Vec<SourceId>) {
+    let former = SOURCES.take();
     let result = write();
-    (result, TEXTS.replace(former))
+    (result, SOURCES.replace(former))
 }
 
-/// Reads something with places from a file: the numbers of texts in it are positions in `texts`.
-pub fn with_texts<T>(texts: Vec<SourceId>, read: impl FnOnce() -> T) -> T {
-    let former = TEXTS.replace(texts);
+/// Reads something with places from a file: the numbers of sources in it are positions in `sources`.
+pub fn with_sources<T>(sources: Vec<SourceId>, read: impl FnOnce() -> T) -> T {
+    let former = SOURCES.replace(sources);
     let result = read();
-    TEXTS.set(former);
+    SOURCES.set(former);
     result
 }
 
-/// As a position: see [`noting_texts`].
+/// As a position: see [`noting_sources`].
 impl serde::Serialize for SourceId {
     fn serialize<S: serde::Serializer>(&self, target: S) -> Result<S::Ok, S::Error> {
         if *self == SourceId::NONE {
             return u32::MAX.serialize(target);
         }
-        let position = TEXTS.with_borrow_mut(|texts| {
-            let known = texts.iter().rposition(|text| text == self);
+        let position = SOURCES.with_borrow_mut(|sources| {
+            let known = sources.iter().rposition(|source| source == self);
             known.unwrap_or_else(|| {
-                texts.push(*self);
-                texts.len() - 1
+                sources.push(*self);
+                sources.len() - 1
             })
         });
         (position as u32).serialize(target)
     }
 }
 
-/// As the number of the text in this process: see [`with_texts`]. A text that is not among them has
+/// As the number of the text in this process: see [`with_sources`]. A text that is not among them has
 /// no places.
 impl<'de> serde::Deserialize<'de> for SourceId {
     fn deserialize<D: serde::Deserializer<'de>>(source: D) -> Result<SourceId, D::Error> {
         let number = u32::deserialize(source)?;
-        let known = TEXTS.with_borrow(|texts| texts.get(number as usize).copied());
+        let known = SOURCES.with_borrow(|sources| sources.get(number as usize).copied());
         Ok(known.unwrap_or(SourceId::NONE))
     }
 }
@@ -120,7 +120,7 @@ pub struct Source {
     line_starts: Arc<[u32]>,
 }
 
-/// All texts read so far. Clones share them, so that a text can be added where somebody else only
+/// All sources read so far. Clones share them, so that a text can be added where somebody else only
 /// reads.
 #[derive(Debug, Clone, Default)]
 pub struct SourceMap {

@@ -2,19 +2,15 @@
 
 use super::causalized::{Assignment, Block, Loop};
 use super::linear_loops::{is_safe, solve_linear};
+use super::singularity::report;
 use super::tearing_growth::limit_growth;
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
-use crate::lower::errors::{NOT_SUPPORTED, SINGULAR_SYSTEM, UNBALANCED_MODEL};
+use crate::graph::{Bipartite, blocks, match_equations, tear};
+use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::{Dae, Equation, Kind};
-use crate::source::Span;
 use crate::symbolic::{Expr, Solution, VarId, solve};
-use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
-
-/// The most instances named for an equation.
-const MAX_OWNERS: usize = 4;
 
 /// Sorts equations for unknowns.
 pub(super) fn sort_blocks(
@@ -157,79 +153,4 @@ fn explicit_where(
     }
     let solution = solve(pool, equation.left, equation.right, variable)?;
     is_allowed(dae, &solution).then_some(solution.value)
-}
-
-/// Where equations are written and, where instances share the place, whose they are.
-fn places(dae: &Dae, equations: impl Iterator<Item = Equation>) -> IndexMap<Span, String> {
-    let mut owners: IndexMap<Span, IndexSet<&str>> = IndexMap::new();
-    for equation in equations {
-        let owners = owners.entry(equation.span).or_default();
-        let path = equation.instance.map_or("", |of| &*dae.instances[of.0 as usize]);
-        owners.extend((!path.is_empty()).then_some(path));
-    }
-    let words = |owners: IndexSet<&str>| match owners.len() {
-        0 => String::new(),
-        n => {
-            let shown: Vec<String> =
-                owners.iter().take(MAX_OWNERS).map(|path| format!("`{path}`")).collect();
-            let more = if n > MAX_OWNERS { ", …" } else { "" };
-            format!(", in {}{more}", shown.join(", "))
-        }
-    };
-    owners.into_iter().map(|(span, owners)| (span, words(owners))).collect()
-}
-
-/// Names the variables and equations that do not fit.
-pub(super) fn report(
-    dae: &Dae,
-    system: &str,
-    equations: &[Equation],
-    unknowns: &[VarId],
-    graph: &Bipartite,
-    matching: &Matching,
-) -> Diagnostic {
-    let parts = dulmage_mendelsohn(graph, matching);
-    let names = |list: &[usize]| -> String {
-        let shown: Vec<String> =
-            list.iter().take(6).map(|u| format!("`{}`", dae.variable(unknowns[*u]).name)).collect();
-        let more = if list.len() > 6 { ", …" } else { "" };
-        format!("{}{more}", shown.join(", "))
-    };
-    let balanced = equations.len() == unknowns.len();
-    let mut fault = match balanced {
-        true => fault!(SINGULAR_SYSTEM, "the equations of {system} do not determine its variables"),
-        false => fault!(
-            UNBALANCED_MODEL,
-            "{system} has {} unknowns but {} equations",
-            unknowns.len(),
-            equations.len()
-        ),
-    };
-    if !parts.under_unknowns.is_empty() {
-        fault =
-            fault.help(format!("add an equation that determines {}", names(&parts.under_unknowns)));
-    }
-    if !parts.over_equations.is_empty() {
-        fault = fault.help(match parts.over_unknowns.is_empty() {
-            true => "remove one of the marked equations: it contains no unknown".to_owned(),
-            false => format!(
-                "remove one of the marked equations: they determine {} more than once",
-                names(&parts.over_unknowns)
-            ),
-        });
-    }
-    let undetermined = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
-    let mut places = places(dae, parts.over_equations.iter().map(|e| equations[*e])).into_iter();
-    let (first, text) = match undetermined {
-        Some(span) => (span, "no equation determines this".to_owned()),
-        None => {
-            let (span, whose) = places.next().unwrap_or((Span::NONE, String::new()));
-            (span, format!("one equation too many{whose}"))
-        }
-    };
-    let mut diagnostic = fault.labelled(first, text);
-    for (span, whose) in places.take(6) {
-        diagnostic = diagnostic.related(span, format!("one of the redundant equations{whose}"));
-    }
-    diagnostic
 }

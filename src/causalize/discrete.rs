@@ -2,13 +2,12 @@
 //! are executed at events.
 
 use super::causalized::Alias;
-use super::used_variables::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
 use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Kind, Variable, is_real};
+use crate::lower::{Dae, Equation, Kind, Variable, is_real, used_variables};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
 

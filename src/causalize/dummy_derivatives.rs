@@ -17,9 +17,9 @@
 //!
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993).
 
-use super::blt;
 use super::causalized::Selection;
 use super::dynamic_states::{Candidate, declare_selection};
+use super::{blt, singularity};
 use crate::diag::Diagnostic;
 use crate::graph::{Bipartite, Matching, blocks, match_equations};
 use crate::lower::{Dae, DefaultValues, Kind, StateSelect};
@@ -295,7 +295,7 @@ impl Level<'_> {
             self.equations.iter().map(|e| dae.equations[self.chains.equations[*e]]).collect();
         let unknowns: Vec<VarId> = columns.iter().map(|c| self.chains.variables[*c]).collect();
         let graph = blt::incidence(dae, &equations, &unknowns);
-        Err(blt::report(
+        Err(singularity::report(
             dae,
             &format!("`{}`", dae.name),
             &equations,

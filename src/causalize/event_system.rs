@@ -3,8 +3,9 @@
 //! A loop that runs through Booleans, Integers or enumerations is cut at these: what it solves for
 //! takes their values from the pass before, and the passes are repeated until nothing changes.
 
-use super::blt::{explicit, incidence, report, solve_block};
+use super::blt::{explicit, incidence, solve_block};
 use super::causalized::{Assignment, Block};
+use super::singularity::report;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;

@@ -10,9 +10,9 @@
 //!
 //! Reference: [Pantelides 1988](crate::bibliography#pantelides-1988).
 
-use super::blt;
 use super::causalized::Alias;
 use super::dummy_derivatives::{Chains, ChosenStates, choose_states};
+use super::{blt, singularity};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -269,7 +269,7 @@ impl Continuous {
         let row = |e: usize| full.unknowns(e).iter().map(|v| origin[*v]).collect::<Vec<_>>();
         let graph = Bipartite::new(unknowns.len(), (0..full.n_equations()).map(row));
         let equations: Vec<Equation> = self.equations.iter().map(|e| dae.equations[*e]).collect();
-        blt::report(
+        singularity::report(
             dae,
             &format!("`{}`", dae.name),
             &equations,

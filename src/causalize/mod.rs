@@ -35,8 +35,9 @@ mod parameter_order;
 mod passes;
 mod reinit;
 mod report;
+mod singularity;
+mod state_select;
 mod tearing_growth;
-mod used_variables;
 mod zero_coefficients;
 mod zero_derivatives;
 

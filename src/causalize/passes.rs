@@ -8,7 +8,7 @@ use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
 use super::{
     alias_elimination, blt, discrete, homotopy, index_reduction, parameter_order, reinit, report,
-    zero_coefficients, zero_derivatives,
+    state_select, zero_coefficients, zero_derivatives,
 };
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
@@ -206,7 +206,8 @@ impl<'a> Causalization<'a> {
             self.sort_reduced()?;
         }
         self.before = Default::default();
-        Ok(())
+        let strict = self.flat.strict;
+        state_select::check_state_select(&mut self.dae, &self.aliases, &self.chosen, strict)
     }
 
     fn sort_reduced(&mut self) -> Result<(), Diagnostic> {

@@ -8,8 +8,7 @@
 //! A coefficient is zero if the equations of its variables say so, whatever parameters are set to.
 
 use super::causalized::Alias;
-use super::used_variables::used_variables;
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, Kind, used_variables};
 use crate::symbolic::{Expr, Node, VarId, substitute};
 use rustc_hash::{FxHashMap, FxHashSet};
 

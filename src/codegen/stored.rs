@@ -16,7 +16,7 @@ impl Program {
     }
 
     /// The program that became these bytes by [`Program::to_bytes`] of this version. Places are
-    /// those of [`with_texts`](crate::source::with_texts).
+    /// those of [`with_sources`](crate::source::with_sources).
     pub fn from_bytes(bytes: &[u8]) -> Option<Arc<Program>> {
         let mut program: Program = postcard::from_bytes(bytes).ok()?;
         program.registers.use_functions(&program.sorted.dae.functions);

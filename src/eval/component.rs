@@ -72,6 +72,13 @@ impl Evaluator<'_> {
     ) -> Result<Variable, Diagnostic> {
         let (dims, given) = self.dimensions_with(component, given)?;
         let declared = Declared { value_type: component.value_type.clone(), dims };
+        if given.is_none()
+            && !is_input
+            && is_given_in_part(component)
+            && let Some(own) = self.fields_given(component)?
+        {
+            return self.partly_given(declared, own);
+        }
         let (value, span) = match (given, &component.binding) {
             (Some(value), _) => (Some(value), self.scope.call_span),
             (None, Some(binding)) => (Some(self.argument(component, binding)?), binding.span),
@@ -119,6 +126,20 @@ impl Evaluator<'_> {
             return Ok(Variable::partly_assigned(value, shadow, declared));
         }
         Variable::without_value(declared).at(span)
+    }
+
+    /// A record of which modifiers give some components.
+    fn partly_given(
+        &mut self,
+        declared: Declared,
+        own: Vec<(Ident, Given)>,
+    ) -> Result<Variable, Diagnostic> {
+        let ValueType::Record(name, components) = &declared.value_type else {
+            return self.unassigned(declared);
+        };
+        let span = self.scope.call_span;
+        let Storage { value, shadow } = self.record_with(name, components, own, span)?;
+        Ok(Variable::partly_assigned(value, shadow, declared))
     }
 
     /// A record whose components have the values given or else those of their bindings.
@@ -185,4 +206,16 @@ impl Evaluator<'_> {
             .at(expression.span)),
         }
     }
+}
+
+/// Whether the modifiers of a record leave a component without a value: `R r(n = 2)`.
+fn is_given_in_part(component: &FunctionComponent) -> bool {
+    let (ValueType::Record(_, fields), Some(binding)) = (&component.value_type, &component.binding)
+    else {
+        return false;
+    };
+    let ExpressionKind::Call { arguments, .. } = &binding.kind else { return false };
+    let gives = |name: Ident| arguments.named.iter().any(|argument| argument.name.node == name);
+    arguments.positional.is_empty()
+        && fields.values().any(|field| field.binding.is_none() && !gives(field.name))
 }

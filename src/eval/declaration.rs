@@ -98,7 +98,7 @@ impl Evaluator<'_> {
 
     /// The components that the declaration of a record gives it itself, so that what depends on
     /// others follows them; `None` where it is not declared by its components.
-    fn fields_given(
+    pub(super) fn fields_given(
         &mut self,
         component: &FunctionComponent,
     ) -> Result<Option<Vec<(Ident, Given)>>, Diagnostic> {

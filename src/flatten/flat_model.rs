@@ -43,6 +43,8 @@ pub struct FlatModel {
     pub resources: Resources,
     /// The `experiment` annotation.
     pub experiment: Experiment,
+    /// Whether what the specification forbids is an error though libraries do it.
+    pub strict: bool,
     /// Where the class is defined.
     pub span: Option<Span>,
 }
@@ -88,6 +90,8 @@ pub struct Variable {
     pub variability: Variability,
     /// `input` or `output`, of top-level components only.
     pub causality: Option<CausalityPrefix>,
+    /// Whether it is an input of its instance, or of a connector of it.
+    pub is_input: bool,
     /// `final`, here or on a component that holds it, or on its binding.
     pub is_final: bool,
     /// Whether it is protected or lies in a protected component.

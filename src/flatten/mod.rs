@@ -154,6 +154,7 @@ fn flattened(
         description: described(&text.definition),
         experiment: experiment(&text.definition),
         resources: library.resources().clone(),
+        strict: library.is_strict(),
         span: Some(text.span()),
         ..FlatModel::default()
     };

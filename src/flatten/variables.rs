@@ -93,7 +93,7 @@ impl Instantiation<'_> {
             let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
             // `each` is about the array that holds the component, whose own value may be an array.
             let each = each && self.types().rank_of(&binding) != Some(variable.dims.len());
-            self.types().check_value(&binding, &variable, each)?;
+            self.check_value(&binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }
         for name in ATTRIBUTES {
@@ -107,6 +107,28 @@ impl Instantiation<'_> {
             }
         }
         Ok(variable)
+    }
+
+    /// Refuses a value that does not fit; an Integer as the ordinal of an enumeration, which old
+    /// libraries store in Integer parameters, is a warning.
+    fn check_value(
+        &mut self,
+        value: &Expression,
+        variable: &Variable,
+        each: bool,
+    ) -> Result<(), Diagnostic> {
+        let types = self.types();
+        let is_ordinal = matches!(variable.base, BaseType::Enumeration(_))
+            && variable.dims.is_empty()
+            && types.rank_of(value) == Some(0)
+            && types.type_of(value) == Some(BaseType::Integer);
+        match types.check_value(value, variable, each) {
+            Err(error) if is_ordinal && !self.classes.library.is_strict() => {
+                self.warnings.push(error.warning());
+                Ok(())
+            }
+            result => result,
+        }
     }
 
     /// The value of an attribute that decides how a variable is treated.

@@ -345,8 +345,9 @@ impl<'a> Builder<'a> {
         Ok(pairs)
     }
 
-    /// Lets an Integer within a record, such as the phase in the state of a medium, change between
-    /// events where the function that computes the record lets it.
+    /// Lets an Integer within a record or among several outputs, such as the phase in the state of a
+    /// medium or the indices of elements that are sorted, change between events where the function
+    /// that computes it lets it. MLS §3.8.4 does not; libraries do it.
     fn allow_continuous(&mut self, pair: Equation) {
         for (side, other) in [(pair.left, pair.right), (pair.right, pair.left)] {
             if let Some(variable) = self.dae.pool.as_variable(side)
@@ -388,7 +389,7 @@ impl<'a> Builder<'a> {
             };
             let value = lowering.lower(target)?;
             let pairs = pairs(&value, output, span)?;
-            if matches!(value, Lowered::Record(_)) && !live && !lowering.target.place.initial {
+            if !live && !lowering.target.place.initial {
                 pairs.iter().for_each(|pair| lowering.target.allow_continuous(*pair));
             }
             equations.extend(pairs);

@@ -1,7 +1,7 @@
 //! Shapes and first values of outputs and local variables of functions (MLS §12.4.4, §12.4.5).
 //!
 //! A size `:` is that of the value in the declaration, or of what is assigned to the variable. A
-//! size of a component of a record may use whole numbers of the same record.
+//! size or a default of a component of a record may use numbers of the same record.
 
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::expressions::{Lowered, Lowering, Target};
@@ -129,7 +129,7 @@ impl<T: Target> Declaration<'_, '_, T> {
         Ok(dims)
     }
 
-    /// The components of a record, in which the whole numbers among them are known by their names.
+    /// The components of a record, in which the numbers among them are known by their names.
     fn record(
         &mut self,
         fields: &IndexMap<Ident, FunctionComponent>,
@@ -147,7 +147,7 @@ impl<T: Target> Declaration<'_, '_, T> {
             let own = at.map(|at| given.swap_remove(at).1);
             let own = own.or_else(|| self.default(field, fields, outside, dims));
             if let (Some(Lowered::Array(array)), true) = (&own, dims.is_empty())
-                && let ([number], true) = (array.elements.as_slice(), is_whole(field))
+                && let ([number], true) = (array.elements.as_slice(), is_number(field))
             {
                 self.lowering.loops.push((*name, *number));
             }
@@ -224,12 +224,12 @@ impl Visit for OwnNames<'_> {
     }
 }
 
-fn is_whole(component: &FunctionComponent) -> bool {
-    let is_whole = matches!(
+fn is_number(component: &FunctionComponent) -> bool {
+    let is_number = matches!(
         component.value_type,
-        ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
+        ValueType::Real | ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
     );
-    is_whole && component.dims.is_empty()
+    is_number && component.dims.is_empty()
 }
 
 /// Numbers of known sizes.

@@ -56,6 +56,11 @@ crate::codes! {
         "## What it means\nThe initial equations and fixed start values do not determine all states of the model, so the start values of the states listed are used although they are not fixed.\n\n\
          ## Example\n`Real x(start = 1, fixed = true); Real y(start = 2);` with `der(x) = y; der(y) = -x;`: nothing fixes `y`.\n\n\
          ## What to do\nSet `fixed = true` for the variables listed, or write an initial equation for each.",
+    /// An attribute `stateSelect` that cannot be obeyed.
+    STATE_SELECT = "state-select":
+        "## What it means\nThe choice of states cannot obey an attribute `stateSelect` (MLS §4.9.7.1): a variable with `StateSelect.never` is the only one that can be a state, or one with `StateSelect.always` cannot be a state, because its derivative does not occur.\n\n\
+         ## Example\n`Real x(stateSelect = StateSelect.never); equation der(x) = 1;`\n\n\
+         ## What to do\nRemove the attribute, or write the equations so that the variables that are to be states are differentiated, and others are not.",
     /// What is discrete, but not by a discrete-time expression.
     NOT_DISCRETE = "not-discrete":
         "## What it means\nAn Integer, Boolean or enumeration variable, or a variable of a when-clause, must have discrete-time expressions (MLS §3.8.4): they change at events only. Relations and `integer` in functions and in `noEvent` cause no events.\n\n\

@@ -3,6 +3,7 @@
 use super::builder::Builder;
 use super::dae::Kind;
 use crate::diag::Diagnostic;
+use crate::flatten::BaseType;
 use crate::symbolic::{Expr, VarId, evaluate};
 
 /// Deepest chain of parameters.
@@ -38,14 +39,13 @@ impl Builder<'_> {
         match self.dae.variables[position].kind {
             Kind::Constant(value) => return Ok(Some(value)),
             Kind::Parameter { .. } if depth > 0 => {}
+            // An Integer or a Boolean that is bound to what is known never changes.
+            Kind::Discrete if depth > 0 && self.dae.variables[position].base != BaseType::Real => {
+                return self.settled_variable(variable, depth);
+            }
             _ => return Ok(None),
         }
-        // The variable after the last that begins before it.
-        let Some(at) =
-            self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
-        else {
-            return Ok(None);
-        };
+        let Some(at) = self.flat_position(variable) else { return Ok(None) };
         let declared = &self.flat.variables[at];
         let given = declared.binding.as_ref();
         let Some(given) = given.or(declared.attributes.get("start").map(|a| &a.value)) else {
@@ -58,5 +58,32 @@ impl Builder<'_> {
             self.dae.variables[position].kind = Kind::Parameter { tunable: false };
         }
         Ok(value)
+    }
+
+    /// The value of a discrete variable by its binding equation.
+    fn settled_variable(
+        &mut self,
+        variable: VarId,
+        depth: usize,
+    ) -> Result<Option<f64>, Diagnostic> {
+        let Some(at) = self.flat_position(variable) else { return Ok(None) };
+        let declared = &self.flat.variables[at];
+        let is_number = matches!(
+            declared.base,
+            BaseType::Integer | BaseType::Boolean | BaseType::Enumeration(_)
+        );
+        let Some(binding) = declared.binding.as_ref().filter(|_| is_number) else {
+            return Ok(None);
+        };
+        let place = (variable.0 - self.scalars.first[at].0) as usize;
+        match self.sized(binding, &declared.dims) {
+            Ok(array) => self.settled_below(array.elements[place], depth - 1),
+            Err(_) => Ok(None),
+        }
+    }
+
+    /// The flat variable that a scalar is an element of: the last that does not begin behind it.
+    fn flat_position(&self, variable: VarId) -> Option<usize> {
+        self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
     }
 }

@@ -1,38 +1,67 @@
-//! Inputs of the model itself that nothing is connected to (MLS §4.4.2.2).
+//! Inputs that nothing is connected to (MLS §4.4.2.2).
 
 use super::dae::{Dae, Kind};
 use super::equation::Equation;
 use super::errors::NOT_SUPPORTED;
+use super::used_variables::used_variables;
 use crate::fault;
-use crate::flatten::FlatModel;
+use crate::flatten::{FlatModel, Variable};
 use crate::symbolic::VarId;
 use crate::syntax::ast::CausalityPrefix;
 
-/// An input at the top level without a binding has its start value, which is zero by default.
+/// An input at the top level without a binding has its start value, which is zero by default. So has
+/// an input of a component that is neither connected nor used by an equation, such as that of a
+/// reference system whose frequency is a parameter: the model is not balanced, but whatever the
+/// input is, nothing depends on it.
 pub(super) fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
-    let is_bound = |name: &str| {
-        let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
-        let declared = flat.variables.get(name);
-        let declared = declared.or_else(|| flat.variables.get(whole?.0));
-        declared.is_some_and(|variable| variable.binding.is_some())
-    };
+    let mut used = None;
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
-        if variable.causality == Some(CausalityPrefix::Input)
-            && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
-            && !is_bound(&variable.name)
+        if !matches!(variable.kind, Kind::Unknown | Kind::Discrete) {
+            continue;
+        }
+        let is_top_level = variable.causality == Some(CausalityPrefix::Input);
+        let declared = declared(flat, &variable.name);
+        let is_inside = |declared: &Variable| declared.is_input && !declared.top_level;
+        if declared.is_some_and(|declared| declared.binding.is_some())
+            || !(is_top_level || declared.is_some_and(is_inside))
         {
-            let zero = dae.pool.constant(0.0);
-            let right = variable.start.unwrap_or(zero);
-            let span = variable.span;
-            let warning = fault!(
-                NOT_SUPPORTED,
-                "the input `{}` is not connected; it keeps its start value",
-                variable.name
-            );
-            dae.warnings.push(warning.at(span).warning());
-            let left = dae.pool.variable(VarId(position as u32));
-            dae.equations.push(Equation::new(left, right, span));
+            continue;
+        }
+        if !is_top_level && used.get_or_insert_with(|| used_or_differentiated(dae))[position] {
+            continue;
+        }
+        keep_start(dae, position, is_top_level);
+    }
+}
+
+/// For every variable, whether equations contain it or its derivative.
+fn used_or_differentiated(dae: &mut Dae) -> Vec<bool> {
+    let mut used = used_variables(dae);
+    for variable in &dae.variables {
+        if let Kind::Derivative(of) = variable.kind {
+            used[of.0 as usize] = true;
         }
     }
+    used
+}
+
+/// The flat variable of a scalar of this name.
+fn declared<'f>(flat: &'f FlatModel, name: &str) -> Option<&'f Variable> {
+    let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+    flat.variables.get(name).or_else(|| flat.variables.get(whole?.0))
+}
+
+/// An equation for an input that has none, and a warning.
+fn keep_start(dae: &mut Dae, position: usize, is_top_level: bool) {
+    let variable = &dae.variables[position];
+    let zero = dae.pool.constant(0.0);
+    let right = variable.start.unwrap_or(zero);
+    let span = variable.span;
+    let how = if is_top_level { "not connected" } else { "neither connected nor used" };
+    let name = &variable.name;
+    let warning = fault!(NOT_SUPPORTED, "the input `{name}` is {how}; it keeps its start value");
+    dae.warnings.push(warning.at(span).warning());
+    let left = dae.pool.variable(VarId(position as u32));
+    dae.equations.push(Equation::new(left, right, span));
 }

@@ -34,6 +34,7 @@ mod symbolic_target;
 mod temporal;
 mod text_array;
 mod transport;
+mod used_variables;
 mod varying_strings;
 mod when;
 
@@ -45,6 +46,7 @@ pub use events::*;
 pub(crate) use real_values::is_real;
 pub use shape::Shape;
 pub use text_array::Texts;
+pub(crate) use used_variables::used_variables;
 
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;

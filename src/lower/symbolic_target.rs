@@ -183,7 +183,9 @@ impl Target for Builder<'_> {
 
     fn sizes(&self, path: &str) -> Option<Vec<usize>> {
         let variable = self.flat.variables.get(path)?;
-        (variable.base != BaseType::String).then(|| variable.dims.clone())
+        let position = self.flat.variables.get_index_of(path)?;
+        let is_number = variable.base != BaseType::String || self.is_varying_text(position);
+        is_number.then(|| variable.dims.clone())
     }
 
     fn element_of(&mut self, path: &str, position: usize) -> Result<Option<Expr>, Diagnostic> {

@@ -3,11 +3,12 @@
 use super::builder::Builder;
 use super::dae::Kind;
 use super::equation::Equation;
-use super::expressions::Lowering;
+use super::expressions::{Lowered, Lowering};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
 use crate::symbolic::Expr;
+use crate::syntax::ast::Expression;
 use std::sync::Arc;
 
 impl Builder<'_> {
@@ -15,21 +16,34 @@ impl Builder<'_> {
     pub(super) fn find_varying_texts(&mut self) {
         let flat = self.flat;
         for (position, variable) in flat.variables.values().enumerate() {
-            if variable.base == BaseType::String
-                && variable.variability > Variability::Parameter
-                && variable.dims.is_empty()
-                && self.text(position).contains(UNKNOWN_TEXT)
-            {
-                self.dae.variables[self.scalars.first[position].0 as usize].kind = Kind::Discrete;
+            if variable.base != BaseType::String || variable.variability <= Variability::Parameter {
+                continue;
+            }
+            let varies = match variable.dims.is_empty() {
+                true => self.text(position).contains(UNKNOWN_TEXT),
+                false => variable.binding.is_none(),
+            };
+            if varies {
+                let first = self.scalars.first[position].0 as usize;
+                let scalars = &mut self.dae.variables[first..first + variable.len()];
+                scalars.iter_mut().for_each(|scalar| scalar.kind = Kind::Discrete);
             }
         }
+    }
+
+    /// Whether a flat variable is a String, or an array of Strings, that changes.
+    pub(super) fn is_varying_text(&self, position: usize) -> bool {
+        let variable = &self.flat.variables[position];
+        variable.base == BaseType::String
+            && variable.len() > 0
+            && self.dae.variable(self.scalars.first[position]).kind == Kind::Discrete
     }
 
     /// Binding equation and start value of a text that changes.
     pub(super) fn varying_text(&mut self, position: usize) -> Result<(), Diagnostic> {
         let variable = &self.flat.variables[position];
         let first = self.scalars.first[position];
-        if self.dae.variable(first).kind != Kind::Discrete {
+        if !self.is_varying_text(position) {
             return Ok(());
         }
         if let Some(binding) = &variable.binding {
@@ -39,17 +53,38 @@ impl Builder<'_> {
             self.dae.equations.push(Equation::new(left, right, binding.span));
         }
         // The default is the empty text (MLS §4.9.4).
-        let mut start = self.number_of(&Arc::from(""));
+        let mut starts = vec![self.number_of(&Arc::from("")); variable.len()];
         if let Some(attribute) = variable.attributes.get("start") {
-            let text = Lowering::new(self).lower(&attribute.value)?;
-            start = Lowering::new(self).number_of_text(text, attribute.value.span)?;
+            starts = self.numbers_of_start(&attribute.value, variable.len())?;
         }
         let fixed = variable.attributes.get("fixed").map(|attribute| &attribute.value);
-        let fixed = fixed.map(|e| Lowering::new(self).known(e)).transpose()?;
-        let scalar = &mut self.dae.variables[first.0 as usize];
-        scalar.start = Some(start);
-        scalar.fixed = fixed == Some(1.0);
+        let fixed = fixed.map(|e| self.sized(e, &variable.dims)).transpose()?;
+        for (at, start) in starts.into_iter().enumerate() {
+            let known = fixed.as_ref().and_then(|f| self.dae.pool.as_constant(f.elements[at]));
+            let scalar = &mut self.dae.variables[first.0 as usize + at];
+            scalar.start = Some(start);
+            scalar.fixed = known == Some(1.0);
+        }
         Ok(())
+    }
+
+    /// The numbers of the start values of a String, or of an array of `len` Strings.
+    fn numbers_of_start(
+        &mut self,
+        start: &Expression,
+        len: usize,
+    ) -> Result<Vec<Expr>, Diagnostic> {
+        let texts = match Lowering::new(self).lower(start)? {
+            Lowered::Texts(texts) if texts.texts.len() == len => texts.texts,
+            text => {
+                let number = Lowering::new(self).number_of_text(text, start.span)?;
+                return Ok(vec![number; len]);
+            }
+        };
+        let number = |text: &Arc<str>| {
+            Lowering::new(self).number_of_text(Lowered::Text(text.clone()), start.span)
+        };
+        texts.iter().map(number).collect()
     }
 
     /// The number of a text, counted from 0 as they occur.

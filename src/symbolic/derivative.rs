@@ -31,9 +31,9 @@ pub fn differentiate_forward(
     seed: &dyn Fn(VarId) -> Option<Expr>,
 ) -> Expr {
     let nodes = pool.reachable(&[expr]);
-    let mut slopes = Slopes { is_forward: true, ..Slopes::new(pool) };
-    slopes.fill(&nodes, seed);
-    slopes.get(expr).unwrap_or_else(|| slopes.pool.constant(0.0))
+    let mut derivatives = Derivatives { is_forward: true, ..Derivatives::new(pool) };
+    derivatives.fill(&nodes, seed);
+    derivatives.get(expr).unwrap_or_else(|| derivatives.pool.constant(0.0))
 }
 
 /// [`differentiate`] for several expressions at once: what they share is differentiated once.
@@ -54,15 +54,15 @@ fn differentiate_nodes(
     exprs: &[Expr],
     seed: &dyn Fn(VarId) -> Option<Expr>,
 ) -> Vec<Expr> {
-    let mut slopes = Slopes::new(pool);
-    slopes.fill(nodes, seed);
-    let of = slopes.of;
+    let mut derivatives = Derivatives::new(pool);
+    derivatives.fill(nodes, seed);
+    let of = derivatives.of;
     let zero = pool.constant(0.0);
     exprs.iter().map(|expr| of.get(expr).copied().unwrap_or(zero)).collect()
 }
 
 /// Derivatives of the nodes done so far; those that are zero are not kept.
-struct Slopes<'a> {
+struct Derivatives<'a> {
     pool: &'a mut Pool,
     of: FxHashMap<Expr, Expr>,
     /// The right sides of the derivatives of linear systems, `None` where these are zero.
@@ -74,23 +74,23 @@ struct Slopes<'a> {
 /// A linear system: matrix, right side, whether it is a derivative itself.
 type System = (Expr, Expr, bool);
 
-impl Slopes<'_> {
-    fn new(pool: &mut Pool) -> Slopes<'_> {
+impl Derivatives<'_> {
+    fn new(pool: &mut Pool) -> Derivatives<'_> {
         let (of, rights) = (FxHashMap::default(), FxHashMap::default());
-        Slopes { pool, of, rights, is_forward: false }
+        Derivatives { pool, of, rights, is_forward: false }
     }
 
     /// The derivatives of nodes in ascending order.
     fn fill(&mut self, nodes: &[Expr], seed: &dyn Fn(VarId) -> Option<Expr>) {
         for &node in nodes {
-            if let Some(slope) = self.slope(node, seed) {
-                self.of.insert(node, slope);
+            if let Some(derivative) = self.derivative_of(node, seed) {
+                self.of.insert(node, derivative);
             }
         }
     }
 
-    fn slope(&mut self, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Option<Expr> {
-        let slope = match self.pool.node(expr).clone() {
+    fn derivative_of(&mut self, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Option<Expr> {
+        let derivative = match self.pool.node(expr).clone() {
             Node::Constant(_)
             | Node::Relation(..)
             | Node::And(..)
@@ -117,7 +117,7 @@ impl Slopes<'_> {
                 self.solution((matrix, right, is_slope), output)
             }
         };
-        slope.filter(|slope| self.pool.as_constant(*slope) != Some(0.0))
+        derivative.filter(|derivative| self.pool.as_constant(*derivative) != Some(0.0))
     }
 
     fn get(&self, expr: Expr) -> Option<Expr> {
@@ -170,16 +170,16 @@ impl Slopes<'_> {
             let one = self.pool.constant(1.0);
             let exponent = self.pool.sub(b, one);
             let lower = self.pool.pow(a, exponent);
-            let slope = self.pool.mul(b, lower);
-            self.pool.mul(slope, da)
+            let derivative = self.pool.mul(b, lower);
+            self.pool.mul(derivative, da)
         });
         let from_exponent = self.get(b).map(|db| {
             let logarithm = self.pool.function("log", &[a]);
-            let slope = self.pool.mul(power, logarithm);
+            let derivative = self.pool.mul(power, logarithm);
             let zero = self.pool.constant(0.0);
             let at_zero = self.pool.relation(RelationOperator::Equal, a, zero);
-            let slope = self.pool.if_then_else(at_zero, zero, slope);
-            self.pool.mul(slope, db)
+            let derivative = self.pool.if_then_else(at_zero, zero, derivative);
+            self.pool.mul(derivative, db)
         });
         self.total(from_base, from_exponent)
     }
@@ -188,9 +188,9 @@ impl Slopes<'_> {
         let list: Vec<Expr> = arguments.iter().collect();
         if self.is_forward
             && id.get().name == "sqrt"
-            && let Some(slope) = self.norm(list[0])
+            && let Some(derivative) = self.norm(list[0])
         {
-            return Some(slope);
+            return Some(derivative);
         }
         let mut sum = None;
         for (which, argument) in list.iter().enumerate() {
@@ -246,8 +246,8 @@ impl Slopes<'_> {
         }
     }
 
-    /// The product of the slopes of a function and of what it is applied to: where one of them
-    /// is zero in a branch, the other is not evaluated there. √max(0, x) has a slope for x < 0.
+    /// The product of the derivatives of a function and of what it is applied to: where one of them
+    /// is zero in a branch, the other is not evaluated there. √max(0, x) has a derivative for x < 0.
     fn chained(&mut self, outer: Expr, inner: Expr) -> Expr {
         let zero = self.pool.constant(0.0);
         if outer == zero || inner == zero {
@@ -283,7 +283,7 @@ impl Slopes<'_> {
         arguments: Expr,
     ) -> Option<Expr> {
         let mut sum = None;
-        for (input, inner) in self.slopes(arguments) {
+        for (input, inner) in self.entries(arguments) {
             let inputs: Vec<u32> = inputs.iter().copied().chain([input as u32]).collect();
             let outer = self.pool.derivative_of_call(function, output, &inputs, arguments);
             let term = self.pool.mul(outer, inner);
@@ -292,40 +292,40 @@ impl Slopes<'_> {
         sum
     }
 
-    /// The entries of a list that have slopes, by place.
-    fn slopes(&self, list: Expr) -> Vec<(usize, Expr)> {
+    /// The entries of a list that have derivatives, by place.
+    fn entries(&self, list: Expr) -> Vec<(usize, Expr)> {
         let entries = self.pool.entries(list).iter().enumerate();
         entries.filter_map(|(at, entry)| Some((at, self.get(*entry)?))).collect()
     }
 
     /// A x = b gives A x′ = b′ − A′ x.
     fn solution(&mut self, system: System, output: u32) -> Option<Expr> {
-        let of_slopes = match self.rights.get(&system) {
+        let of_derivatives = match self.rights.get(&system) {
             Some(known) => *known,
             None => {
-                let right = self.right_of_slopes(system);
+                let right = self.right_of_derivatives(system);
                 self.rights.insert(system, right);
                 right
             }
         };
-        Some(self.pool.any_solution(system.0, of_slopes?, output, true))
+        Some(self.pool.any_solution(system.0, of_derivatives?, output, true))
     }
 
-    /// `None` if neither matrix nor right side has slopes.
-    fn right_of_slopes(&mut self, (matrix, right, is_slope): System) -> Option<Expr> {
-        let (of_matrix, of_right) = (self.slopes(matrix), self.slopes(right));
+    /// `None` if neither matrix nor right side has derivatives.
+    fn right_of_derivatives(&mut self, (matrix, right, is_slope): System) -> Option<Expr> {
+        let (of_matrix, of_right) = (self.entries(matrix), self.entries(right));
         if of_matrix.is_empty() && of_right.is_empty() {
             return None;
         }
         let n = self.pool.entries(right).len();
         let mut rights = vec![self.pool.constant(0.0); n];
-        for (at, slope) in of_right {
-            rights[at] = slope;
+        for (at, derivative) in of_right {
+            rights[at] = derivative;
         }
-        for (at, slope) in of_matrix {
+        for (at, derivative) in of_matrix {
             let unknown = (at % n) as u32;
             let x = self.pool.any_solution(matrix, right, unknown, is_slope);
-            let term = self.pool.mul(slope, x);
+            let term = self.pool.mul(derivative, x);
             rights[at / n] = self.pool.sub(rights[at / n], term);
         }
         Some(self.pool.list(&rights))

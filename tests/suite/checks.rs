@@ -46,7 +46,11 @@ fn accepted(text: &str) {
 fn specialized_classes_contain_what_they_may() {
     let code = "class-restriction";
     refused("record R Real x; algorithm x := 1; end R; model M R r; end M;", code);
-    refused("record R Real x; protected Real y; end R; model M R r(x = 1); end M;", code);
+    refused_if_strict(
+        "record R Real x; protected constant Real y = 1; end R;
+        model M R r(x = 1); end M;",
+        code,
+    );
     refused("record R output Real x; end R; model M R r(x = 1); end M;", code);
     refused("connector C outer Real x; end C; model M C c; end M;", code);
     refused("model A end A; record R A a; end R; model M R r; end M;", code);
@@ -358,6 +362,33 @@ fn what_libraries_do_is_refused_only_where_all_must_conform() {
          model M Real a[2]; Real b[2]; equation (a, b) = f({1, 2}); end M;",
         "size-mismatch",
     );
+}
+
+/// Errors of causalization where all must conform, warnings elsewhere (MLS §4.9.7.1).
+#[test]
+fn an_attribute_of_states_that_cannot_be_obeyed_is_refused_only_where_all_must_conform() {
+    let judged = |text: &str, strict: bool| {
+        let mut library = library(text);
+        library.set_strict(strict);
+        let flat = flatten(&library, &Name::parse("M"), &[]).expect("a model").model;
+        match causalize(&flat) {
+            Ok(found) => found.dae.warnings.iter().map(|w| w.message.clone()).collect(),
+            Err(error) => vec![format!("{}: {}", error.code.slug, error.message)],
+        }
+    };
+    let never = "model M Real x(start = 1, fixed = true, stateSelect = StateSelect.never);
+        equation der(x) = -x; end M;";
+    let always = "model M Real x(stateSelect = StateSelect.always) = if time < 0.5 then 1 else 5;
+        end M;";
+    for (text, word) in [(never, "needed as a state"), (always, "cannot be a state")] {
+        let (lenient, strict) = (judged(text, false), judged(text, true));
+        assert!(lenient.len() == 1 && lenient[0].contains(word), "{lenient:?}");
+        assert!(strict[0].starts_with("state-select: ") && strict[0].contains(word), "{strict:?}");
+    }
+    // Of two names of one variable the other may be meant, and a choice at run time obeys.
+    let other = "model M Real x(stateSelect = StateSelect.never); Real y(start = 1, fixed = true);
+        equation x = y; der(y) = -x; end M;";
+    assert_eq!(judged(other, true), Vec::<String>::new());
 }
 
 /// An input of expandable connectors needs a source in one of them; those of the model itself may

@@ -64,6 +64,7 @@ fn components(model: &mut FlatModel, clause: &ComponentClause) {
             dims,
             variability,
             causality: clause.type_prefixes.causality,
+            is_input: false,
             is_final: clause.prefixes.is_final,
             protected: false,
             evaluate: false,

@@ -1,7 +1,7 @@
 //! Functions that run as bytecode in models: their values are those of the interpreter, their
 //! derivatives those of its differences.
 
-use super::hybrid::{attempt, simulated};
+use super::hybrid::simulated;
 use gapilib::causalize::causalize;
 use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
@@ -146,12 +146,21 @@ const CORPUS: &[(&str, &str)] = &[
          k := k + 1; end while; y := v*{1, 10, 100}; end f; function swap input Real a; \
          input Real b; output Real c; output Real d; algorithm c := b; d := a; end swap;",
     ),
+    (
+        "records of which modifiers give a part and defaults name other components",
+        "record R Integer k; Real w[k]; Real m = 4; Real q = 12/m; Real z; end R; \
+         function g input Real u; input Integer n; output R r(k = 3); protected Integer i = 0; \
+         algorithm r.w := {u, 2*u, u^2}; r.z := r.q*u; while i < n loop i := i + 1; \
+         r.z := r.z + r.q; end while; end g; \
+         function f {h} protected R r(k = 3); algorithm r := g(u, n); y := sum(r.w) + r.z*r.q; \
+         end f;",
+    ),
 ];
 
 const INTERFACE: &str = "input Real u; input Integer n; output Real y;";
 
 /// The classes of a text around `package P`.
-fn library(functions: &str) -> Library {
+pub(super) fn library(functions: &str) -> Library {
     let functions = functions.replace("{h}", INTERFACE);
     let text = format!(
         "package P {functions} model Main Real x(start = 1, fixed = true); \
@@ -163,14 +172,14 @@ fn library(functions: &str) -> Library {
     library
 }
 
-fn compiled(library: &Library) -> Result<Arc<Program>, Diagnostic> {
+pub(super) fn compiled(library: &Library) -> Result<Arc<Program>, Diagnostic> {
     let flat = flatten(library, &Name::parse("P.Main"), &[])
         .map_err(|errors| errors.into_iter().next().expect("an error"))?;
     Program::compile(causalize(&flat.model)?)
 }
 
 /// f(u, n) and ∂f/∂u as the model computes them.
-fn of_model(system: &mut System, u: f64, n: i64) -> Result<(f64, f64), Failure> {
+pub(super) fn of_model(system: &mut System, u: f64, n: i64) -> Result<(f64, f64), Failure> {
     system.set_parameter(0, n as f64).expect("a parameter");
     let (mut value, mut slope) = ([0.0], [0.0]);
     system.initialize(0.0, &mut [0.0])?;
@@ -259,7 +268,7 @@ proptest! {
 }
 
 /// What ends a simulation of `der(x) = f(x, n)`.
-fn failure(functions: &str) -> String {
+pub(super) fn failure(functions: &str) -> String {
     let program = compiled(&library(functions)).expect("it compiles");
     let result = simulate(&mut program.system(), &Settings { stop: 1.0, ..Settings::default() });
     let error = result.expect_err("the simulation fails");
@@ -425,50 +434,6 @@ fn the_second_derivative_function_is_used() {
     assert!((column("a") - second).abs() < 1e-9, "{} is not {second}", column("a"));
 }
 
-#[test]
-fn an_inverse_that_is_none_is_not_used() {
-    // What is declared gives 2/3 and 20; the solutions are 1 and 12.
-    let model = "model Main \
-        function rate input Real u; input Real k; output Real y; \
-        algorithm y := k*(u + u^3); annotation(Inline = false, inverse(u = drop(y, k = k))); \
-        end rate; function drop input Real y; input Real k; output Real u; \
-        algorithm u := y/k/3; annotation(Inline = false, inverse(y = rate(u, k))); end drop; \
-        parameter Real k = 2; Real x; Real y; \
-        equation 3*rate(x, k) + 1 = 13; drop(y, k) = 2; end Main;";
-    let run = simulated(model, 1.0);
-    assert!((run.column("x")[0] - 1.0).abs() < 1e-12 && (run.column("y")[0] - 12.0).abs() < 1e-12);
-}
-
-#[test]
-fn an_inverse_of_a_part_of_the_range_solves_an_equation_that_stands_alone() {
-    // Below 0.1 `drop` gives half of what solves the equation. Alone, x is what it gives; in the loop
-    // the equations hold.
-    let model = "model Main \
-        function rate input Real u; output Real y; algorithm \
-        y := if noEvent(u > 0.1) then u else u/2 + 0.05; \
-        annotation(Inline = false, inverse(u = drop(y))); end rate; \
-        function drop input Real y; output Real u; \
-        algorithm u := if noEvent(y > 0.1) then y else y - 0.05; end drop; \
-        Real x; Real y; Real z; \
-        equation rate(x) = 0.06; rate(y) = 0.075 - z; z = 0.1*y; end Main;";
-    let run = simulated(model, 1.0);
-    assert!((run.column("x")[0] - 0.01).abs() < 1e-15);
-    assert!((run.column("y")[0] - 0.025 / 0.6).abs() < 1e-9);
-}
-
-#[test]
-fn a_declared_inverse_solves_its_equation() {
-    // No step of Newton's method: the value has the bits of the function.
-    let model = "model Main \
-        function rate input Real u; input Real k; output Real y; algorithm \
-        y := if u >= 0 then k*sqrt(u) else -k*sqrt(-u); \
-        annotation(Inline = false, inverse(u = drop(y, k = k))); end rate; \
-        function drop input Real y; input Real k; output Real u; \
-        algorithm u := y/k*abs(y/k); end drop; \
-        parameter Real k = 2; Real x; equation 3*rate(x, k) + 1 = 13; end Main;";
-    assert_eq!(simulated(model, 1.0).column("x")[0], 4.0);
-}
-
 /// A table as an external object, with the derivative that its library declares.
 const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
     input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
@@ -506,20 +471,6 @@ fn a_table_is_an_object_that_parameters_make_anew() {
             assert!((value[0] - expected).abs() < 1e-14 && (slope[0] - exact).abs() < 1e-13);
         }
     }
-}
-
-#[test]
-fn sizes_in_records_are_whole_numbers_of_the_record() {
-    // Σ i u, i = 1 … 3, and twice 2 u.
-    let functions = "record S parameter Integer m = 2; Real x[m]; end S; \
-        function made input Real u; input Integer m; output S s(m = m); algorithm \
-        for i in 1:m loop s.x[i] := i*u; end for; end made; \
-        function f {h} protected S s(m = 3) = made(u, 3); S r; Integer k = 0; algorithm \
-        while k < 1 loop k := k + 1; r.x := {u, u}; end while; \
-        y := sum(s.x) + sum(r.x)*r.m; end f;";
-    let program = compiled(&library(functions)).expect("it compiles");
-    let (value, slope) = of_model(&mut program.system(), 0.5, 0).expect("a value");
-    assert_eq!((value, slope), (5.0, 10.0));
 }
 
 #[test]
@@ -572,14 +523,6 @@ fn parameters_without_value_are_faults_of_who_reads_them() {
     }
 }
 
-#[test]
-fn functions_take_arrays_of_texts() {
-    let functions = "function f {h} algorithm y := u; check({\"one\", \"two\"}, u); end f; \
-        function check input String names[:]; input Real u; protected Integer k = 0; algorithm \
-        while k < 2 loop k := k + 1; assert(u < 0, \"bad \" + names[k]); end while; end check;";
-    assert_eq!(failure(functions), "assertion-failed: bad … (at t = 0)");
-}
-
 /// Two functions have the same arguments under one condition, which another condition computes in
 /// between.
 #[test]
@@ -630,32 +573,6 @@ fn arguments_are_computed_again_where_another_branch_has_computed_them() {
     for (found, expected) in last.expect("values").iter().zip([u, a * u, g + a * u]) {
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
-}
-
-/// An array that grows while its function runs is known only where its arguments are.
-#[test]
-fn arrays_that_grow_are_run_for_known_arguments() {
-    let model = "model Grows
-      function positive
-        input Real x[:];
-        output Real y[:];
-      algorithm
-        for i in 1:size(x, 1) loop
-          if x[i] > 0 then
-            y := cat(1, y, x[i:i]);
-          end if;
-        end for;
-      end positive;
-      parameter Real a[:] = {-2, 1, 0, -1, 2} annotation(Evaluate = true);
-      parameter Real x[:] = positive(a);
-    equation
-      assert(size(x, 1) == 2 and x[2] == 2, \"not the positive ones\");
-    end Grows;";
-    let world = MemoryWorld::new().with_file("M.mo", model);
-    let streams = world.streams();
-    let script = "openModel(\"M.mo\"); simulateModel(\"Grows\");";
-    let status = Session::new(Box::new(world)).run_text("s.mos", script);
-    assert_eq!((status.code, streams.errors().as_str()), (0, ""));
 }
 
 /// `der(f, x)` is a function, of loops, of several inputs and inside of others (MLS §12.7.2).
@@ -769,36 +686,4 @@ fn partial_applications_bind_any_inputs() {
     assert_eq!(streams.errors(), "");
     let last = session.variable("last").and_then(|last| last.as_reals().map(|v| v.into_owned()));
     assert_eq!(last, Some(vec![8.0, 10.0]));
-}
-
-#[test]
-fn sizes_that_vary_at_run_time_are_those_of_the_instant() {
-    let functions = "function squares input Integer n; output Real y[n]; algorithm \
-        for i in 1:n loop y[i] := i^2; end for; end squares; \
-        function total input Integer n; input Real w; output Real s; protected Real c[n]; \
-        algorithm c := squares(n); s := w*sum(c); end total;";
-    let model = |n: &str| {
-        format!("model M {functions} Integer n = {n}; Real y = total(n, 1 + time); end M;")
-    };
-    let run = simulated(&model("if time < 0.5 then 2 elseif time < 0.75 then 0 else 4"), 1.0);
-    for (time, sum) in [(0.2, 5.0), (0.6, 0.0), (0.8, 30.0)] {
-        let (value, expected) = (run.at("y", time), (1.0 + time) * sum);
-        assert!((value - expected).abs() < 1e-12, "{value} instead of {expected} at {time}");
-    }
-    let (program, _, _, ended) = attempt(&model("if time < 0.5 then 2 else 40"), 1.0);
-    let message = program.explain(&ended.expect_err("a size out of range")).message.clone();
-    assert!(message.contains("outside 0 to 32"), "{message}");
-}
-
-#[test]
-fn sizes_of_results_must_not_vary_at_run_time() {
-    let text = "model M function f input Integer n; output Real y[n]; algorithm \
-        for i in 1:n loop y[i] := i; end for; end f; \
-        Integer n = if time < 0.5 then 2 else 3; Real y[2] = f(n); end M;";
-    let error = super::hybrid::compiled(text).map(|_| ()).expect_err("sizes that vary");
-    assert!(
-        error.message.contains("depend") || error.message.contains("known"),
-        "{}",
-        error.message
-    );
 }

@@ -3,6 +3,7 @@
 
 use gapilib::causalize::causalize;
 use gapilib::codegen::{Access, Program};
+use gapilib::diag::Diagnostic;
 use gapilib::flatten::{Flattened, Library, flatten};
 use gapilib::name::Name;
 use gapilib::sim::{Settings, simulate};
@@ -11,11 +12,15 @@ use gapilib::syntax::parse_stored_definition;
 
 /// The model `P.M` of a package whose contents these are.
 fn flattened(contents: &str) -> Flattened {
+    attempted(contents).expect("a model")
+}
+
+fn attempted(contents: &str) -> Result<Flattened, Vec<Diagnostic>> {
     let text = format!("package P {contents} end P;");
     let file = parse_stored_definition(SourceId::NONE, &text).expect("Modelica");
     let mut library = Library::new();
     library.load(&file).expect("a loadable file");
-    flatten(&library, &Name::parse("P.M"), &[]).expect("a model")
+    flatten(&library, &Name::parse("P.M"), &[])
 }
 
 /// Values of `x` at the start and at t = 1.
@@ -133,6 +138,12 @@ fn old_forms_are_warnings() {
         algorithm s := 7 - 2*side; end f; model M Real x = f(Side.p); end M;";
     assert_eq!(at_end(ordinal), 3.0);
     assert_eq!(warnings(ordinal), ["type-mismatch"]);
+
+    let stored = "type Side = enumeration(n, p, q); model S parameter Side side = Side.n; \
+        Real y = if side == Side.q then 4 else 1; end S; \
+        model M final parameter Integer k = 3; S s(side = k); Real x = s.y; end M;";
+    assert_eq!(at_end(stored), 4.0);
+    assert_eq!(warnings(stored), ["type-mismatch"]);
 }
 
 #[test]
@@ -250,4 +261,67 @@ fn a_fixed_start_is_the_value_of_one_s_own_pre() {
         u = y; x = (if change(u) then 1 else 0) + (if y then 2 else 0); end M;";
     // At the start `u` has changed; the iteration of events ends with `pre(u) = u`.
     assert_eq!(both_ends(text), [2.0, 0.0]);
+}
+
+/// Records and functions of libraries that were written before Modelica 3.
+#[test]
+fn variables_that_should_be_protected_or_public_are_warnings() {
+    let within_record = "model S parameter Real f = 50; end S; \
+        record N parameter Real f = s.f; parameter Real g = 2; protected outer S s; end N; \
+        function twice input N n; output Real y; algorithm y := 2*n.f + n.g; end twice; \
+        model A parameter N n; Real y = twice(n); end A; \
+        model M inner S s(f = 60); A a; Real x = a.y; end M;";
+    assert_eq!(at_end(within_record), 122.0);
+    assert!(warnings(within_record).contains(&"class-restriction"));
+
+    let within_function = "function f input Real u; output Real y; Real half = u/2; \
+        algorithm y := half + 1; end f; model M Real x = f(4); end M;";
+    assert_eq!(at_end(within_function), 3.0);
+}
+
+#[test]
+fn an_input_that_nothing_uses_needs_no_connection() {
+    let reference = "connector In = input Real; model S parameter Boolean driven = false; In w; \
+        Real omega; equation if driven then omega = w; else omega = 3; end if; end S;";
+    assert_eq!(at_end(&format!("{reference} model M S s; Real x = s.omega; end M;")), 3.0);
+    let driven = format!("{reference} model M S s(driven = true); end M;");
+    let errors = attempted(&driven).expect_err("an input is missing");
+    assert_eq!(errors[0].code.slug, "unbalanced-model");
+}
+
+#[test]
+fn arrays_of_strings_may_be_determined_by_equations_and_loops() {
+    let by = |section: &str, equals: &str| {
+        format!(
+            "model M String s[3]; Real x = (if s[1] == \"a\" then 1 else 0) \
+             + (if s[2] == \"b\" then 2 else 0) + (if s[3] == \"c\" then 4 else 0); \
+             {section} for t in {{\"a\", \"b\", \"c\"}} loop if t == \"a\" then s[1] {equals} t; \
+             elseif t == \"b\" then s[2] {equals} if time < 0.5 then \"q\" else t; \
+             else s[3] {equals} t; end if; end for; end M;"
+        )
+    };
+    assert_eq!(both_ends(&by("equation", "=")), [5.0, 7.0]);
+    assert_eq!(both_ends(&by("algorithm", ":=")), [5.0, 7.0]);
+}
+
+#[test]
+fn a_string_of_an_operator_record_is_that_of_its_operator() {
+    let text = "operator record Pair Integer a; encapsulated operator function 'String' \
+        import P.Pair; input Pair p; input Integer offset = 0; output String s; algorithm \
+        s := \"<\" + String(p.a + offset) + \">\"; end 'String'; end Pair; \
+        model M Pair p = Pair(7); Boolean b = String(p) == \"<7>\"; \
+        Boolean c = String(p, offset = 2) == \"<9>\"; \
+        Real x = (if b then 1 else 0) + (if c then 2 else 0); end M;";
+    assert_eq!(at_end(text), 3.0);
+}
+
+/// MLS §3.8.4 wants discrete-time expressions for Integers; functions that sort return both.
+#[test]
+fn integers_among_several_outputs_may_change_between_events() {
+    let text = "function largest input Real u[:]; output Real y; output Integer at; algorithm \
+        y := u[1]; at := 1; for i in 2:size(u, 1) loop if u[i] > y then y := u[i]; at := i; \
+        end if; end for; end largest; \
+        model M Real y; Integer at; Real x = at; equation (y, at) = largest({1 - time, time}); \
+        end M;";
+    assert_eq!(both_ends(text), [1.0, 2.0]);
 }

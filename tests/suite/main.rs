@@ -28,6 +28,8 @@ mod flat_class;
 mod flattening;
 mod flattening_properties;
 mod fuel_cells;
+mod function_inverses;
+mod function_sizes;
 mod functions;
 mod fuzzing;
 mod gapilib;

@@ -27,6 +27,11 @@ fn record(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     only_public_elements(class, "a record", errors);
     for component in class.components() {
         let clause = component.clause;
+        if clause.prefixes.outer {
+            // Only bindings refer to it: the frequency of a system as the default of a nominal one.
+            errors.push(prefixed(class, &component, "outer").warning());
+            continue;
+        }
         let prefix = match (clause.type_prefixes.causality, clause.type_prefixes.connection) {
             (Some(CausalityPrefix::Input), _) => Some("input"),
             (Some(CausalityPrefix::Output), _) => Some("output"),
@@ -171,7 +176,8 @@ fn only_public_elements(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnosti
         errors.push(
             fault!(CLASS_RESTRICTION, "`{}` is {what} and has protected elements", class.name();
                 help: "make them public")
-            .at(place(element)),
+            .at(place(element))
+            .warning(),
         );
     }
 }

@@ -36,6 +36,11 @@ impl Instantiation<'_> {
         {
             return Ok(sum);
         }
+        if function.as_ident().is_some_and(|name| name == "String")
+            && let Some(text) = self.overloaded_string(&arguments, local, span)?
+        {
+            return Ok(text);
+        }
         let name = self.called_name(function, &arguments, span, context, local)?;
         let arguments = self.functions.with_defaults(&name, arguments, span);
         let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;

@@ -126,6 +126,34 @@ impl Instantiation<'_> {
         Ok(None)
     }
 
+    /// `String(a, …)` of an operator record as a call of its operator `'String'` (MLS §14.4); `None` for
+    /// other values.
+    pub fn overloaded_string(
+        &mut self,
+        arguments: &Arguments,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(operand) = arguments.positional.first() else { return Ok(None) };
+        let operand_type = self.types().element_type_of(operand, local);
+        let record = record_name(operand_type.as_ref());
+        let known = |record: Name| {
+            let class = *self.functions.record_scopes.get(&record)?;
+            Some((record, class))
+        };
+        let Some((record, class)) = record.and_then(known) else { return Ok(None) };
+        for (name, function) in self.operator_functions(class, "'String'")? {
+            if self.types().fits_call(&function, arguments, local) {
+                let function = ComponentReference::from_name(&name, span);
+                let kind =
+                    ExpressionKind::Call { function, arguments: Box::new(arguments.clone()) };
+                return Ok(Some(Expression::new(kind, span)));
+            }
+        }
+        Err(fault!(TYPE_MISMATCH, "`{record}` has no operator 'String' for these arguments")
+            .at(span))
+    }
+
     pub fn operator_call(
         &mut self,
         record: &Name,

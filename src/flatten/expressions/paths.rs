@@ -234,7 +234,12 @@ impl Instantiation<'_> {
         }
         let members = self.classes.members(node)?;
         let mut named = Vec::with_capacity(members.len());
+        let outer = self.classes.tree.outer_members(node);
         for (name, _) in members {
+            // What an `outer` component of a record is belongs to another instance.
+            if outer.contains(&name) {
+                continue;
+            }
             let part = ReferencePart { name, subscripts: Vec::new() };
             let value = self.walk(node, &[part], whole, context, local)?;
             let name = Spanned { node: name, span: whole.span };

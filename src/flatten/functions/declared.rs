@@ -6,11 +6,13 @@ use crate::fault;
 use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::literal;
+use crate::flatten::functions::outer_names::names_any;
 use crate::flatten::functions::table::FunctionTable;
+use crate::flatten::functions::unrolled::runs_over_strings;
 use crate::flatten::ids::ScopeId;
-use crate::flatten::instantiate::instance::{MemberState, Shape};
+use crate::flatten::instantiate::instance::{Declaration, MemberState, Shape};
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::library::Library;
+use crate::flatten::library::{LegacyConstruct, Library};
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::modification::Modifier;
 use crate::flatten::lookup::scope::Text;
@@ -366,24 +368,19 @@ impl Instantiation<'_> {
         let mut local = Local::default().with(elements.names());
         let is_function = !self.classes.is_record(class);
         let lineage: Vec<ScopeId> = elements.lineage().collect();
+        let is_outer = |declared: &&Arc<Declaration>| !is_function && declared.prefixes.outer;
+        let outer = elements.iter().map(|(_, declared)| declared).filter(is_outer);
+        let outer: Vec<Ident> = outer.map(|declared| declared.name).collect();
         let mut components = Vec::new();
         for (_, declared) in elements.iter() {
-            let expanded = self.classes.expand(declared)?;
-            let mut dims = Vec::with_capacity(declared.dims.len());
-            for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
-                dims.push(match subscript {
-                    Subscript::All(span) => Subscript::All(*span),
-                    Subscript::Index(e) => match self.classes.type_range(e, *context, &local)? {
-                        Some(values) => {
-                            let dims = self.shape_of(&values).unwrap_or_default();
-                            let size = dims.first().copied().unwrap_or(0) as i64;
-                            let kind = ExpressionKind::Integer(size);
-                            Subscript::Index(Expression::new(kind, e.span))
-                        }
-                        None => Subscript::Index(self.resolve(e, *context, &local)?),
-                    },
-                });
+            // An `outer` component of a record is no part of it: bindings refer to it.
+            if outer.contains(&declared.name) {
+                continue;
             }
+            let expanded = self.classes.expand(declared)?;
+            let dims = declared.dims.iter().chain(&expanded.dims);
+            let dims = dims.map(|(size, context)| self.declared_size(size, *context, &local));
+            let dims = dims.collect::<Result<Vec<Subscript>, Diagnostic>>()?;
             let value_type = self.value_type(&expanded.shape, declared.span)?;
             let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
@@ -392,6 +389,8 @@ impl Instantiation<'_> {
                 Some((value, written)) if !lineage.contains(&written) => {
                     Some(self.resolve(value, written, &Local::default())?)
                 }
+                // Only an instance of the record has it.
+                Some((value, _)) if names_any(value, &outer) => None,
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),
                 None => {
                     self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?
@@ -400,12 +399,7 @@ impl Instantiation<'_> {
             Rc::make_mut(&mut local.types).push((declared.name, value_type.clone()));
             let causality = declared.type_prefixes.causality.or(expanded.causality);
             if is_function && !declared.protected && causality.is_none() {
-                return Err(fault!(
-                    TYPE_MISMATCH,
-                    "`{}` is public in a function but neither input nor output",
-                    declared.name;
-                    help: "declare it `input` or `output`, or move it after `protected`")
-                .at(declared.span));
+                self.meet_public_variable(class, declared.name, declared.span)?;
             }
             components.push(Declared {
                 causality: causality.filter(|_| !declared.protected),
@@ -420,6 +414,43 @@ impl Instantiation<'_> {
             });
         }
         Ok(components)
+    }
+
+    /// A dimension with its names resolved; the number of values of a type that is one.
+    fn declared_size(
+        &mut self,
+        size: &Subscript,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Subscript, Diagnostic> {
+        let Subscript::Index(e) = size else { return Ok(size.clone()) };
+        Ok(Subscript::Index(match self.classes.type_range(e, context, local)? {
+            Some(values) => {
+                let dims = self.shape_of(&values).unwrap_or_default();
+                let size = dims.first().copied().unwrap_or(0) as i64;
+                Expression::new(ExpressionKind::Integer(size), e.span)
+            }
+            None => self.resolve(e, context, local)?,
+        }))
+    }
+
+    /// A variable of a function that should be protected (MLS §12.2); old libraries forget it.
+    fn meet_public_variable(
+        &self,
+        class: ScopeId,
+        name: Ident,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        if self.classes.library.is_strict() {
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "`{name}` is public in a function but neither input nor output";
+                help: "declare it `input` or `output`, or move it after `protected`")
+            .at(span));
+        }
+        let class = &self.classes.text(class).name;
+        self.classes.library.meet(class, LegacyConstruct::PublicVariable, span);
+        Ok(())
     }
 
     /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`. Those
@@ -527,6 +558,12 @@ impl Instantiation<'_> {
         let mut resolved = Vec::with_capacity(statements.len());
         for statement in statements {
             match self.statement(statement, context, local) {
+                Ok(one) if runs_over_strings(&one) => {
+                    match self.iterations_of_statement(statement, context, local) {
+                        Some(iterations) => resolved.extend(iterations?),
+                        None => resolved.push(one),
+                    }
+                }
                 Ok(one) => resolved.push(one),
                 Err(error) => match self.iterations_of_statement(statement, context, local) {
                     Some(iterations) => resolved.extend(iterations?),
@@ -535,33 +572,6 @@ impl Instantiation<'_> {
             }
         }
         Ok(resolved)
-    }
-
-    /// The iterations of a loop in an algorithm of a model one after another: its variable may choose
-    /// among components, which only a number can. `None` where iterations are not known, or one may be
-    /// the last.
-    fn iterations_of_statement(
-        &mut self,
-        statement: &Statement,
-        context: ScopeId,
-        local: &Local,
-    ) -> Option<Result<Vec<Statement>, Diagnostic>> {
-        let StatementKind::For { indices, body } = &statement.kind else { return None };
-        if !self.classes.is_in_model(context) || body.iter().any(breaks) {
-            return None;
-        }
-        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
-        let indices = self.with_ranges(indices, context, local, &visit).ok()?;
-        let mut iterations = Vec::new();
-        self.iterations(&indices, context, local, &mut iterations).ok()?;
-        let mut all = Vec::new();
-        for iteration in iterations {
-            match self.statements(body, context, &iteration) {
-                Ok(statements) => all.extend(statements),
-                Err(error) => return Some(Err(error)),
-            }
-        }
-        Some(Ok(all))
     }
 
     fn statement(
@@ -696,7 +706,7 @@ impl Classes<'_> {
     }
 
     /// Whether a scope is of a model, not of a function.
-    fn is_in_model(&self, context: ScopeId) -> bool {
+    pub fn is_in_model(&self, context: ScopeId) -> bool {
         context != ScopeId::TOP && !self.tree.in_package(self.node_of(context))
     }
 }
@@ -708,17 +718,6 @@ impl FunctionTable {
         let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
         let origin = self.asked.as_ref().map_or(String::new(), |name| format!(" in {name}"));
         name.parent().child(Ident::new(&format!("'{last}${number}{origin}'")))
-    }
-}
-
-/// Whether a statement may leave the loop around it.
-fn breaks(statement: &Statement) -> bool {
-    match &statement.kind {
-        StatementKind::Break | StatementKind::Return => true,
-        StatementKind::If { branches, otherwise } => {
-            branches.iter().any(|(_, body)| body.iter().any(breaks)) || otherwise.iter().any(breaks)
-        }
-        _ => false,
     }
 }
 

@@ -3,6 +3,8 @@
 
 pub mod declared;
 pub mod defaults;
+mod outer_names;
 mod partial_derivative;
 pub mod specialization;
 pub mod table;
+mod unrolled;

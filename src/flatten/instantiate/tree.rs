@@ -1,6 +1,6 @@
 //! The instance tree (MLS §5.6.1): its nodes, and the variables among them.
 
-use super::instance::{Composite, Declaration, Inherited, Leaf, MemberState, Node, NodeKind};
+use super::instance::{Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeKind};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{TOO_LARGE, UNKNOWN_ELEMENT};
@@ -134,6 +134,15 @@ impl Tree {
         }
     }
 
+    /// The names of the `outer` components of an instance whose components are known.
+    pub fn outer_members(&self, node: NodeId) -> Vec<Ident> {
+        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
+        let is_outer = |(name, member): (&Ident, &Member)| {
+            matches!(member.state, MemberState::Outer(_)).then_some(*name)
+        };
+        members.map_or(Vec::new(), |members| members.iter().filter_map(is_outer).collect())
+    }
+
     pub fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
@@ -210,6 +219,7 @@ impl Tree {
             dims,
             variability: inherited.variability.unwrap_or(default).min(default),
             causality: inherited.causality.filter(|_| top_level && !is_inner_input),
+            is_input: inherited.causality == Some(CausalityPrefix::Input),
             is_final: inherited.is_final,
             protected: inherited.protected,
             evaluate: declared.evaluate,

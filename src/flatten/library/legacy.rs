@@ -25,6 +25,8 @@ pub(in crate::flatten) enum LegacyConstruct {
     OldGraphics,
     /// An `outer` component with a value or other modifiers, which the inner one does not take.
     OuterValue,
+    /// A variable of a function that is neither input nor output, and not protected.
+    PublicVariable,
 }
 
 /// The legacy constructs found in each library.
@@ -66,6 +68,10 @@ impl LegacyConstruct {
             LegacyConstruct::OuterValue => (
                 "`outer` components with modifiers, which are ignored",
                 "set the values in the inner components",
+            ),
+            LegacyConstruct::PublicVariable => (
+                "public variables of functions that are neither input nor output",
+                "move them after `protected`",
             ),
         };
         Fault::new(OLD_LIBRARY, format!("library `{library}` has {what}")).help(remedy)

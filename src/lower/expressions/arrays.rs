@@ -3,6 +3,7 @@
 use super::builtins::mismatch;
 use super::{Array, Binary, Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
+use crate::eval::ValueType;
 use crate::fault;
 use crate::functions;
 use crate::lower::errors::ARRAY_MISMATCH;
@@ -69,7 +70,11 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(position) = position(&dims, &choices)
             && let Some(element) = self.target.element_of(path, position)?
         {
-            return Ok(Some(Lowered::scalar(element)));
+            let is_text = self.target.value_type(path) == Some(ValueType::String);
+            return Ok(Some(match is_text {
+                true => Lowered::Numbered(element),
+                false => Lowered::scalar(element),
+            }));
         }
         let Lowered::Array(whole) = self.target.reference(path, reference)? else {
             return Ok(None);

@@ -10,12 +10,13 @@ use crate::fault;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::text_array::Texts;
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
 };
-use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
+use crate::value::{ArrayValue, Elements, EnumerationValue, RecordValue, Value};
+use indexmap::IndexMap;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -207,7 +208,8 @@ impl<T: Target> Lowering<'_, T> {
                 let elements = Elements::String(texts.texts.to_vec());
                 is_known.then(|| Value::Array(ArrayValue { dims: texts.dims.clone(), elements }))
             }
-            Lowered::Record(_) | Lowered::Numbered(_) => None,
+            Lowered::Record(fields) => self.known_record(fields, wanted, settle),
+            Lowered::Numbered(_) => None,
             Lowered::Array(array) => {
                 let mut values = Vec::with_capacity(array.elements.len());
                 for element in &array.elements {
@@ -224,6 +226,21 @@ impl<T: Target> Lowering<'_, T> {
                 }
             }
         }
+    }
+
+    fn known_record(
+        &mut self,
+        fields: &[(Ident, Lowered<T::Scalar>)],
+        wanted: &ValueType,
+        settle: bool,
+    ) -> Option<Value> {
+        let ValueType::Record(type_name, types) = wanted else { return None };
+        let mut known = IndexMap::with_capacity(fields.len());
+        for (name, value) in fields {
+            let field = self.known_value(value, &types.get(name)?.value_type, settle)?;
+            known.insert(*name, field);
+        }
+        Some(Value::Record(RecordValue { type_name: type_name.clone(), fields: known }))
     }
 
     /// A value of the interpreter; `None` for records and external objects.

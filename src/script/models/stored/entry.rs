@@ -6,7 +6,7 @@ use crate::diag::Diagnostic;
 use crate::name::Ident;
 use crate::script::Session;
 use crate::script::models::translated::{Declarations, Translated};
-use crate::source::{SourceId, noting_texts, with_texts};
+use crate::source::{SourceId, noting_sources, with_sources};
 use crate::syntax;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -19,7 +19,7 @@ pub(super) struct Entry {
     searches: Vec<(Ident, bool)>,
     /// The history of the classes after the translation.
     after: Digest,
-    texts: Vec<Text>,
+    sources: Vec<Text>,
     /// Declarations, program and warnings.
     content: Vec<u8>,
 }
@@ -40,16 +40,16 @@ impl Entry {
         model: &Translated,
         warnings: &[Diagnostic],
     ) -> Option<Vec<u8>> {
-        let (content, sources) = noting_texts(|| {
+        let (content, noted) = noting_sources(|| {
             let program = model.program.to_bytes()?;
             bytes_of(&(&model.declarations, program, warnings))
         });
-        let texts = sources.into_iter().map(|source| text_of(session, source));
+        let sources = noted.into_iter().map(|source| text_of(session, source));
         let entry = Entry {
             answers: session.classes.reads.answers()?,
             searches: session.classes.history.searches().to_vec(),
             after: session.classes.history.digest(),
-            texts: texts.collect::<Option<_>>()?,
+            sources: sources.collect::<Option<_>>()?,
             content: content?,
         };
         bytes_of(&entry)
@@ -59,8 +59,8 @@ impl Entry {
         postcard::from_bytes(bytes).ok()
     }
 
-    /// The texts of the entry, if the disk answers as it did.
-    pub(super) fn texts_if_unchanged(&self, session: &Session) -> Option<Vec<SourceId>> {
+    /// The sources of the entry, if the disk answers as it did.
+    pub(super) fn sources_if_unchanged(&self, session: &Session) -> Option<Vec<SourceId>> {
         let files = Watched::new(session.world.reader(), session.classes.reads.clone());
         let mut contents = HashMap::new();
         for (question, answer) in &self.answers {
@@ -74,7 +74,7 @@ impl Entry {
         }
         // What this session has read before must be the same, too.
         session.classes.reads.answers()?;
-        let texts = self.texts.iter().map(|text| match text {
+        let sources = self.sources.iter().map(|text| match text {
             Text::File(shown, path) => {
                 let (text, _) = syntax::decode(contents.get(path)?);
                 let source = session.sources.add(shown.as_str(), text);
@@ -86,7 +86,7 @@ impl Entry {
                 Some(known.unwrap_or_else(|| session.sources.add(name.as_str(), text.as_str())))
             }
         });
-        texts.collect()
+        sources.collect()
     }
 
     /// Searches for the classes that the translation searched for; whether the same were found.
@@ -101,9 +101,9 @@ impl Entry {
     pub(super) fn model(
         &self,
         problem: &str,
-        texts: Vec<SourceId>,
+        sources: Vec<SourceId>,
     ) -> Option<(Translated, Vec<Diagnostic>)> {
-        with_texts(texts, || {
+        with_sources(sources, || {
             let (declarations, program, warnings): (Declarations, &[u8], Vec<Diagnostic>) =
                 postcard::from_bytes(&self.content).ok()?;
             let program = Program::from_bytes(program)?;

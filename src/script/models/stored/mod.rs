@@ -41,11 +41,11 @@ impl Request {
     /// The model, if it is kept and would be the same now.
     pub(super) fn find(&self, session: &mut Session, problem: &str) -> Option<Translated> {
         let entry = Entry::read(&self.store.find(&self.name)?)?;
-        let texts = entry.texts_if_unchanged(session)?;
+        let sources = entry.sources_if_unchanged(session)?;
         if !entry.repeats_searches(session) {
             return None;
         }
-        let (model, warnings) = entry.model(problem, texts)?;
+        let (model, warnings) = entry.model(problem, sources)?;
         session.output.overheard = None;
         warn(session, &warnings);
         Some(model)

@@ -40,7 +40,7 @@ struct Notes {
     answers: BTreeMap<Question, Answer>,
     /// Whether a question had two answers: classes may come from what is there no longer.
     has_changed: bool,
-    /// The files of texts.
+    /// The files of sources.
     files: HashMap<SourceId, PathBuf>,
 }
 

@@ -1,10 +1,10 @@
 //! Which variables are used at all.
 
-use crate::lower::Dae;
+use super::dae::Dae;
 use crate::symbolic::{Expr, VariableCollection};
 
 /// For every variable, whether equations, relations, assertions or events contain it.
-pub(super) fn used_variables(dae: &mut Dae) -> Vec<bool> {
+pub(crate) fn used_variables(dae: &mut Dae) -> Vec<bool> {
     let mut used = vec![false; dae.variables.len()];
     let Dae { pool, equations, initial_equations, relations, assertions, events, .. } = dae;
     let mut collection = VariableCollection::new(pool);
