@@ -45,8 +45,9 @@ pub fn kept(generations: &[Generation]) -> Vec<usize> {
 }
 
 fn cost(generations: &[Generation], at: usize) -> usize {
-    let steps = steps(at, &generations[at], generations.get(at + 1)).len();
-    let operation = generations[at].operation.as_ref().map_or(0, rows);
+    let steps = steps(&generations[at], generations.get(at + 1)).len();
+    let operation: usize =
+        generations[at].operations.iter().map(|called| rows(&called.operation)).sum();
     PER_GENE * generations[at].genes.len() + PER_STEP * steps + operation
 }
 

@@ -10,7 +10,7 @@ use super::family::{Member, family};
 use super::generation::{Generation, Origin};
 use super::kept::{MOST_ROWS, kept};
 use super::operation_table::{self, Row};
-use super::plain::title;
+use super::plain::{title, unit};
 use super::quiz;
 use super::step::Step;
 use super::trace::Trace;
@@ -333,18 +333,19 @@ fn step(walk: &Walk, g: usize) -> Value {
     let step = walk.step();
     let place = walk.place();
     let of = match step {
-        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) | Step::Operate(_, k) => Some(k),
+        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
+        Step::Operate { row, .. } => Some(row),
         _ => None,
     };
     let mut told = json!({
         "g": g,
-        "title": title(step),
+        "title": title(walk),
         "of": of,
         "place": place.map(|place| (place.script, place.line)),
         "text": explain(walk),
         "question": quiz::question(walk).map(|question| json!(question)),
     });
-    if let Step::Operate(_, row) = step {
+    if let Step::Operate { row, .. } = step {
         told["table"] = table(walk, row);
     }
     told
@@ -352,7 +353,7 @@ fn step(walk: &Walk, g: usize) -> Value {
 
 /// What an operator was given and what it returned.
 fn table(walk: &Walk, row: usize) -> Value {
-    let Some(operation) = &walk.generation().operation else { return Value::Null };
+    let Some(operation) = walk.operation() else { return Value::Null };
     let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
     let row = |row: &Row| {
         let cells = row.cells.iter().map(|&(value, mark)| (six_digits(value), mark));
@@ -378,6 +379,7 @@ fn generation(at: usize, generation: &Generation) -> Value {
         "number": at + 1,
         "n": generation.n_genes,
         "call": generation.is_call,
+        "unit": unit(generation),
         "genes": rounded(&generation.genes),
         "fitness": rounded(&generation.fitness),
         "origins": origins,

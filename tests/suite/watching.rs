@@ -15,6 +15,7 @@ model Line
   annotation(experiment(StopTime = 1));
 end Line;
 F = 0.2;
+x = 0.0;
 pop = {{0.1}, {0.5}, {0.9}, {1.3}};
 for k in 1:8 loop
   sim := Eval(\"\", \"Line\", {0.0, 0.5, 1.0}, pop, {\"a\"}, \"time\", \"y\");
@@ -87,6 +88,60 @@ fn what_was_typed_in_a_pause_is_done_again_when_the_run_resumes() {
     assert_eq!(result(&resumed), changed);
     let (_, _, plain) = run(MemoryWorld::new(), Journaling::Fresh(2.0));
     assert_ne!(plain.variable("pop"), whole.variable("pop"), "the change has changed something");
+}
+
+/// What cannot be a change is refused with the reason, and the run ends as if it had not been typed.
+#[test]
+fn changes_that_cannot_be_are_refused_and_the_run_continues() {
+    let (_, _, plain) = run(MemoryWorld::new(), Journaling::Off);
+    for (line, says) in [
+        ("garbage (", "error"),
+        ("f := 0.5", "did you mean `F`?"),
+        ("F_Mut := 0.5", "the script has no variable `F_Mut`"),
+        ("F := 0,5", "numbers are written with a point"),
+        ("F := \"much\"", "`F` is a number, but the change makes it a String"),
+        ("F := {0.5, 0.5}", "the change makes it an array [2]"),
+        ("F := 0.5; x := \"much\"", "`x` is a number"),
+    ] {
+        let (code, text, typed) = run(MemoryWorld::new().paused_after(3, &[line]), Journaling::Off);
+        assert_eq!(code, 0, "{line}: {text}");
+        assert!(says == "error" || text.contains(says), "{line}: {text}");
+        assert!(text.contains("warning["), "{line}: {text}");
+        assert_eq!(typed.variable("F"), Some(&0.2.into()), "{line}");
+        assert_eq!(typed.variable("pop"), plain.variable("pop"), "{line}");
+    }
+}
+
+/// The settings of the genetic algorithm are checked as its functions do.
+#[test]
+fn settings_out_of_range_are_refused() {
+    let settings = "F_Mut = 0.25;\nN_Population = 4;\nN_Parents = 2;\nN_Elitism = 1;\n\
+                    Seed = [1, 2, 3, 4, 5, 6];\n";
+    let script = format!("{settings}{SCRIPT}");
+    let with = |line: &str| {
+        let world = MemoryWorld::new().paused_after(3, &[line]);
+        let streams = world.streams();
+        let mut session = Session::new(Box::new(world));
+        let code = session.run_text("line.mos", &script).code;
+        (code, streams.errors())
+    };
+    for (line, says) in [
+        ("F_Mut := 7", "F_Mut is 7"),
+        ("F_Mut := -1", "F_Mut is -1"),
+        ("N_Parents := 9", "N_Parents + N_Elitism = 9 + 1"),
+        ("N_Parents := 1.5", "use a whole number"),
+        ("N_Elitism := -1", "at least 0"),
+        ("N_Population := 8", "cannot change in a run"),
+        ("Seed := {1, 2, 3}", "keep the type and the size"),
+        ("Seed := zeros(6)", "seed"),
+    ] {
+        let (code, errors) = with(line);
+        assert!(code == 0 && errors.contains(says), "{line}: {errors}");
+    }
+    for line in ["F_Mut := 1", "N_Parents := 3; N_Elitism := 1", "Seed := {6, 5, 4, 3, 2, 1}"] {
+        let (code, errors) = with(line);
+        assert!(code == 0 && !errors.contains("warning"), "{line}: {errors}");
+    }
 }
 
 #[test]

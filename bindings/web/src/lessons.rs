@@ -16,7 +16,7 @@ pub(crate) struct Check {
     lesson: usize,
     /// The learner's script.
     text: String,
-    /// The learner's further files: names and texts.
+    /// The learner's further files: names and contents.
     #[serde(default)]
     companions: Vec<(String, String)>,
 }
@@ -32,7 +32,7 @@ pub(crate) struct Lesson {
     file: &'static str,
     /// The unsolved script.
     text: &'static str,
-    /// Further files: names and texts.
+    /// Further files: names and contents.
     companions: &'static [(String, String)],
     hints: &'static [String],
     /// What a solution replaces, and with what.
