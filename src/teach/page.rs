@@ -2,13 +2,14 @@
 //! page's own.
 //!
 //! A long run would make a page that no browser opens: the page has the steps of some generations
-//! only, those that `kept` names, and the curve of convergence of all.
+//! only, those that `kept` names, and the curve of convergence of all. Its data are compressed (gzip,
+//! RFC 1952, in base64), and the browser unpacks them.
 
 pub use super::changed_run::WhatIf;
 use super::explain::explain;
 use super::family::{Member, family};
 use super::generation::{Generation, Origin};
-use super::kept::{MOST_ROWS, kept};
+use super::kept::{Kept, MOST_ROWS, kept};
 use super::operation_table::{self, Row};
 use super::plain::{title, unit};
 use super::quiz;
@@ -16,15 +17,28 @@ use super::step::Step;
 use super::trace::Trace;
 use super::walk::Walk;
 use crate::page::Page;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use maud::{Markup, html};
 use serde_json::{Value, json};
+use std::io::Write as _;
 
 const STYLE: &str = include_str!("page/style.css");
+const UNPACK: &str = include_str!("page/unpack.js");
 const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
 const CHARTS: &str = include_str!("page/charts.js");
 const WHAT_IF: &str = include_str!("page/what_if.js");
 const OPERATORS: &str = include_str!("page/operators.js");
+/// Bytes of the data of a page that are there as they are; more are compressed.
+const PLAIN: usize = 2_300_000;
+/// Bytes of the data before they are compressed: case 4.1 with the settings of the paper (5000
+/// generations of 100 individuals with 6 genes) has room for all its improvements.
+pub(super) const MOST_DATA: usize = 8_000_000;
+/// Bytes of the compressed data: with what else a page has, it stays below 3 MB.
+const MOST_PACKED: usize = 2_300_000;
 /// Points of the curve of convergence.
 const CURVE_POINTS: usize = 1000;
 
@@ -37,9 +51,10 @@ pub fn page(trace: Trace, result: Option<&str>, what_if: Option<&WhatIf>) -> Str
         title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
         scripts: &[&format!(
-            "(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n{OPERATORS}\n}})();"
+            "(() => {{\nconst start = DATA => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n\
+             {OPERATORS}\n}};\n{UNPACK}\n}})();"
         )],
-        data: &[("data", data(trace, result).to_string()), ("what-if-data", what_if.to_string())],
+        data: &[fitting(trace, &result), ("what-if-data", what_if.to_string())],
         body: body(),
     };
     page.document()
@@ -243,10 +258,37 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
         && best.is_some_and(|best| result["script"]["fitness"] == json!(best))
 }
 
-fn data(trace: Trace, result: Value) -> Value {
-    let kept = kept(&trace.generations);
+/// The data of the page with the id of their element: as they are, or compressed, with as many
+/// generations as there is room for.
+fn fitting(trace: Trace, result: &Value) -> (&'static str, String) {
     let mut walk = Walk::new(trace);
-    let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(&mut walk, &kept, g)).collect();
+    let mut most = MOST_DATA;
+    loop {
+        let kept = kept(&walk.trace().generations, most);
+        let data = data(&mut walk, &kept, result).to_string();
+        if data.len() <= PLAIN {
+            return ("data", data);
+        }
+        let packed = packed(&data);
+        if packed.len() <= MOST_PACKED || kept.numbers.len() <= 2 {
+            return ("packed-data", packed);
+        }
+        // The size is nearly in proportion; a little less, so that the next one fits.
+        most = most * 9 / 10 * MOST_PACKED / packed.len();
+    }
+}
+
+/// A string of JSON that stands for the data.
+fn packed(data: &str) -> String {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::new(9));
+    let written = encoder.write_all(data.as_bytes()).and_then(|()| encoder.finish());
+    // Writing to a vector does not fail.
+    format!("\"{}\"", BASE64.encode(written.unwrap_or_default()))
+}
+
+fn data(walk: &mut Walk, chosen: &Kept, result: &Value) -> Value {
+    let kept = &chosen.numbers;
+    let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(walk, kept, g)).collect();
     let trace = walk.trace();
     let subject = &trace.subject;
     let (minima, maxima) = ranges(&trace.generations);
@@ -254,7 +296,7 @@ fn data(trace: Trace, result: Value) -> Value {
         trace.scripts.iter().map(|s| json!({"name": s.name, "lines": s.lines})).collect();
     let generations: Vec<Value> =
         kept.iter().map(|&at| generation(at, &trace.generations[at])).collect();
-    let (families, family_of, winner) = families(&trace.generations, &kept);
+    let (families, family_of, winner) = families(&trace.generations, kept);
     json!({
         "model": subject.model,
         "parameters": subject.parameters,
@@ -268,6 +310,11 @@ fn data(trace: Trace, result: Value) -> Value {
         "scripts": scripts,
         "generations": generations,
         "of": trace.generations.len(),
+        "kept": {
+            "first": chosen.first,
+            "improvements": chosen.improvements,
+            "of": chosen.all_improvements,
+        },
         "curve": curve(&trace.generations),
         "families": families,
         "family_of": family_of,
@@ -293,10 +340,10 @@ fn families(generations: &[Generation], kept: &[usize]) -> (Vec<Value>, Vec<Valu
     let of = kept.iter().map(|&g| json!(best(g).map(|(number, _)| place(g, number)))).collect();
     let all = (0..generations.len()).filter_map(|g| best(g).map(|(number, f)| (g, number, f)));
     let winner = all.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(g, number, _)| place(g, number));
-    let told = |family: &Vec<Member>| {
+    let members = |family: &Vec<Member>| {
         family.iter().map(|member| relative(member, &generations[member.generation])).collect()
     };
-    (found.iter().map(told).collect(), of, json!(winner))
+    (found.iter().map(members).collect(), of, json!(winner))
 }
 
 fn relative(member: &Member, generation: &Generation) -> Value {
@@ -337,7 +384,7 @@ fn step(walk: &Walk, g: usize) -> Value {
         Step::Operate { row, .. } => Some(row),
         _ => None,
     };
-    let mut told = json!({
+    let mut shown = json!({
         "g": g,
         "title": title(walk),
         "of": of,
@@ -346,9 +393,9 @@ fn step(walk: &Walk, g: usize) -> Value {
         "question": quiz::question(walk).map(|question| json!(question)),
     });
     if let Step::Operate { row, .. } = step {
-        told["table"] = table(walk, row);
+        shown["table"] = table(walk, row);
     }
-    told
+    shown
 }
 
 /// What an operator was given and what it returned.

@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn right_answers_count() {
-        let (replies, score) = answered(0, &["6 3 4, 5", "6", "1", "no"]);
+        let (replies, score) = answered(0, &["6 3 4, 5", "3", "1", "no"]);
         assert_eq!(score, Score { asked: 4, right: 4 }, "{replies:?}");
         assert_eq!(score.to_string(), "4 of 4 answers were correct.");
         assert!(replies[1].contains("mates with") && replies[2].contains("were they cut"));

@@ -176,9 +176,10 @@ fn a_view_shows_generations_genes_and_fit() {
     let (code, text, _) = run(MemoryWorld::new().watched(&views), Journaling::Off);
     assert_eq!(code, 0, "{text}");
     let views = views.lock().expect("no panic");
-    assert_eq!(views.len(), 8, "one for each generation");
-    let View { progress, best, spreads, fitted, .. } = &views[7];
-    assert_eq!((progress.total, best.len()), (8, 7), "`Fit` comes after `Eval`");
+    assert_eq!(views.len(), 9, "one for each generation, and one for the whole run");
+    assert_eq!((views[7].progress.done, views[7].best.len()), (7, 7), "`Fit` comes after `Eval`");
+    let View { progress, best, spreads, fitted, .. } = &views[8];
+    assert_eq!((progress.total, progress.done, best.len()), (8, 8, 8));
     assert!(best.is_sorted_by(|a, b| a >= b), "{best:?}");
     assert_eq!((spreads[0].name.as_str(), spreads[0].unit.as_str()), ("a", "m/s"));
     let [low, middle, high] = spreads[0].generation;

@@ -35,6 +35,8 @@ pub(crate) struct Lesson {
     /// Further files: names and contents.
     companions: &'static [(String, String)],
     hints: &'static [String],
+    /// What there is to watch step by step, if there is something.
+    watch: Option<&'static str>,
     /// What a solution replaces, and with what.
     solution: &'static [[String; 2]],
 }
@@ -57,6 +59,7 @@ pub(crate) fn all() -> Vec<Lesson> {
         text: &lesson.text,
         companions: &lesson.companions,
         hints: &lesson.hints,
+        watch: lesson.watch.as_deref(),
         solution: &lesson.solution,
     };
     lessons::all().iter().map(lesson).collect()

@@ -28,6 +28,8 @@ pub(in crate::script) struct Identification {
     pub(in crate::script) recorder: Recorder,
     /// The evaluators of the last requests, for the next generation; the latest is the last.
     prepared: Vec<Prepared>,
+    /// What was viewed last: model, individuals, and how many generations there will be.
+    pub(super) shown: Option<(Study, Genomes, u64)>,
     /// When the run began.
     started: Option<f64>,
     /// Whether measured data could not be read.
@@ -272,6 +274,7 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
+    session.show_end();
     let (threads, probe) = (session.world.threads(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();

@@ -36,7 +36,24 @@ impl Session {
         if self.world.wants_view() {
             let view = view(&self.identification().recorder, study, genomes, progress);
             self.world.show_view(&view);
+            self.identification().shown = Some((study.clone(), genomes.clone(), iterations));
         }
+    }
+
+    /// The view of the whole run, where the run was viewed: each of the others is drawn before its
+    /// generation is rated.
+    pub(super) fn show_end(&mut self) {
+        let Some((study, genomes, total)) = self.identification().shown.take() else { return };
+        let recorder = &self.identification().recorder;
+        let progress = Progress {
+            label: "generation".to_owned(),
+            done: recorder.history.generations.len() as u64,
+            total,
+            best: recorder.best.as_ref().map(|best| best.fitness),
+            failures: recorder.failures,
+        };
+        let view = view(recorder, &study, &genomes, progress);
+        self.world.show_view(&view);
     }
 
     /// Executes what the user types where he asks for a pause, among the variables of the script;

@@ -1,6 +1,4 @@
-"use strict";
 // The steps of a run: which one is shown, and the controls. What a step looks like is in the panels.
-const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
 // Within another page there is no address that a link could lead to.
 const EMBEDDED = location.href === "about:srcdoc";
@@ -216,4 +214,4 @@ function follow() {
   const asked = /^#step=(\d+)$/.exec(location.hash);
   go(asked ? Number(asked[1]) - 1 : 0, true);
 }
-document.addEventListener("DOMContentLoaded", begin);
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else begin();
