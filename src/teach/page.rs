@@ -73,6 +73,7 @@ fn body() -> Markup {
         header {
             h1 { "A genetic algorithm, step by step" }
             p id="subject" {}
+            p id="kept" hidden {}
         }
         nav aria-label="Steps" { (controls()) }
         section id="story" aria-live="polite" {
@@ -84,46 +85,69 @@ fn body() -> Markup {
                 " " span id="score" {}
             }
         }
-        nav.position aria-label="Position" { (position()) }
         main {
+            nav.position aria-label="Position" { (position()) }
             div.column {
                 (panel("drawing", "This step"))
-                (what_if_panel())
-                (script_panel())
                 (panel("fit", "Measured and simulated"))
-                section id="landscape-panel" {
-                    h3 { "The landscape of the fitness" }
-                    p {
-                        label { "across " select id="across" {} } " "
-                        label { "up " select id="up" {} }
-                    }
-                    div id="landscape" {}
-                }
+                (landscape_panel())
             }
             div.column {
-                section id="population-panel" {
-                    h3 { "The population" }
-                    p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
-                    div id="population" {}
-                    p.legend { (LEGEND) }
-                    p id="individual" aria-live="polite" { "\u{a0}" }
-                }
-                (curve_panel())
-                section id="family-panel" {
-                    h3 { "The family of the best" }
-                    p {
-                        label {
-                            "of "
-                            select id="whose" {
-                                option value="now" { "this generation" }
-                                option value="winner" { "the whole run" }
-                            }
-                        }
-                    }
-                    div id="family" {}
-                }
+                (population_panel())
+                (family_panel())
                 (panel("tell", "Can the data tell?"))
             }
+            div.column {
+                (script_panel())
+                (curve_panel())
+                (what_if_panel())
+            }
+        }
+    }
+}
+
+/// The generation at hand, and the next one as far as it is made.
+fn population_panel() -> Markup {
+    html! {
+        section id="population-panel" {
+            h3 { "The population" }
+            div id="population" {}
+            p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
+            p id="individual" aria-live="polite" { "\u{a0}" }
+            p.legend id="legend" { (LEGEND) }
+        }
+    }
+}
+
+/// The fitness over two genes.
+fn landscape_panel() -> Markup {
+    html! {
+        section id="landscape-panel" {
+            h3 { "The landscape of the fitness" }
+            p {
+                label { "across " select id="across" {} } " "
+                label { "up " select id="up" {} }
+            }
+            div id="landscape" {}
+        }
+    }
+}
+
+/// Where the best comes from.
+fn family_panel() -> Markup {
+    html! {
+        section id="family-panel" {
+            h3 { "The family of the best" }
+            p {
+                label {
+                    "of "
+                    select id="whose" {
+                        option value="now" { "this generation" }
+                        option value="winner" { "the whole run" }
+                    }
+                }
+            }
+            div id="family" {}
         }
     }
 }
@@ -230,11 +254,13 @@ fn position() -> Markup {
         a id="link" href="#" { "link to this step" }
         div.sliders {
             label.slide {
-                "Generation "
+                span id="unit" { "Generation" } " "
                 input id="generations" type="range" min="1" value="1" aria-label="Generation";
                 " "
                 input id="generation" type="number" min="1" value="1"
                     aria-label="Number of the generation";
+                " "
+                output id="jump" {}
             }
             label.slide {
                 "Step "

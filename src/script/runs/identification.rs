@@ -274,11 +274,11 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
-    session.show_end();
     let (threads, probe) = (session.world.threads(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
+    session.show_end(&recorder);
     if session.options.reporting == Reporting::Off {
         session.world.end_view();
         return Ok(());

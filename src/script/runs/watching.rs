@@ -42,9 +42,8 @@ impl Session {
 
     /// The view of the whole run, where the run was viewed: each of the others is drawn before its
     /// generation is rated.
-    pub(super) fn show_end(&mut self) {
+    pub(super) fn show_end(&mut self, recorder: &Recorder) {
         let Some((study, genomes, total)) = self.identification().shown.take() else { return };
-        let recorder = &self.identification().recorder;
         let progress = Progress {
             label: "generation".to_owned(),
             done: recorder.history.generations.len() as u64,
