@@ -69,6 +69,8 @@
       visit(find(kind, data.steps.find(s => s.title === kind).g));
       scrollTo(0, 0);
       check(kind + " is drawn", all("drawing", "svg").length === 1, at("drawing").textContent);
+      const cut = all("drawing", "text").filter(t => t.getBBox().x < -1 || t.getBBox().x + t.getBBox().width > t.ownerSVGElement.viewBox.baseVal.width + 1);
+      check(kind + ": no text is cut off", cut.length === 0, cut.map(t => t.textContent).join());
       check(kind + ": the sentence is in view", bottom("text")[1] <= height, bottom("text"));
       check(kind + ": the drawing is in view", bottom("drawing")[1] <= height, bottom("drawing"));
       const rows = all("population", ".row").filter(row => row.getBoundingClientRect().bottom <= height).length;

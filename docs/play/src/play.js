@@ -71,13 +71,13 @@ function place(next) {
   showTask();
 }
 /** A lesson as it was at the beginning; the learner's version is put aside. */
-const restart = (next) => {
+function restart(next) {
   const before = work;
   const aside = isChanged() ? putAside({ ...work, title: titleOf(work) }) : undefined;
   place(next);
   listWork();
   if (aside !== undefined) say("The lesson is as it was at the beginning; your version is kept: Open, Your work.", () => { forget(aside); place(before); listWork(); });
-};
+}
 const isChanged = () => work.main !== "" && digest(work.files) !== work.opened;
 const titleOf = ({ title, lesson, main }) => title ?? (lesson ? `Lesson ${lesson}` : base(main));
 function save() {

@@ -62,7 +62,8 @@ export function putAside(work) {
 export function fromShelf(id) {
   const found = shelf().find((entry) => entry.id === id);
   if (!found) return null;
-  const { id: _, time: __, ...work } = found;
+  // It is kept already: only what is changed from here on is new.
+  const { id: _, time: __, opened: ___, ...work } = found;
   return { ...work, files: restored(work.files) };
 }
 

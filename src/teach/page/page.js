@@ -94,6 +94,14 @@ function once(id, key, draw) {
   shown[id] = key;
   draw();
 }
+// In a window of another width all is drawn again: a page within a hidden one begins with no width.
+function redraw() {
+  const before = [WIDE, TALL].join();
+  measure();
+  if ([WIDE, TALL].join() === before) return;
+  Object.keys(shown).forEach(id => delete shown[id]);
+  show();
+}
 // Predictions: which steps were answered, and how many of the answers were right.
 const answered = new Map();
 const waits = () => at("predicting").checked && DATA.steps[current].question && !answered.has(current);
@@ -240,6 +248,7 @@ function begin() {
   at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   at("link").hidden = EMBEDDED;
+  window.addEventListener("resize", redraw);
   follow();
   beginWhatIf();
   if (EMBEDDED && WHAT_IF) {
@@ -253,4 +262,4 @@ function follow() {
   const asked = /^#step=(\d+)$/.exec(location.hash);
   go(asked ? Number(asked[1]) - 1 : 0, true);
 }
-if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else begin();
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else queueMicrotask(begin);

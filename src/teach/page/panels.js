@@ -38,16 +38,21 @@ function cameAs(origin) {
   return "child of " + (origin.of[0] + 1) + " and " + (origin.of[1] + 1) + changed;
 }
 
-// Units of a drawing across: about as many as it has pixels, so that its text stays readable. The
-// columns are those of the style sheet.
-const COLUMNS = window.innerWidth < 760 ? 1 : window.innerWidth < 1180 ? 2 : 3;
-const WIDE = Math.round(Math.max(330, Math.min(560, (Math.min(window.innerWidth, 1600) - 32) / COLUMNS - 38)));
-const PHONE = COLUMNS === 1;
-// Pixels for the rows of the population.
-const TALL = PHONE ? Math.max(150, Math.min(300, window.innerHeight - 560)) : Math.max(240, Math.min(520, window.innerHeight - 380));
+// Units of a drawing across: about as many as it has pixels, so that its text stays readable; pixels
+// for the rows of the population, and how many there are without folding. The columns are those of the
+// style sheet.
+let WIDE, TALL, ROOM;
+function measure() {
+  const { innerWidth, innerHeight } = window;
+  const columns = innerWidth < 760 ? 1 : innerWidth < 1180 ? 2 : 3;
+  WIDE = Math.round(Math.max(330, Math.min(560, (Math.min(innerWidth, 1600) - 32) / columns - 38)));
+  const isPhone = columns === 1;
+  TALL = isPhone ? Math.max(130, Math.min(300, innerHeight - 540)) : Math.max(240, Math.min(520, innerHeight - 380));
+  ROOM = isPhone ? 12 : Math.max(12, Math.min(26, Math.floor(TALL / 16)));
+}
+measure();
 // Which places of a long list are shown: the first ones, the last, and those that the step is about
 // with their neighbours; between them, how many are folded. All where there is room.
-const ROOM = PHONE ? 12 : Math.max(12, Math.min(26, Math.floor(TALL / 16)));
 function folded(count, focus) {
   if (count <= ROOM || at("unfold").checked) return [...Array(count).keys()].map(place => ({ place }));
   // What the step is about first, then its neighbours, the ends, and the first ones as far as there is room.
@@ -215,6 +220,8 @@ function individual({ number, values, text, failed, crown, changed, fitness }, x
   return group;
 }
 
+// A line of text that fits the drawing.
+const fitted = (x, y, text, more) => label(x, y, text, Object.assign({ "font-size": Math.min(12, (WIDE - x) / text.length / 0.56) }, more));
 // Genes as boxes with numbers, as in a textbook; `marks` are drawn with a thick edge.
 function genes(values, y, title, fills, marks) {
   const group = svg("g", {}, label(0, y + 20, title));
@@ -243,9 +250,9 @@ function showDrawing(step) {
 function simulated(step, generation) {
   const n = generation.n, count = generation.genes.length / n, across = Math.min(count, 20), wide = Math.min(26, (WIDE - 10) / across);
   const model = DATA.model.length > 30 ? DATA.model.slice(0, 29) + "\u2026" : DATA.model;
-  const rows = [label(0, 12, "the genes of each individual are parameters of the model")];
-  const own = genome(generation.genes, n, 0), most = Math.min(n, 4), cell = (WIDE * 0.5) / most;
-  own.slice(0, most).forEach((value, j) => {
+  const rows = [fitted(0, 12, "the genes of each individual are parameters of the model")];
+  const one = genome(generation.genes, n, 0), most = Math.min(n, 4), cell = (WIDE * 0.5) / most;
+  one.slice(0, most).forEach((value, j) => {
     const text = name(j) + " = " + short(value);
     rows.push(svg("rect", { x: j * cell, y: 24, width: cell - 3, height: 28, rx: 3, fill: "var(--first)", stroke: "var(--soft)" }), label((j + 0.5) * cell, 42, text.length * 6 > cell ? short(value) : text, { "text-anchor": "middle", "font-size": Math.min(12, cell / 5) }));
   });
@@ -258,12 +265,12 @@ function simulated(step, generation) {
       : svg("circle", { class: "run", cx, cy, r: 4, fill: "var(--blue)" }, svg("title", {}, "individual " + (k + 1))));
   }
   const left = count - across * lines;
-  rows.push(label(0, 88 + lines * 18, count + (count === 1 ? " simulation, " : " simulations, ") + failures.size + " failed (\u2715)" + (left > 0 ? "; the first " + across * lines + " are shown" : ""), { class: "remark", "font-size": 11 }));
+  rows.push(fitted(0, 88 + lines * 18, count + (count === 1 ? " simulation, " : " simulations, ") + failures.size + " failed (\u2715)" + (left > 0 ? "; the first " + across * lines + " are shown" : ""), { class: "remark" }));
   return { rows, height: 98 + lines * 18 };
 }
 // Elites: the best rows of the order are copied, gene by gene.
 function elites(step, generation) {
-  const count = Math.min(generation.elites || 0, 3), rows = [label(0, 12, "the genes of the best are copied as they are")];
+  const count = Math.min(generation.elites || 0, 3), rows = [fitted(0, 12, "the genes of the best are copied as they are")];
   for (let k = 0; k < count; k++) {
     const own = genome(generation.genes, generation.n, generation.order[k]);
     rows.push(genes(own, 24 + 84 * k, "rank " + (k + 1), () => "var(--first)", () => false));
@@ -278,7 +285,7 @@ function composition(step, generation) {
   const next = follows(step.g);
   if (!next) return null;
   const kinds = [["elites", "var(--orange)", o => o && o.elite !== undefined], ["children", "var(--blue)", o => o && (o.of || o.was !== undefined)], ["random", "var(--soft)", o => o && o.random], ["from the script", "var(--line)", o => !o || o.script]];
-  const count = next.origins.length, rows = [label(0, 12, "generation " + (number(step.g) + 1) + " has " + count + " individuals")];
+  const count = next.origins.length, rows = [fitted(0, 12, "generation " + (number(step.g) + 1) + " has " + count + " individuals")];
   let x = 0, line = 0;
   for (const [what, fill, belongs] of kinds) {
     const own = next.origins.filter(belongs).length;
@@ -306,7 +313,7 @@ function drawn(step, generation) {
 // The genes of an individual in their ranges, with those of the others where they are wanted.
 function inRanges(next, k, title, withOthers) {
   const n = next.n, high = n > 5 ? 38 : 44, left = 100, width = WIDE - left - 20;
-  const rows = [label(0, 14, title, { "font-size": Math.min(12, WIDE / title.length / 0.52) })];
+  const rows = [fitted(0, 14, title)];
   for (let j = 0; j < n; j++) {
     const y = 40 + j * high, value = next.genes[k * n + j];
     const named = titled(j).length > 14 ? titled(j).slice(0, 13) + "\u2026" : titled(j);
@@ -328,7 +335,7 @@ function ranking(step, generation) {
   const [low, high] = [Math.min(...good), Math.max(...good)], left = 66, wide = (WIDE - left - 10) / order.length, floor = 150, tall = 110;
   const length = v => 8 + (high > low ? (Math.log10(Math.max(v, 10 ** low)) - low) / (high - low) : 0.5) * (tall - 8);
   const best = generation.order[0];
-  const rows = [label(0, 12, isSorted ? "sorted by fitness: the shorter the bar, the fitter" : "fitness of each individual: the shorter the bar, the fitter")];
+  const rows = [fitted(0, 12, isSorted ? "sorted by fitness: the shorter the bar, the fitter" : "fitness of each individual: the shorter the bar, the fitter")];
   [[high, short(10 ** high)], [low, short(10 ** low)]].forEach(([v, text]) => rows.push(label(left - 6, floor - length(10 ** v) + 4, text, { "text-anchor": "end", "font-size": 11 })));
   order.forEach((k, place) => {
     const v = generation.fitness[k], x = left + place * wide;
@@ -343,7 +350,7 @@ function ranking(step, generation) {
     rows.push(svg("line", { class: "border", x1: x, x2: x, y1: 24, y2: floor + 4, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
     text = "orange: elite; blue: parents, up to the dashed line; grey: no children";
   }
-  rows.push(label(left, floor + 34, text, { class: "remark", "font-size": 11 }));
+  rows.push(fitted(0, floor + 34, text, { class: "remark" }));
   return { rows, height: floor + 42 };
 }
 function crossover(step, generation) {
@@ -377,8 +384,8 @@ function mutation(step, generation) {
     genes(u, 70, "u", fill, hit),
     genes(genome(generation.after, n, step.of), 116, "after", fill, hit),
     label(0, 166, "place"),
-    label(0, 192, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge); u/F_Mut is its new"),
-    label(0, 207, "place in its range, from Param_Min on the left to Param_Max"),
+    fitted(0, 190, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge);"),
+    fitted(0, 206, "u/F_Mut is its new place from Param_Min to Param_Max"),
   ];
   const cell = (WIDE - 90) / n;
   u.forEach((value, j) => {
