@@ -97,17 +97,20 @@ const report = (name, text) => console.log(`${name}: ${text}`);
 
 for (const { name, path, options } of BROWSERS) {
   describe(name, { skip: path ? false : `${name} is not here` }, () => {
-    let browser, server, at;
+    let browser, darkBrowser, server, at;
     before(async () => {
       browser = await puppeteer.launch({ executablePath: path, headless: true, protocolTimeout: 600000, ...options });
+      // Firefox has no emulation of a preference: another instance prefers dark pages.
+      const dark = { extraPrefsFirefox: { "layout.css.prefers-color-scheme.content-override": 0, "ui.systemUsesDarkTheme": 1 } };
+      darkBrowser = name === "firefox" ? await puppeteer.launch({ executablePath: path, headless: true, protocolTimeout: 600000, ...options, ...dark }) : browser;
       server = await serve(join(web, "play"));
       at = `http://localhost:${server.address().port}/index.html`;
     });
-    after(async () => { await browser?.close(); server?.close(); });
+    after(async () => { await browser?.close(); if (darkBrowser !== browser) await darkBrowser?.close(); server?.close(); });
 
     /** The page when it is ready; what goes wrong in it fails the test. */
     async function opened(url = at, { width = 1280, height = 800, dark = false } = {}) {
-      const page = await browser.newPage();
+      const page = await (dark ? darkBrowser : browser).newPage();
       page.wrong = [];
       page.on("pageerror", (error) => page.wrong.push(error.message));
       await page.setViewport({ width, height });
@@ -212,6 +215,40 @@ for (const { name, path, options } of BROWSERS) {
       await frame.evaluate(() => document.getElementById("unfold").click());
       assert.equal(await rows(), 100);
       await closed(page);
+    });
+
+    test("the steps within the page: sentence, drawing and population are in view", async () => {
+      for (const [width, height] of [[1280, 800], [390, 844]]) {
+        const page = await opened(at, { width, height });
+        await click(page, "run");
+        await ended(page);
+        await click(page, "tab-steps");
+        const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+        await frame.waitForSelector("#population .row");
+        await wait(500);
+        const wrong = await frame.evaluate(() => {
+          const { steps } = JSON.parse(document.getElementById("data").textContent), found = [];
+          const end = innerHeight - 56, bottom = (element) => element.getBoundingClientRect().bottom;
+          for (const title of new Set(steps.map(({ title }) => title))) {
+            const { g } = steps.find((step) => step.title === title);
+            const go = (id, value) => { const input = document.getElementById(id); input.value = value; input.dispatchEvent(new Event("input")); };
+            go("generations", g + 1);
+            go("slider", steps.findIndex((step) => step.title === title) - steps.findIndex((step) => step.g === g) + 1);
+            scrollTo(0, 0);
+            const drawing = document.querySelector("#drawing svg"), rows = [...document.querySelectorAll("#population .row")].filter((row) => bottom(row) <= end).length;
+            if (!drawing || bottom(drawing) > end) found.push(`${title}: the drawing ends at ${drawing && bottom(drawing)} of ${end}`);
+            if (rows < 3) found.push(`${title}: ${rows} rows in view`);
+            for (const text of drawing?.querySelectorAll("text") ?? []) {
+              const { x, width } = text.getBBox();
+              if (x < -1 || x + width > drawing.viewBox.baseVal.width + 1) found.push(`${title}: "${text.textContent}" is cut off`);
+            }
+          }
+          return found;
+        });
+        await page.screenshot({ path: join(pictures, `${name}-${width}-steps-within.png`) });
+        assert.deepEqual(wrong, [], `${width}`);
+        await closed(page);
+      }
     });
 
     /** Types a change into a run, and waits for what becomes of it. */
@@ -529,6 +566,8 @@ for (const { name, path, options } of BROWSERS) {
           assert.ok(wide <= width, `${wide} in ${width}, ${state}`);
           await page.screenshot({ path: join(pictures, `${name}-${width}${dark ? "-dark" : ""}-${state}.png`) });
         };
+        const background = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).map(Number));
+        assert.ok(dark === background.every((part) => part < 80), `${dark ? "dark" : "light"}: ${background}`);
         await look("edit");
         await click(page, "run");
         await ended(page);

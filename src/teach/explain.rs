@@ -109,11 +109,7 @@ fn rate(walk: &Walk) -> String {
     let best = match (generation.len(), generation.is_evaluation) {
         (1, _) => format!("Here it is {}.", short(fitness)),
         (_, true) => format!("The best of these is individual {} with {}.", k + 1, short(fitness)),
-        _ => format!(
-            "The best of the generation is individual {} with {}.",
-            k + 1,
-            short(fitness)
-        ),
+        _ => format!("The best of the generation is individual {} with {}.", k + 1, short(fitness)),
     };
     let again = match generation.more_ratings {
         0 => String::new(),

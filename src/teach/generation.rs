@@ -175,7 +175,9 @@ impl Generation {
 
     /// Whether it begins with individuals that were drawn at random.
     pub(super) fn is_drawn(&self) -> bool {
-        !self.is_call && !self.drawn.is_empty() && self.origins.contains(&Origin::Random)
+        !self.is_call
+            && !self.drawn.is_empty()
+            && self.origins.contains(&Origin::Random)
             && !self.has_parents()
     }
 

@@ -84,13 +84,7 @@ pub fn summary(walk: &Walk) -> String {
         let best = generation.best().filter(|(_, fitness)| !has_failed(*fitness));
         let best = best.map_or_else(|| "-".to_owned(), |(_, fitness)| short(fitness));
         let failed = generation.failures.len();
-        let _ = writeln!(
-            text,
-            "{:>10}  {:>12}  {:>12}  {failed:>8}",
-            number + 1,
-            best,
-            mean
-        );
+        let _ = writeln!(text, "{:>10}  {:>12}  {:>12}  {failed:>8}", number + 1, best, mean);
     }
     text
 }

@@ -102,7 +102,8 @@ impl Question {
             }
             Answer::Letters { right } => {
                 let letters: String = answer.chars().filter(|c| !c.is_whitespace()).collect();
-                let fits = letters.len() == right.len() && letters.chars().all(|c| "ab".contains(c));
+                let fits =
+                    letters.len() == right.len() && letters.chars().all(|c| "ab".contains(c));
                 fits.then_some(()).ok_or_else(|| {
                     format!("Enter {} letters, each of them a or b.", right.len())
                 })?;
@@ -196,7 +197,8 @@ fn cut(generation: &Generation) -> Option<Question> {
     let (a, b) = (generation.genome(a), generation.genome(b));
     let [point] = crossed.points[..] else { return None };
     // Equal genes at the cut leave open where it is.
-    (point > 0 && point < n && a[point - 1] != b[point - 1] && a[point] != b[point]).then_some(())?;
+    (point > 0 && point < n && a[point - 1] != b[point - 1] && a[point] != b[point])
+        .then_some(())?;
     let text = format!(
         "Rank 3 has the genes  {}\nRank 4 has the genes  {}\nTheir first child has    {}\nAfter \
          which gene were they cut? Enter its number:",
@@ -296,12 +298,15 @@ mod tests {
     fn what_is_no_answer_is_asked_again_and_not_counted() {
         let (replies, score) = answered(0, &["1 2", "perhaps", "1.5", ""]);
         assert_eq!(score, Score::default());
-        assert_eq!(replies, [
-            "Enter 4 different numbers from 1 to 6.",
-            "Enter one number from 1 to 6.",
-            "Enter one number from 1 to 1.",
-            "Enter y for yes or n for no.",
-        ]);
+        assert_eq!(
+            replies,
+            [
+                "Enter 4 different numbers from 1 to 6.",
+                "Enter one number from 1 to 6.",
+                "Enter one number from 1 to 1.",
+                "Enter y for yes or n for no.",
+            ]
+        );
         assert_eq!(answered(1, &["1 2 3 9", "abc", "nonsense"]).1, Score::default());
     }
 

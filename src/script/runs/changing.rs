@@ -41,8 +41,8 @@ impl Session {
             self.workspace.variables.iter().map(|(name, value)| (name, value.clone())).collect();
         let mut statements = script.statements.iter();
         let done = statements.try_for_each(|statement| self.top_level(statement, outermost));
-        let done = done
-            .and_then(|()| self.check_change(&before).map_err(|fault| fault.at(first.span)));
+        let done =
+            done.and_then(|()| self.check_change(&before).map_err(|fault| fault.at(first.span)));
         if done.is_err() {
             self.restore(before);
         }
@@ -90,8 +90,11 @@ impl Session {
 fn unknown(name: Ident, before: &[(Ident, Value)]) -> Fault {
     let names = before.iter().map(|(name, _)| name.as_str());
     let suggestion = suggest::did_you_mean(name.as_str(), names);
-    let fault = fault!(BAD_CHANGE, "the script has no variable `{name}`, so that setting it would \
-                                    change nothing");
+    let fault = fault!(
+        BAD_CHANGE,
+        "the script has no variable `{name}`, so that setting it would \
+                                    change nothing"
+    );
     match suggestion {
         Some(suggestion) => fault.help(suggestion),
         None => fault.help("assign a variable of the script, such as `F_Mut := 0.3`"),

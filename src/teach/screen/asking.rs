@@ -61,22 +61,20 @@ impl Screen {
                 self.walk.forward();
                 return true;
             }
-            Key::Enter => {
-                match asking.question.judge(&asking.answer) {
-                    Ok(verdict) => {
-                        quiz.score.count(&verdict);
-                        self.walk.forward();
-                        let reason = explain(&self.walk);
-                        self.walk.back();
-                        asking.again = None;
-                        asking.verdict = Some(format!("{} {reason}", verdict.text));
-                    }
-                    Err(again) => {
-                        asking.answer.clear();
-                        asking.again = Some(again);
-                    }
+            Key::Enter => match asking.question.judge(&asking.answer) {
+                Ok(verdict) => {
+                    quiz.score.count(&verdict);
+                    self.walk.forward();
+                    let reason = explain(&self.walk);
+                    self.walk.back();
+                    asking.again = None;
+                    asking.verdict = Some(format!("{} {reason}", verdict.text));
                 }
-            }
+                Err(again) => {
+                    asking.answer.clear();
+                    asking.again = Some(again);
+                }
+            },
             Key::Backspace => {
                 asking.answer.pop();
             }
@@ -92,7 +90,9 @@ impl Screen {
         let asking = self.quiz.as_ref()?.asking.as_ref()?;
         let Asking { question, answer, again, verdict } = asking;
         let answered = match verdict {
-            None => format!("{answer}_{}", again.iter().map(|a| format!("\n{a}")).collect::<String>()),
+            None => {
+                format!("{answer}_{}", again.iter().map(|a| format!("\n{a}")).collect::<String>())
+            }
             Some(verdict) => format!("{answer}\n{verdict}"),
         };
         Some(format!("{} {answered}", question.text))
