@@ -5,10 +5,10 @@
 //   run.exit_code, run.output, run.errors, run.transcript, run.files["results/result.json"]
 //
 // A run is computed where it is called: in a page, call it from a worker. `start` is the same for a
-// run that somebody watches: it tells what happens, and where the engine can suspend WebAssembly
+// run that somebody watches: it sends events, and where the engine can suspend WebAssembly
 // (JavaScript Promise Integration) it lets messages in, so that a run can be stopped and changed.
 
-/** The module is at fault, not the script. What was loaded starts anew with the next run. */
+/** The module is at fault, not the script. What was loaded starts again with the next run. */
 export class GapilibError extends Error {
   name = "GapilibError";
 }
@@ -17,7 +17,7 @@ export class GapilibError extends Error {
 export const suspends = typeof WebAssembly.Suspending === "function" && typeof WebAssembly.promising === "function";
 
 /** What a run asks of its host if nobody watches. */
-const NOBODY = { tell() {}, poll: () => 0, nextLine: () => null };
+const NOBODY = { send() {}, poll: () => 0, nextLine: () => null };
 
 /** Compiles the module. `source` is its bytes or a `WebAssembly.Module`. */
 export async function load(source) {
@@ -36,7 +36,7 @@ class Instance {
       unix: () => Date.now() / 1000,
       poll: canSuspend ? new WebAssembly.Suspending(poll) : poll,
       next_line: () => this.#nextLine(),
-      tell: (place, length) => this.host.tell(JSON.parse(this.#text(place, length))),
+      send: (place, length) => this.host.send(JSON.parse(this.#text(place, length))),
     };
     this.exports = new WebAssembly.Instance(module, { host: imports }).exports;
     this.run = canSuspend ? WebAssembly.promising(this.exports.run) : this.exports.run;
@@ -89,15 +89,16 @@ class Gapilib {
   }
 
   /**
-   * The same for a run that somebody watches: `host.tell` gets what happens, `host.poll` returns 1
+   * The same for a run that somebody watches: `host.send` gets the events, `host.poll` returns 1
    * to stop and 2 where `host.nextLine` has statements to be executed before the next generation (a
    * promise of it where `suspends`). `changes` are statements with the generations that they are
-   * executed in; with `compare` the run is shown beside the one before; with `last` it ends with
-   * this generation.
+   * executed in, and end the run where one is impossible; `typed` are those that the user has typed,
+   * of which an impossible one is refused. With `compare` the run is shown beside the one before;
+   * with `last` it ends with this generation.
    */
   async start(script, files, options, host) {
-    const { changes = [], compare = false, last = null } = options;
-    const request = { script, files: encoded(files), live: true, changes, compare, last };
+    const { changes = [], typed = [], compare = false, last = null } = options;
+    const request = { script, files: encoded(files), live: true, changes, typed, compare, last };
     return decoded(await this.#asked({ run: request }, suspends, host));
   }
 

@@ -61,7 +61,7 @@ test("a model decays as its exact solution does", () => {
   assert.ok(Object.keys(run.files).some((name) => name.endsWith("decay.mat")));
 });
 
-test("a wrong script is told so, with its place", () => {
+test("a wrong script is an error with its place", () => {
   const run = gapilib.run("wrong.mos", { "wrong.mos": "x = 1\ny = x + missing\n" });
   assert.equal(run.exit_code, 1);
   assert.match(run.errors, /error\[.*missing[^]*wrong\.mos:2:9/);
@@ -82,7 +82,7 @@ test("endless recursion is an error, and the next script is answered", () => {
 
 test("a panic is an error with its message, and the next script is answered", () => {
   // The module asks its host for nothing while it makes room for a request: none has so many bytes.
-  const host = { monotonic: () => 0, unix: () => 0, poll: () => 0, next_line: () => 0, tell() {} };
+  const host = { monotonic: () => 0, unix: () => 0, poll: () => 0, next_line: () => 0, send() {} };
   const { exports } = new WebAssembly.Instance(new WebAssembly.Module(binary), { host });
   assert.throws(() => exports.request(-1), WebAssembly.RuntimeError);
   const place = new Uint8Array(exports.memory.buffer, exports.answer() >>> 0, exports.answer_length() >>> 0);
@@ -93,14 +93,14 @@ test("a panic is an error with its message, and the next script is answered", ()
 const chapter = readFileSync(join(project, "docs/src/first_fit.md"), "utf8");
 const search = Object.fromEntries([...chapter.matchAll(/^```\w+,file=(\S+)\n([^]*?)^```/gm)].map(([, name, text]) => [name, text]));
 
-test("a run tells its generations, and its steps make a page", async () => {
-  const told = [];
-  const host = { tell: (event) => told.push(event), poll: () => 0, nextLine: () => null };
+test("a run sends its generations, and its steps make a page", async () => {
+  const events = [];
+  const host = { send: (event) => events.push(event), poll: () => 0, nextLine: () => null };
   const run = await gapilib.start("fit.mos", search, {}, host);
   assert.equal(run.exit_code, 0, run.errors);
-  const printed = told.map(({ print }) => print ?? "").join("");
+  const printed = events.map(({ print }) => print ?? "").join("");
   assert.equal(printed, run.output);
-  assert.ok(told.some(({ view }) => view?.progress.done >= 1 && view.fitted.length === 1));
+  assert.ok(events.some(({ view }) => view?.progress.done >= 1 && view.fitted.length === 1));
   assert.ok(!Object.keys(run.files).some((name) => name.endsWith("run.trace")));
   assert.match(await gapilib.steps(), /Generation|step by step/);
   const changes = [{ generation: 3, statement: "F_Mut := 0.9" }];
@@ -116,7 +116,7 @@ test("a run is stopped, and changed while it goes on", async () => {
   assert.notEqual(endless["fit.mos"], search["fit.mos"]);
   let looks = 0;
   const host = {
-    tell: (event) => event.typed && typed.push(event.typed),
+    send: (event) => event.typed && typed.push(event.typed),
     poll: () => (++looks > 5 ? 1 : lines.length > 0 ? 2 : 0),
     nextLine: () => lines.shift() ?? null,
   };
@@ -126,6 +126,44 @@ test("a run is stopped, and changed while it goes on", async () => {
   assert.ok(typed[0].generation >= 1 && typed[0].statement === "F_Mut := 0.9");
   const last = await gapilib.start("fit.mos", endless, { last: 7 }, { ...host, poll: () => 0 });
   assert.match(last.output, /in 7 generations/);
+});
+
+test("a change that cannot be is refused, and the run continues", async () => {
+  const lines = ["garbage (", "F_mut := 0.5", "F_Mut := 0,5", "F_Mut := 7", "F_Mut := 0.5"], typed = [];
+  const count = lines.length;
+  const host = { send: (event) => event.typed && typed.push(event.typed), poll: () => (lines.length > 0 ? 2 : 0), nextLine: () => lines.shift() ?? null };
+  const long = { ...search, "fit.mos": search["fit.mos"].replace(/N_Cycle = \d+/, "N_Cycle = 2000") };
+  const run = await gapilib.start("fit.mos", long, {}, host);
+  assert.equal(run.exit_code, 0, run.errors);
+  assert.equal(typed.length, count);
+  assert.deepEqual(typed.map(({ refused }) => refused === null), [false, false, false, false, true]);
+  assert.match(typed[1].refused, /did you mean `F_Mut`/);
+  assert.match(typed[2].refused, /written with a point/);
+  assert.match(typed[3].refused, /F_Mut is 7/);
+  // The same where the engine cannot ask meanwhile.
+  const again = { ...host, poll: () => 0 };
+  typed.length = 0;
+  const planned = await gapilib.start("fit.mos", search, { typed: [{ generation: 2, statement: "F_Mut := 7" }] }, again);
+  assert.equal(planned.exit_code, 0, planned.errors);
+  assert.match(typed[0].refused, /F_Mut is 7/);
+});
+
+test("a changed run that fails is not shown as a result", async () => {
+  const host = { send() {}, poll: () => 0, nextLine: () => null };
+  await gapilib.start("fit.mos", search, {}, host);
+  for (const statement of ["F_Mut := 7", "F_Mut := -1", "F_mut := 0.5", "N_Parents := 1000"]) {
+    const changes = [{ generation: 3, statement }];
+    const changed = await gapilib.start("fit.mos", search, { changes, compare: true }, host);
+    assert.equal(changed.exit_code, 1, statement);
+    assert.ok(!(await gapilib.steps()).includes('"statement":'), statement);
+  }
+});
+
+test("lessons do not speak of the command line", () => {
+  for (const { number, text, introduction, hints, companions } of gapilib.ask({ lessons: {} })) {
+    const { text: said } = gapilib.ask({ check: { lesson: number, text, companions } });
+    for (const part of [introduction, said, ...hints]) assert.doesNotMatch(part, /--\w|gapi (lesson|teach|run)|\bsave\b/, `lesson ${number}`);
+  }
 });
 
 test("lessons are there, and checked", () => {

@@ -2,7 +2,8 @@
 // network. Called by `build`, which makes the module before: `node build.mjs FOLDER`.
 
 import { build } from "esbuild";
-import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
+import { mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
 import { gzipSync } from "node:zlib";
 
@@ -78,7 +79,28 @@ async function bundle(entry) {
   }
   return outputFiles[0].text;
 }
-/** Their licences, which go wherever the bundle goes. */
+/** The licences of the crates that are in the module, as cargo resolves them for it. */
+function crateLicences() {
+  const manifest = join(project, "bindings/web/Cargo.toml");
+  const cargo = (...given) => {
+    const { stdout, status, stderr } = spawnSync("cargo", [...given, "--manifest-path", manifest], { encoding: "utf8", maxBuffer: 1 << 28 });
+    if (status !== 0) throw new Error(`cargo ${given[0]}: ${stderr}`);
+    return stdout;
+  };
+  const metadata = JSON.parse(cargo("metadata", "--format-version", "1", "--locked", "--filter-platform", "wasm32-unknown-unknown"));
+  const used = new Set(cargo("tree", "--locked", "--target", "wasm32-unknown-unknown", "--edges", "normal", "--prefix", "none", "--format", "{p}").split("\n").map((line) => line.split(" ").slice(0, 2).join(" ")));
+  const crates = metadata.packages.filter(({ name, version }) => used.has(`${name} v${version}`)).sort((a, b) => (a.name < b.name ? -1 : 1));
+  const all = crates.map(({ name, version, license, manifest_path }) => {
+    const folder = join(manifest_path, "..");
+    const own = name.startsWith("gapilib");
+    const files = readdirSync(own ? project : folder).filter((file) => /^(licen[cs]e|copying|notice|unlicense)/i.test(file));
+    // Some crates carry the name of their licence only: its text is that of others in this file.
+    return [`${name} ${version} (${license ?? "see below"})`, ...files.filter((file) => statSync(join(own ? project : folder, file)).isFile()).map((file) => text(join(own ? project : folder, file)))].join("\n\n");
+  });
+  if (all.length < 20) throw new Error(`licences of ${all.length} crates`);
+  return all;
+}
+/** The licences of all that is on the page, which go wherever it goes. */
 function licences() {
   const all = [...packages].sort().map((folder) => {
     const file = readdirSync(join(here, folder)).find((name) => /^licen[cs]e/i.test(name));
@@ -86,7 +108,7 @@ function licences() {
     return `${folder.slice("node_modules/".length)}\n\n${text(join(here, folder, file))}`;
   });
   if (all.length < 5) throw new Error(`licences of ${all.length} packages`);
-  return all.join("\n\n----\n\n");
+  return [...all, ...crateLicences()].join("\n\n----\n\n");
 }
 
 /** Texts within a script element. */
@@ -103,9 +125,10 @@ put("play/play.js", page);
 put("play/worker.js", worker);
 put("play/run_examples.js", examplesRunner);
 put("play/gapilib.wasm.gz", module);
-put("play/licences.txt", licences());
+const notices = licences();
+put("play/licences.txt", notices);
 // The program is behind the page, which is painted while it is read.
 put("play.html", filled(`<style>${style}</style>`,
-  `<script type="text/plain" id="worker-source">${inline(worker)}</script>\n<script>addEventListener("DOMContentLoaded", () => {${inline(page)}});</script>\n<script type="text/plain" id="licences">${inline(licences())}</script>\n<script type="text/plain" id="module">${module.toString("base64")}</script>`));
+  `<script type="text/plain" id="worker-source">${inline(worker)}</script>\n<script>addEventListener("DOMContentLoaded", () => {${inline(page)}});</script>\n<script type="text/plain" id="licences">${inline(notices)}</script>\n<script type="text/plain" id="module">${module.toString("base64")}</script>`));
 const size = (name) => `${name} ${gzipSync(readFileSync(join(out, name)), { level: 9 }).length}`;
 console.log("bytes, compressed:", ["play/index.html", "play/play.js", "play/worker.js", "play/gapilib.wasm.gz", "play.html"].map(size).join(", "));

@@ -40,13 +40,18 @@ const BROWSERS = [
 ];
 
 const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
-/** A server that knows nothing but files, with the page in `play`, as beside the book. */
+/** What an engine without JavaScript Promise Integration lacks. */
+const WITHOUT_SUSPENDING = "delete WebAssembly.Suspending; delete WebAssembly.promising;\n";
+/** A server that knows nothing but files, with the page in `play`, as beside the book; below `plain` an
+ * engine cannot suspend WebAssembly. */
 async function serve(folder) {
   const server = createServer((request, response) => {
     const asked = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
-    const path = asked.startsWith("/play/") ? join(web, asked) : join(folder, asked);
+    const isPlain = asked.startsWith("/plain/");
+    const path = asked.startsWith("/play/") ? join(web, asked) : join(folder, isPlain ? asked.slice("/plain".length) : asked);
     if (!existsSync(path)) return response.writeHead(404).end();
-    response.writeHead(200, { "content-type": KINDS[extname(path)] ?? "application/octet-stream" }).end(readFileSync(path));
+    const patch = isPlain && asked.endsWith("/worker.js") ? WITHOUT_SUSPENDING : "";
+    response.writeHead(200, { "content-type": KINDS[extname(path)] ?? "application/octet-stream" }).end(Buffer.concat([Buffer.from(patch), readFileSync(path)]));
   });
   await new Promise((listening) => server.listen(0, "localhost", listening));
   return server;
@@ -92,17 +97,20 @@ const report = (name, text) => console.log(`${name}: ${text}`);
 
 for (const { name, path, options } of BROWSERS) {
   describe(name, { skip: path ? false : `${name} is not here` }, () => {
-    let browser, server, at;
+    let browser, darkBrowser, server, at;
     before(async () => {
       browser = await puppeteer.launch({ executablePath: path, headless: true, protocolTimeout: 600000, ...options });
+      // Firefox has no emulation of a preference: another instance prefers dark pages.
+      const dark = { extraPrefsFirefox: { "layout.css.prefers-color-scheme.content-override": 0, "ui.systemUsesDarkTheme": 1 } };
+      darkBrowser = name === "firefox" ? await puppeteer.launch({ executablePath: path, headless: true, protocolTimeout: 600000, ...options, ...dark }) : browser;
       server = await serve(join(web, "play"));
       at = `http://localhost:${server.address().port}/index.html`;
     });
-    after(async () => { await browser?.close(); server?.close(); });
+    after(async () => { await browser?.close(); if (darkBrowser !== browser) await darkBrowser?.close(); server?.close(); });
 
     /** The page when it is ready; what goes wrong in it fails the test. */
     async function opened(url = at, { width = 1280, height = 800, dark = false } = {}) {
-      const page = await browser.newPage();
+      const page = await (dark ? darkBrowser : browser).newPage();
       page.wrong = [];
       page.on("pageerror", (error) => page.wrong.push(error.message));
       await page.setViewport({ width, height });
@@ -156,8 +164,7 @@ for (const { name, path, options } of BROWSERS) {
       assert.match(await text(page, "text"), /Identified parameters of Tank[^]*800 in 40 generations, 280 failed/);
       const generation = async () => Number(/generation (\d+) of 40/.exec(await text(page, "headline"))[1]);
       const last = await generation();
-      // The last picture is drawn before its generation is rated.
-      assert.equal(last, 39);
+      assert.equal(last, 40);
       await page.screenshot({ path: join(pictures, `${name}-live.png`) });
       await click(page, "before");
       assert.equal(await generation(), last - 1);
@@ -194,10 +201,11 @@ for (const { name, path, options } of BROWSERS) {
       report(name, `can suspend a run: ${suspends}`);
       await page.$eval("#statement", (input) => { input.value = "F_Mut := 0.5"; });
       await page.$eval("#change button", (button) => button.click());
-      await page.waitForFunction(() => /F_Mut := 0.5 from generation \d+/.test(document.getElementById("status").textContent + document.getElementById("said").textContent), { timeout: 60000, polling: 5 });
+      await page.waitForFunction(() => /F_Mut := 0.5 from generation \d+/.test(document.getElementById("change-said").textContent), { timeout: 60000, polling: 5 });
       await wait(1000);
       await click(page, "stop");
       await ended(page);
+      assert.match(await text(page, "status"), /^Stopped in generation \d+/);
       assert.match(await text(page, "text"), /Identified parameters of CaseStudies.PolarizationCurve[^]*stopped/);
       // A hundred individuals are folded.
       const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
@@ -206,6 +214,204 @@ for (const { name, path, options } of BROWSERS) {
       assert.ok(await rows() <= 30, `${await rows()}`);
       await frame.evaluate(() => document.getElementById("unfold").click());
       assert.equal(await rows(), 100);
+      await closed(page);
+    });
+
+    test("the steps within the page: sentence, drawing and population are in view", async () => {
+      for (const [width, height] of [[1280, 800], [390, 844]]) {
+        const page = await opened(at, { width, height });
+        await click(page, "run");
+        await ended(page);
+        await click(page, "tab-steps");
+        const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+        await frame.waitForSelector("#population .row");
+        await wait(500);
+        const wrong = await frame.evaluate(() => {
+          const { steps } = JSON.parse(document.getElementById("data").textContent), found = [];
+          const end = innerHeight - 56, bottom = (element) => element.getBoundingClientRect().bottom;
+          for (const title of new Set(steps.map(({ title }) => title))) {
+            const { g } = steps.find((step) => step.title === title);
+            const go = (id, value) => { const input = document.getElementById(id); input.value = value; input.dispatchEvent(new Event("input")); };
+            go("generations", g + 1);
+            go("slider", steps.findIndex((step) => step.title === title) - steps.findIndex((step) => step.g === g) + 1);
+            scrollTo(0, 0);
+            const drawing = document.querySelector("#drawing svg"), rows = [...document.querySelectorAll("#population .row")].filter((row) => bottom(row) <= end).length;
+            if (!drawing || bottom(drawing) > end) found.push(`${title}: the drawing ends at ${drawing && bottom(drawing)} of ${end}`);
+            if (rows < 3) found.push(`${title}: ${rows} rows in view`);
+            for (const text of drawing?.querySelectorAll("text") ?? []) {
+              const { x, width } = text.getBBox();
+              if (x < -1 || x + width > drawing.viewBox.baseVal.width + 1) found.push(`${title}: "${text.textContent}" is cut off`);
+            }
+          }
+          return found;
+        });
+        await page.screenshot({ path: join(pictures, `${name}-${width}-steps-within.png`) });
+        assert.deepEqual(wrong, [], `${width}`);
+        await closed(page);
+      }
+    });
+
+    /** Types a change into a run, and waits for what becomes of it. */
+    async function changed(page, statement) {
+      await page.waitForFunction(() => !document.getElementById("change").hidden, { timeout: 60000 });
+      await page.evaluate((statement) => {
+        document.getElementById("change-said").textContent = "";
+        document.getElementById("statement").value = statement;
+        document.querySelector("#change button").click();
+      }, statement);
+      await page.waitForFunction(() => document.getElementById("change-said").textContent, { timeout: 120000, polling: 20 });
+      return text(page, "change-said");
+    }
+    for (const path of ["", "plain/"]) {
+      test(`a change is checked before it is made${path && ", also where the engine cannot suspend a run"}`, async () => {
+        const page = await opened(at.replace("index.html", path + "index.html"));
+        // Long enough to be changed several times.
+        await page.evaluate(() => document.querySelector("#files [role=tab]").click());
+        await open(page, "example 2");
+        await click(page, "run");
+        await page.waitForFunction(() => /generation [1-9]\d* of/.test(document.getElementById("headline").textContent), { timeout: 60000 });
+        for (const [statement, says] of [["garbage (", /^Not changed/], ["F_mut := 0.5", /^Not changed.*did you mean `F_Mut`/], ["F_Mut := 0,5", /^Not changed.*with a point/], ["F_Mut := 7", /^Not changed.*F_Mut is 7/], ["F_Mut := 0.5", /^F_Mut := 0.5 from generation \d+ on/]]) {
+          assert.match(await changed(page, statement), says, statement);
+          assert.equal(await page.$eval("#stop", (button) => button.disabled), false, `${statement}: the run continues`);
+        }
+        await click(page, "stop");
+        await ended(page);
+        // Without suspension it is computed again up to where it was stopped.
+        await page.waitForFunction(() => /^Stopped in generation/.test(document.getElementById("status").textContent), { timeout: 120000 });
+        assert.match(await text(page, "text"), /Identified parameters of CaseStudies.PolarizationCurve[^]*stopped/);
+        await closed(page);
+      });
+    }
+
+    test("a changed run that fails is not shown as a result", async () => {
+      const page = await opened();
+      await click(page, "run");
+      await ended(page);
+      await click(page, "tab-steps");
+      for (const value of ["7", "-1", "abc", "(" ]) {
+        const frame = await (await page.waitForSelector("#steps iframe")).contentFrame();
+        await frame.waitForSelector("#title");
+        await page.$eval("#status", (status) => { status.textContent = ""; });
+        await frame.evaluate((value) => { document.getElementById("changed-to").value = value; document.getElementById("run-what-if").click(); }, value);
+        await page.waitForFunction(() => /^(No comparison|Compared)/.test(document.getElementById("status").textContent), { timeout: 60000 });
+        assert.match(await text(page, "status"), /^No comparison: ./, value);
+        await frame.waitForFunction(() => /^No comparison: ./.test(document.getElementById("what-if-said").textContent));
+        assert.equal(await frame.$eval("#both", (element) => element.hidden), true, value);
+      }
+      await closed(page);
+    });
+
+    const files = (page) => page.evaluate(() => JSON.parse(localStorage.getItem("gapilib-work")).files);
+    const listed = (page) => page.$$eval("#open optgroup[label='Your work'] option", (options) => options.map(({ value }) => value));
+    /** Drops files, given by their bytes, on the page. */
+    const drop = (page, name, bytes) => page.evaluate((name, bytes) => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(bytes)], name, { type: "text/csv" }));
+      dispatchEvent(new DragEvent("drop", { dataTransfer: data }));
+    }, name, [...bytes]);
+    const write = async (page, line) => {
+      await page.click(".cm-content");
+      await page.keyboard.down("Control");
+      await page.keyboard.press("Home");
+      await page.keyboard.up("Control");
+      await page.keyboard.type(line + "\n");
+    };
+
+    test("what the user has written is kept when something else is opened", async () => {
+      const page = await opened();
+      await write(page, "// my own line");
+      await drop(page, "mine.csv", Buffer.from("t,y\n1,2\n"));
+      await page.waitForFunction(() => /mine.csv/.test(document.getElementById("said").textContent));
+      const own = await files(page);
+      await open(page, "example 1");
+      assert.ok(!("mine.csv" in await files(page)));
+      await page.click("#undo");
+      assert.deepEqual(await files(page), own);
+      assert.deepEqual(await listed(page), []);
+      // A lesson, and a link, do not lose it either.
+      await open(page, "lesson 1");
+      const { packed } = await import("./src/share.js");
+      const link = await packed({ files: { "theirs.mos": "print(1)" }, main: "theirs.mos" });
+      await page.evaluate((link) => { location.hash = "p=" + link; }, link);
+      await page.waitForFunction(() => JSON.parse(localStorage.getItem("gapilib-work")).main === "theirs.mos");
+      const [mine, ...others] = await listed(page);
+      assert.deepEqual(others, [], "what has not been changed is not kept");
+      await page.reload();
+      await page.waitForSelector("body[data-ready]", { timeout: 60000 });
+      await open(page, mine);
+      assert.deepEqual(await files(page), own);
+      // What was opened and not changed goes without a word.
+      await open(page, "example 0");
+      await open(page, "example 1");
+      assert.equal((await listed(page)).length, 1);
+      await closed(page);
+    });
+
+    test("a lesson that is started again comes back with Undo", async () => {
+      const page = await opened();
+      await open(page, "lesson 2");
+      await write(page, "// my solution");
+      const own = await files(page);
+      await page.click("#reset");
+      assert.notDeepEqual(await files(page), own);
+      await page.click("#undo");
+      assert.deepEqual(await files(page), own);
+      // A link to the lesson does not replace it either.
+      const { packed } = await import("./src/share.js");
+      const link = await packed({ files: { "02_fitness_is_a_sum.mos": "x = 1;" }, main: "02_fitness_is_a_sum.mos", lesson: 2 });
+      await open(page, "example 1");
+      await page.evaluate((link) => { location.hash = "p=" + link; }, link);
+      await page.waitForFunction(() => JSON.parse(localStorage.getItem("gapilib-work")).lesson === 2);
+      await open(page, (await listed(page))[0]);
+      assert.deepEqual(await files(page), own);
+      await closed(page);
+    });
+
+    test("tables are read as spreadsheets write them", async () => {
+      const page = await opened();
+      // Latin-1: the degree sign is one byte.
+      await drop(page, "oven.csv", Buffer.from("t [s];T [\xb0C]\n0;20\n10;30\n", "latin1"));
+      await page.waitForFunction(() => /oven.csv/.test(document.getElementById("said").textContent));
+      assert.match(await text(page, "said"), /2 rows with the columns "t \[s\]", "T \[\u00b0C\]"\. Name it in GAPILib_INI\.mos, in the line with Exp_Adq_SISO/);
+      assert.equal((await files(page))["oven.csv"], "t [s];T [\u00b0C]\n0;20\n10;30\n");
+      await drop(page, "empty.csv", Buffer.from("\n"));
+      await page.waitForFunction(() => /^Warning: empty.csv is empty/.test(document.getElementById("said").textContent));
+      // A wrong cell leads to its place.
+      const script = '(s, n, X, Y) := Exp_Adq_SISO("bad.csv", "a", "b");';
+      const { packed } = await import("./src/share.js");
+      const link = await packed({ files: { "bad.mos": script, "bad.csv": "a;b\n1;2\n3;x\n" }, main: "bad.mos" });
+      await page.evaluate((link) => { location.hash = "p=" + link; }, link);
+      await page.waitForFunction(() => JSON.parse(localStorage.getItem("gapilib-work")).main === "bad.mos");
+      await click(page, "run");
+      await ended(page);
+      await page.$eval("#text a", (link) => link.click());
+      assert.equal(await page.$eval(".cm-activeLine", (element) => element.textContent), "3;x");
+      await closed(page);
+    });
+
+    test("an error of a lesson leads to its place", async () => {
+      const page = await opened();
+      await open(page, "lesson 4");
+      await write(page, "q = missing + 1;");
+      await page.click("#check");
+      await page.waitForSelector("#lesson-said a");
+      await page.$eval("#lesson-said a", (link) => link.click());
+      assert.equal(await page.$eval(".cm-activeLine", (element) => element.textContent), "q = missing + 1;");
+      await closed(page);
+    });
+
+    test("lessons on a phone: the line to change is in view", async () => {
+      const page = await opened(at, { width: 390, height: 844 });
+      for (let number = 1; number <= 6; number++) {
+        await open(page, "lesson " + number);
+        await wait(300);
+        const marked = await page.evaluate(() => [...document.querySelectorAll(".cm-line")].filter((line) => /<-|^Guess := /.test(line.textContent)).some((line) => {
+          const { top, bottom } = line.getBoundingClientRect(), editor = document.getElementById("editor").getBoundingClientRect();
+          return top >= editor.top && bottom <= Math.min(editor.bottom, innerHeight);
+        }));
+        await page.screenshot({ path: join(pictures, `${name}-phone-lesson-${number}.png`) });
+        assert.ok(marked, `lesson ${number}`);
+      }
       await closed(page);
     });
 
@@ -360,6 +566,8 @@ for (const { name, path, options } of BROWSERS) {
           assert.ok(wide <= width, `${wide} in ${width}, ${state}`);
           await page.screenshot({ path: join(pictures, `${name}-${width}${dark ? "-dark" : ""}-${state}.png`) });
         };
+        const background = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).map(Number));
+        assert.ok(dark === background.every((part) => part < 80), `${dark ? "dark" : "light"}: ${background}`);
         await look("edit");
         await click(page, "run");
         await ended(page);

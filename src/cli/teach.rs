@@ -283,7 +283,7 @@ fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
     if generation > has {
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
-    if trace.generations[generation - 1].operation.is_some() {
+    if trace.generations[generation - 1].is_empty() {
         let message = "calls of operators have no figure of generations: use --html or --plain";
         return Err(Trouble::Message(message.to_owned()));
     }
@@ -336,8 +336,16 @@ fn show(
     Ok(())
 }
 
+/// So many evaluations of a script without a genetic algorithm are printed.
+const MOST_EVALUATIONS: usize = 5;
+
 fn print(mut walk: Walk, arguments: &TeachArgs) {
-    let all = if walk.generation().is_call { walk.trace().generations.len() } else { 1 };
+    let count = walk.trace().generations.len();
+    let all = match walk.generation() {
+        generation if generation.is_call => count,
+        generation if generation.is_evaluation => count.min(MOST_EVALUATIONS),
+        _ => 1,
+    };
     let last = arguments.generation + arguments.count.unwrap_or(all) - 1;
     let mut score = Score::default();
     loop {
@@ -359,13 +367,17 @@ fn print(mut walk: Walk, arguments: &TeachArgs) {
 fn ask(walk: &Walk, score: &mut Score) {
     let Some(question) = quiz::question(walk) else { return };
     terminal::print(&format!("? {}\n> ", question.text));
-    let mut answer = String::new();
-    match std::io::stdin().read_line(&mut answer) {
-        Ok(length) if length > 0 => {
-            let verdict = question.judge(&answer);
-            score.count(&verdict);
-            terminal::print(&format!("{}\n\n", verdict.text));
+    loop {
+        let mut answer = String::new();
+        match std::io::stdin().read_line(&mut answer) {
+            Ok(length) if length > 0 => match question.judge(&answer) {
+                Ok(verdict) => {
+                    score.count(&verdict);
+                    return terminal::print(&format!("{}\n\n", verdict.text));
+                }
+                Err(again) => terminal::print(&format!("{again}\n> ")),
+            },
+            _ => return terminal::print("(no answer)\n\n"),
         }
-        _ => terminal::print("(no answer)\n\n"),
     }
 }

@@ -60,8 +60,28 @@ struct Run<'a> {
 impl Run<'_> {
     /// Runs the script and asks the claims; what to say to the learner where one does not hold.
     fn done(&self, text: &str) -> Result<(), String> {
-        let text = self.varied(text)?;
-        let world = self.world(&text);
+        let text = match self.check.settings.is_empty() {
+            true => self.varied(text)?,
+            false => self.varied(&self.shipped_with_settings(text)?)?,
+        };
+        let mut session = self.ended(&text)?;
+        self.check.claims.iter().try_for_each(|claim| asked(&mut session, claim))
+    }
+
+    /// The shipped script with the settings of the learner's one.
+    fn shipped_with_settings(&self, text: &str) -> Result<String, String> {
+        let own = Run { check: &Check::default(), ..*self }.ended(text)?;
+        self.check.settings.iter().try_fold(self.lesson.text.clone(), |shipped, name| {
+            let value = own.variable(name).map(|value| show(value, Style::Dymola));
+            let value = value.ok_or_else(|| lacking(&format!("it has no `{name}`")))?;
+            variant::assigned(&shipped, name, &value)
+                .ok_or_else(|| lacking(&format!("the lesson has no `{name} := ...`")))
+        })
+    }
+
+    /// The session of the script when it has ended, and what the check prepares in it.
+    fn ended(&self, text: &str) -> Result<Session, String> {
+        let world = self.world(text);
         let streams = world.streams();
         let reporting = match self.lesson.report {
             Some(_) => Reporting::Usual,
@@ -90,7 +110,7 @@ impl Run<'_> {
         if session.run_text("check", &self.check.prepare).code != 0 {
             return Err(lacking(&streams.errors()));
         }
-        self.check.claims.iter().try_for_each(|claim| asked(&mut session, claim))
+        Ok(session)
     }
 
     /// The script with the values of this check.
@@ -99,7 +119,7 @@ impl Run<'_> {
             variant::assigned(&text, name, value).ok_or_else(|| {
                 format!(
                     "The check gives `{name}` other values, but the script has no line \
-                     `{name} := ...` any more. Write it again, or start again with --reset."
+                     `{name} := ...` any more. Write it again, or start the lesson again."
                 )
             })
         };
@@ -168,7 +188,7 @@ fn rounded(session: &mut Session, expression: &str) -> Result<String, String> {
 fn lacking(error: &str) -> String {
     format!(
         "The check cannot use the script: {}\n\nKeep the names of functions and variables and \
-         their sizes as the lesson has them, or start again with --reset.",
+         their sizes as the lesson has them, or start the lesson again.",
         error.trim_end()
     )
 }

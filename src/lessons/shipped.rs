@@ -23,6 +23,8 @@ pub struct Lesson {
     pub solution: Vec<[String; 2]>,
     /// What the learner has found out, shown when the lesson is passed.
     pub passed: String,
+    /// What there is to watch step by step, if there is something.
+    pub watch: Option<String>,
     /// Whether the report of the identification is part of the lesson, and what to look at in it.
     pub report: Option<String>,
     /// Further files of the learner: names and texts.
@@ -38,6 +40,10 @@ pub struct Check {
     /// Variables of the script that get another value: where the script assigns them first.
     #[serde(default)]
     pub with: BTreeMap<String, String>,
+    /// Settings that are taken from the learner's script and put into the shipped one, which is run
+    /// instead of his: what it computes then is not of his making.
+    #[serde(default)]
+    pub settings: Vec<String>,
     /// Files that replace those of the learner.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
@@ -65,6 +71,7 @@ struct Description {
     hints: Vec<String>,
     solution: Vec<[String; 2]>,
     passed: String,
+    watch: Option<String>,
     report: Option<String>,
     #[serde(default)]
     companions: Vec<String>,
@@ -100,6 +107,7 @@ impl Lesson {
             hints: description.hints,
             solution: description.solution,
             passed: description.passed,
+            watch: description.watch,
             report: description.report,
             companions: companions.map(|name| (name.clone(), text(&name))).collect(),
             checks: description.check,

@@ -29,6 +29,9 @@ codes! {
     /// What is to be changed in the middle of a run cannot be changed there.
     CANNOT_BRANCH = "cannot-branch":
         "## What it means\n\n`gapi teach --what-if` changes variables of the script as soon as `Eval` has simulated a generation. Here `Eval` is called in a function, whose variables cannot be changed from outside.\n\n## Example\n\n`gapi teach my.mos --what-if \"F_Mut := 0.5\"` where a function of `my.mos` calls `Eval`\n\n## What to do\n\nCall `Eval` from the script itself, or change the function.",
+    /// A change of a run that continues is not possible.
+    BAD_CHANGE = "bad-change":
+        "## What it means\n\nA statement that is to change a run between two generations, typed in a pause or given with `gapi teach --what-if`, names a variable that the script does not have, or gives a variable a value that the run cannot continue with. The run continues without it; with `--what-if` the changed run ends.\n\n## Example\n\n`F_mut := 0.5` where the script has `F_Mut`; `F_Mut := \"high\"`; `N_Population := 50` in the middle of a run\n\n## What to do\n\nAssign a variable of the script, and keep its type and size.",
     /// A name that the translated model does not have, or that is not a parameter.
     UNKNOWN_PARAMETER = "unknown-parameter":
         "## What it means\n\nThe model translated last has no parameter or start value of this name.\n\n## Example\n\n`Decay.k = 2;` where the model declares `rate`\n\n## What to do\n\nUse a name of the model as its flat form shows it (`gapi flatten FILE --model CLASS`).",

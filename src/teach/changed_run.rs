@@ -39,9 +39,9 @@ impl WhatIf {
 
     fn populations(&self, original: &Trace) -> Vec<Value> {
         let mut room = MOST;
-        // Only generations that the page steps through have a neighbour.
-        let kept = super::kept::kept(&original.generations);
-        let later = kept.into_iter().filter(|at| *at + 1 >= self.generation);
+        // A page that steps through fewer generations uses fewer of these.
+        let kept = super::kept::kept(&original.generations, super::page::MOST_DATA);
+        let later = kept.numbers.into_iter().filter(|at| *at + 1 >= self.generation);
         let fitting = later.map_while(|at| {
             let generation = self.trace.generations.get(at)?;
             let numbers = generation.genes.len() + generation.fitness.len();

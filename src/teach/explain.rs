@@ -13,7 +13,7 @@ use crate::ga::has_failed;
 pub fn explain(walk: &Walk) -> String {
     let generation = walk.generation();
     match walk.step() {
-        Step::Draw => draw(generation),
+        Step::Draw => draw(walk),
         Step::Simulate => simulate(walk),
         Step::Rate => rate(walk),
         Step::Sort => sort(generation),
@@ -23,33 +23,69 @@ pub fn explain(walk: &Walk) -> String {
         Step::Complete(row) => complete(walk, row),
         Step::Renew => renew(walk),
         Step::Stop => stop(walk),
-        Step::Operate(_, row) => operate(walk, row),
+        Step::Operate { row, .. } => operate(walk, row),
     }
 }
 
-fn draw(generation: &Generation) -> String {
+fn draw(walk: &Walk) -> String {
+    let generation = walk.generation();
     let numbers: usize = generation.drawn.iter().map(|drawn| drawn.numbers.len()).sum();
+    let individuals = counted(generation.len(), "individual");
+    let who = match generation.is_evaluation {
+        true if generation.len() == 1 => format!("{individuals} is sampled"),
+        true => format!("{individuals} are sampled"),
+        false => format!("The first population (N_Population = {}) is sampled", generation.len()),
+    };
     format!(
-        "The first population (N_Population = {}) is sampled: Ram_Gen_ARENA returned {} between \
-         0 and 1. Each number u sets one gene within its range, to Param_Min + (Param_Max - \
-         Param_Min) u.",
-        generation.len(),
+        "{who}: Ram_Gen_ARENA returned {} between 0 and 1. {}",
         counted(numbers, "random number"),
+        placed(walk),
     )
+}
+
+/// How the script has made genes of the random numbers, as far as the numbers show it.
+fn placed(walk: &Walk) -> &'static str {
+    let generation = walk.generation();
+    let Some(numbers) = generation.numbers_of_genes() else {
+        return "The script makes the genes of them.";
+    };
+    if numbers == generation.genes {
+        return "The script takes each number as it is as a gene.";
+    }
+    let later = walk.trace().generations[walk.number()..].iter();
+    let ranges = later.filter_map(|generation| generation.mutated.as_ref()).next();
+    let fits = ranges.is_some_and(|mutated| {
+        let n = generation.n_genes;
+        let is_there = |(k, (u, gene)): (usize, (&f64, &f64))| {
+            let (low, high) = (mutated.minima[k % n], mutated.maxima[k % n]);
+            (low + (high - low) * u - gene).abs() <= 1e-9 * (high - low).abs()
+        };
+        mutated.minima.len() == n && numbers.iter().zip(&generation.genes).enumerate().all(is_there)
+    });
+    match fits {
+        true => {
+            "Each number u sets one gene within its range, to Param_Min + (Param_Max - Param_Min) u."
+        }
+        false => "The script makes the genes of them.",
+    }
 }
 
 fn simulate(walk: &Walk) -> String {
     let generation = walk.generation();
     let (individuals, failed) = (generation.len(), generation.failures.len());
     let subject = &walk.trace().subject;
-    let shown = format!(
-        "Eval simulates `{}` once for each of {}; each row of genes is one set of values of {}.",
-        subject.model,
-        counted(individuals, "individual"),
-        subject.parameters.join(", "),
-    );
+    let names = subject.parameters.join(", ");
+    let shown = match individuals {
+        1 => format!("Eval simulates `{}` once, with one set of values of {names}.", subject.model),
+        _ => format!(
+            "Eval simulates `{}` once for each of {individuals} individuals; each row of genes is \
+             one set of values of {names}.",
+            subject.model,
+        ),
+    };
     match generation.failures.first() {
         None => shown,
+        Some((_, cause)) if individuals == 1 => format!("{shown} It cannot be simulated: {cause}."),
         Some((k, cause)) => format!(
             "{shown} {failed} of them cannot be simulated, the first is individual {}: {cause}.",
             k + 1
@@ -59,25 +95,33 @@ fn simulate(walk: &Walk) -> String {
 
 fn rate(walk: &Walk) -> String {
     let generation = walk.generation();
+    let Some((k, fitness)) = generation.best().filter(|(_, fitness)| !has_failed(*fitness)) else {
+        return "No individual could be simulated, so there is no best one.".to_owned();
+    };
     let points = walk.trace().measured.1.len();
-    match generation.best() {
-        Some((k, fitness)) if !has_failed(fitness) && generation.best_simulated.is_empty() => {
-            format!(
-                "The fitness measures the distance between simulation and measurement: smaller \
-                 is better. The best of the generation is individual {} with {}.",
-                k + 1,
-                short(fitness)
-            )
-        }
-        Some((k, fitness)) if !has_failed(fitness) => format!(
-            "Fit is the sum of squared residuals, measurement minus simulation, over {}: smaller \
-             is better. The best of the generation is individual {} with {}.",
-            counted(points, "point"),
-            k + 1,
-            short(fitness)
+    let measure = match generation.best_simulated.is_empty() || points == 0 {
+        true => "The fitness measures the distance between simulation and measurement".to_owned(),
+        false => format!(
+            "Fit is the sum of squared residuals, measurement minus simulation, over {}",
+            counted(points, "point")
         ),
-        _ => "No individual could be simulated, so there is no best one.".to_owned(),
-    }
+    };
+    let best = match (generation.len(), generation.is_evaluation) {
+        (1, _) => format!("Here it is {}.", short(fitness)),
+        (_, true) => format!("The best of these is individual {} with {}.", k + 1, short(fitness)),
+        _ => format!("The best of the generation is individual {} with {}.", k + 1, short(fitness)),
+    };
+    let again = match generation.more_ratings {
+        0 => String::new(),
+        more => format!(
+            " The script computes {} of the same individuals; shown is the first.",
+            match more {
+                1 => "another fitness".to_owned(),
+                _ => format!("{more} other ones"),
+            }
+        ),
+    };
+    format!("{measure}: smaller is better. {best}{again}")
 }
 
 fn sort(generation: &Generation) -> String {
@@ -168,16 +212,25 @@ fn complete(walk: &Walk, row: usize) -> String {
 }
 
 fn renew(walk: &Walk) -> String {
-    let next = walk.next_generation().map_or(0, Generation::len);
-    format!(
-        "Elites, children and random individuals form the next generation: {}. The stop \
-         condition is not yet met.",
-        counted(next, "individual")
-    )
+    let Some(next) = walk.next_generation() else { return String::new() };
+    let individuals = counted(next.len(), "individual");
+    if next.has_parents() {
+        return format!(
+            "Elites, children and random individuals form the next generation: {individuals}. The \
+             stop condition is not yet met."
+        );
+    }
+    match next.is_drawn() {
+        true => format!(
+            "Another search begins: the {individuals} of the next generation are drawn at random; \
+             none descends from this one."
+        ),
+        false => format!("The script makes the next generation: {individuals}."),
+    }
 }
 
 fn operate(walk: &Walk, row: usize) -> String {
-    let Some(operation) = &walk.generation().operation else { return String::new() };
+    let Some(operation) = walk.operation() else { return String::new() };
     let text = operation_text::text(operation, row, &walk.trace().subject.parameters);
     match walk.is_last() && walk.trace().full {
         true => format!("{text} The trace reached its maximum size and ends here."),
@@ -189,10 +242,13 @@ fn stop(walk: &Walk) -> String {
     if walk.generation().is_call {
         return "The operator leaves all individuals as they are.".to_owned();
     }
+    if walk.generation().is_evaluation {
+        return last_evaluation(walk);
+    }
     let why = match (walk.trace().full, walk.trace().cut) {
         (true, _) => "The trace reached its maximum size and ends here; the run continued",
         (_, true) => "The run was interrupted here",
-        _ => "The stop condition is met: the run ends",
+        _ => "The run ends here",
     };
     let generations = walk.trace().generations.len();
     match walk.generation().best() {
@@ -203,5 +259,31 @@ fn stop(walk: &Walk) -> String {
             short(fitness)
         ),
         None => format!("{why}, after {}.", counted(generations, "generation")),
+    }
+}
+
+/// The end of a script that simulates and compares, without a genetic algorithm.
+fn last_evaluation(walk: &Walk) -> String {
+    let all = &walk.trace().generations;
+    let individuals: usize = all.iter().map(Generation::len).sum();
+    let best = all.iter().enumerate().filter_map(|(number, g)| Some((number, g.best()?)));
+    let best = best.min_by(|a, b| a.1.1.total_cmp(&b.1.1)).filter(|best| !has_failed(best.1.1));
+    let why = match (walk.trace().full, walk.trace().cut) {
+        (true, _) => "The trace reached its maximum size and ends here; the run continued",
+        (_, true) => "The run was interrupted here",
+        _ => "The script simulates nothing further",
+    };
+    let what = format!("{why}: {} in all.", counted(individuals, "individual"));
+    match best {
+        Some((_, (_, fitness))) if individuals == 1 => {
+            format!("{what} Its fitness is {}.", short(fitness))
+        }
+        Some((number, (k, fitness))) => format!(
+            "{what} The best is individual {} of evaluation {} with the fitness {}.",
+            k + 1,
+            number + 1,
+            short(fitness)
+        ),
+        None => format!("{what} No fitness was computed."),
     }
 }

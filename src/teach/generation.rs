@@ -88,13 +88,41 @@ pub struct Drawn {
     pub numbers: Vec<f64>,
 }
 
+/// How far a generation had come when an operator was called by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// Nothing was simulated yet.
+    Opening,
+    /// It was simulated.
+    Simulated,
+    /// `Fit_Order` had sorted it.
+    Sorted,
+    /// `Cross` had made children.
+    Crossed,
+    /// `Mutation` had changed them.
+    Mutated,
+}
+
+/// A call of an operator by name within a generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Called {
+    /// When.
+    pub part: Part,
+    /// What.
+    pub operation: Operation,
+}
+
 /// One generation: who was simulated, how good they are, and what became of them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Generation {
     /// Whether nothing was simulated: operators were called on individuals that the script made.
     pub is_call: bool,
-    /// The call of an operator by name; all the rest is empty then, but for the number of genes.
-    pub operation: Option<Operation>,
+    /// Whether individuals were simulated that no selection, crossover or mutation follows: the
+    /// script searches in another way, or tries single values.
+    pub is_evaluation: bool,
+    /// The calls of operators by name; where there is nothing else, all the rest is empty, but for
+    /// the number of genes.
+    pub operations: Vec<Called>,
     /// The random numbers drawn before it was simulated and after the one before was mutated: the
     /// initial population, or its random completion.
     pub drawn: Vec<Drawn>,
@@ -110,6 +138,8 @@ pub struct Generation {
     pub failures: Vec<(usize, String)>,
     /// Their fitness, if it is known; smaller is better.
     pub fitness: Vec<f64>,
+    /// How often they were compared with measurements once more: with others, perhaps.
+    pub more_ratings: usize,
     /// Where it was computed.
     pub rated: Option<Place>,
     /// Simulated Y of the best individual at every measured point; empty where it is not known.
@@ -131,6 +161,32 @@ impl Generation {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.genes.is_empty()
+    }
+
+    /// How far it has come.
+    pub(super) fn part(&self) -> Part {
+        match (&self.sorted, &self.crossed, &self.mutated) {
+            (_, _, Some(_)) => Part::Mutated,
+            (_, Some(_), None) => Part::Crossed,
+            (Some(_), None, None) => Part::Sorted,
+            (None, None, None) => Part::Simulated,
+        }
+    }
+
+    /// Whether it begins with individuals that were drawn at random.
+    pub(super) fn is_drawn(&self) -> bool {
+        !self.is_call
+            && !self.drawn.is_empty()
+            && self.origins.contains(&Origin::Random)
+            && !self.has_parents()
+    }
+
+    /// The numbers that were drawn last, one for each gene; `None` where there were fewer.
+    pub(super) fn numbers_of_genes(&self) -> Option<Vec<f64>> {
+        let numbers: Vec<f64> =
+            self.drawn.iter().flat_map(|drawn| &drawn.numbers).copied().collect();
+        let first = numbers.len().checked_sub(self.genes.len())?;
+        Some(numbers[first..].to_vec())
     }
 
     /// Whether some of them came out of the generation before.

@@ -6,11 +6,9 @@ use super::operation::{Action, Operation};
 use super::step::steps;
 use std::collections::BTreeSet;
 
-/// Bytes of all generations on a page. With what else a page has, it stays below 3 MB: the twin of
-/// case 4.1 (5000 generations of 100 individuals with 6 genes) has 2.3 MB.
-const MOST: usize = 2_300_000;
-/// Of these, at most this part is for the improvements, in tenths; the rest is for the first ones.
-const IMPROVEMENTS: usize = 7;
+/// Of the bytes of a page, at most this part is for the improvements, in tenths; the rest is for the
+/// first generations.
+const IMPROVEMENTS: usize = 9;
 /// Bytes of one gene: before and after crossover and mutation, and its random number.
 const PER_GENE: usize = 36;
 /// No table of a page has more rows than this.
@@ -21,32 +19,57 @@ const PER_NUMBER: usize = 16;
 /// Bytes of one step: its sentence.
 const PER_STEP: usize = 260;
 
-/// The generations to keep, from 0, in order: the first ones, those with the largest improvements of
-/// the best together with the ones that brought them about, and the last; all of them where they fit.
-pub fn kept(generations: &[Generation]) -> Vec<usize> {
+/// The generations that a page has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Kept {
+    /// Their numbers, from 0, in order.
+    pub numbers: Vec<usize>,
+    /// How many of the first ones are there without a gap.
+    pub first: usize,
+    /// How many of those are there in which the best has improved.
+    pub improvements: usize,
+    /// How many there are in the run.
+    pub all_improvements: usize,
+}
+
+/// The generations to keep within about `most` bytes: the first and the last, those in which the best
+/// improves, the largest gain first, together with the ones that brought them about, and as many of
+/// the first ones as fit; all of them where they fit.
+pub fn kept(generations: &[Generation], most: usize) -> Kept {
     let costs: Vec<usize> = (0..generations.len()).map(|at| cost(generations, at)).collect();
-    let Some(last) = generations.len().checked_sub(1) else { return Vec::new() };
-    if costs.iter().sum::<usize>() <= MOST {
-        return (0..=last).collect();
+    let improvements = improvements(generations);
+    let last = generations.len().saturating_sub(1);
+    let mut chosen: BTreeSet<usize> = generations.iter().enumerate().map(|(at, _)| at).collect();
+    if costs.iter().sum::<usize>() > most {
+        chosen = BTreeSet::from([0, last]);
+        let mut spent = costs[0] + costs[last];
+        let mut keep = |numbers: &[usize], most: usize| {
+            let new = numbers.iter().filter(|at| !chosen.contains(at));
+            let more: usize = new.map(|at| costs[*at]).sum();
+            let fits = spent + more <= most;
+            if fits {
+                spent += more;
+                chosen.extend(numbers);
+            }
+            fits
+        };
+        let mut pairs = improvements.iter().map(|at| [at - 1, *at]);
+        // While there is room: what is kept is the largest gains without a gap.
+        let _ = pairs.all(|pair| keep(&pair, most / 10 * IMPROVEMENTS));
+        let _ = (1..last).all(|at| keep(&[at], most));
     }
-    let mut chosen = BTreeSet::from([0, last]);
-    let mut spent = costs[0] + costs[last];
-    let mut keep = |at: usize, most: usize| {
-        let fits = chosen.contains(&at) || spent + costs[at] <= most;
-        if fits && chosen.insert(at) {
-            spent += costs[at];
-        }
-        fits
-    };
-    let pairs = improvements(generations).into_iter().flat_map(|at| [at - 1, at]);
-    pairs.take_while(|at| keep(*at, MOST / 10 * IMPROVEMENTS)).for_each(drop);
-    (1..last).take_while(|at| keep(*at, MOST)).for_each(drop);
-    chosen.into_iter().collect()
+    Kept {
+        first: (0..=last).take_while(|at| chosen.contains(at)).count(),
+        improvements: improvements.iter().filter(|at| chosen.contains(at)).count(),
+        all_improvements: improvements.len(),
+        numbers: chosen.into_iter().collect(),
+    }
 }
 
 fn cost(generations: &[Generation], at: usize) -> usize {
-    let steps = steps(at, &generations[at], generations.get(at + 1)).len();
-    let operation = generations[at].operation.as_ref().map_or(0, rows);
+    let steps = steps(&generations[at], generations.get(at + 1)).len();
+    let operation: usize =
+        generations[at].operations.iter().map(|called| rows(&called.operation)).sum();
     PER_GENE * generations[at].genes.len() + PER_STEP * steps + operation
 }
 
@@ -101,17 +124,29 @@ mod tests {
 
     #[test]
     fn a_short_run_is_kept_whole() {
-        assert_eq!(kept(&long(20)), (0..20).collect::<Vec<_>>());
-        assert!(kept(&[]).is_empty());
+        let whole = kept(&long(20), 2_300_000);
+        assert_eq!((whole.numbers, whole.first), ((0..20).collect(), 20));
+        assert!(kept(&[], 2_300_000).numbers.is_empty());
     }
 
     #[test]
     fn improvements_and_the_end_of_a_long_run_are_kept() {
-        let kept = kept(&long(1000));
+        let kept = kept(&long(1000), 2_300_000);
         for at in [0, 1, 299, 300, 599, 600, 899, 900, 999] {
-            assert!(kept.contains(&at), "{at} is missing in {kept:?}");
+            assert!(kept.numbers.contains(&at), "{at} is missing in {kept:?}");
         }
-        assert!(!kept.contains(&450) && kept.len() < 200, "{}", kept.len());
-        assert!(kept.is_sorted());
+        assert!(!kept.numbers.contains(&450) && kept.numbers.len() < 200, "{kept:?}");
+        assert!(kept.numbers.is_sorted());
+        assert_eq!((kept.improvements, kept.all_improvements), (3, 3));
+        assert!(kept.numbers[..kept.first].iter().copied().eq(0..kept.first));
+        assert!(!kept.numbers.contains(&kept.first));
+    }
+
+    /// Where there is no room for all improvements, the count says so.
+    #[test]
+    fn improvements_that_do_not_fit_are_counted() {
+        let kept = kept(&long(1000), 120_000);
+        assert!(kept.improvements < 3 && kept.all_improvements == 3, "{kept:?}");
+        assert!(kept.numbers.contains(&300), "the largest gain is there: {kept:?}");
     }
 }

@@ -2,29 +2,43 @@
 //! page's own.
 //!
 //! A long run would make a page that no browser opens: the page has the steps of some generations
-//! only, those that `kept` names, and the curve of convergence of all.
+//! only, those that `kept` names, and the curve of convergence of all. Its data are compressed (gzip,
+//! RFC 1952, in base64), and the browser unpacks them.
 
 pub use super::changed_run::WhatIf;
 use super::explain::explain;
 use super::family::{Member, family};
 use super::generation::{Generation, Origin};
-use super::kept::{MOST_ROWS, kept};
+use super::kept::{Kept, MOST_ROWS, kept};
 use super::operation_table::{self, Row};
-use super::plain::title;
+use super::plain::{title, unit};
 use super::quiz;
 use super::step::Step;
 use super::trace::Trace;
 use super::walk::Walk;
 use crate::page::Page;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use maud::{Markup, html};
 use serde_json::{Value, json};
+use std::io::Write as _;
 
 const STYLE: &str = include_str!("page/style.css");
+const UNPACK: &str = include_str!("page/unpack.js");
 const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
 const CHARTS: &str = include_str!("page/charts.js");
 const WHAT_IF: &str = include_str!("page/what_if.js");
 const OPERATORS: &str = include_str!("page/operators.js");
+/// Bytes of the data of a page that are there as they are; more are compressed.
+const PLAIN: usize = 2_300_000;
+/// Bytes of the data before they are compressed: case 4.1 with the settings of the paper (5000
+/// generations of 100 individuals with 6 genes) has room for all its improvements.
+pub(super) const MOST_DATA: usize = 8_000_000;
+/// Bytes of the compressed data: with what else a page has, it stays below 3 MB.
+const MOST_PACKED: usize = 2_300_000;
 /// Points of the curve of convergence.
 const CURVE_POINTS: usize = 1000;
 
@@ -37,9 +51,10 @@ pub fn page(trace: Trace, result: Option<&str>, what_if: Option<&WhatIf>) -> Str
         title: &format!("{} - step by step", subject_name(&trace)),
         style: STYLE,
         scripts: &[&format!(
-            "(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n{OPERATORS}\n}})();"
+            "(() => {{\nconst start = DATA => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n{WHAT_IF}\n\
+             {OPERATORS}\n}};\n{UNPACK}\n}})();"
         )],
-        data: &[("data", data(trace, result).to_string()), ("what-if-data", what_if.to_string())],
+        data: &[fitting(trace, &result), ("what-if-data", what_if.to_string())],
         body: body(),
     };
     page.document()
@@ -58,6 +73,7 @@ fn body() -> Markup {
         header {
             h1 { "A genetic algorithm, step by step" }
             p id="subject" {}
+            p id="kept" hidden {}
         }
         nav aria-label="Steps" { (controls()) }
         section id="story" aria-live="polite" {
@@ -69,46 +85,69 @@ fn body() -> Markup {
                 " " span id="score" {}
             }
         }
-        nav.position aria-label="Position" { (position()) }
         main {
+            nav.position aria-label="Position" { (position()) }
             div.column {
                 (panel("drawing", "This step"))
-                (what_if_panel())
-                (script_panel())
                 (panel("fit", "Measured and simulated"))
-                section id="landscape-panel" {
-                    h3 { "The landscape of the fitness" }
-                    p {
-                        label { "across " select id="across" {} } " "
-                        label { "up " select id="up" {} }
-                    }
-                    div id="landscape" {}
-                }
+                (landscape_panel())
             }
             div.column {
-                section id="population-panel" {
-                    h3 { "The population" }
-                    p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
-                    div id="population" {}
-                    p.legend { (LEGEND) }
-                    p id="individual" aria-live="polite" { "\u{a0}" }
-                }
-                (curve_panel())
-                section id="family-panel" {
-                    h3 { "The family of the best" }
-                    p {
-                        label {
-                            "of "
-                            select id="whose" {
-                                option value="now" { "this generation" }
-                                option value="winner" { "the whole run" }
-                            }
-                        }
-                    }
-                    div id="family" {}
-                }
+                (population_panel())
+                (family_panel())
                 (panel("tell", "Can the data tell?"))
             }
+            div.column {
+                (script_panel())
+                (curve_panel())
+                (what_if_panel())
+            }
+        }
+    }
+}
+
+/// The generation at hand, and the next one as far as it is made.
+fn population_panel() -> Markup {
+    html! {
+        section id="population-panel" {
+            h3 { "The population" }
+            div id="population" {}
+            p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
+            p id="individual" aria-live="polite" { "\u{a0}" }
+            p.legend id="legend" { (LEGEND) }
+        }
+    }
+}
+
+/// The fitness over two genes.
+fn landscape_panel() -> Markup {
+    html! {
+        section id="landscape-panel" {
+            h3 { "The landscape of the fitness" }
+            p {
+                label { "across " select id="across" {} } " "
+                label { "up " select id="up" {} }
+            }
+            div id="landscape" {}
+        }
+    }
+}
+
+/// Where the best comes from.
+fn family_panel() -> Markup {
+    html! {
+        section id="family-panel" {
+            h3 { "The family of the best" }
+            p {
+                label {
+                    "of "
+                    select id="whose" {
+                        option value="now" { "this generation" }
+                        option value="winner" { "the whole run" }
+                    }
+                }
+            }
+            div id="family" {}
         }
     }
 }
@@ -215,11 +254,13 @@ fn position() -> Markup {
         a id="link" href="#" { "link to this step" }
         div.sliders {
             label.slide {
-                "Generation "
+                span id="unit" { "Generation" } " "
                 input id="generations" type="range" min="1" value="1" aria-label="Generation";
                 " "
                 input id="generation" type="number" min="1" value="1"
                     aria-label="Number of the generation";
+                " "
+                output id="jump" {}
             }
             label.slide {
                 "Step "
@@ -243,10 +284,37 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
         && best.is_some_and(|best| result["script"]["fitness"] == json!(best))
 }
 
-fn data(trace: Trace, result: Value) -> Value {
-    let kept = kept(&trace.generations);
+/// The data of the page with the id of their element: as they are, or compressed, with as many
+/// generations as there is room for.
+fn fitting(trace: Trace, result: &Value) -> (&'static str, String) {
     let mut walk = Walk::new(trace);
-    let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(&mut walk, &kept, g)).collect();
+    let mut most = MOST_DATA;
+    loop {
+        let kept = kept(&walk.trace().generations, most);
+        let data = data(&mut walk, &kept, result).to_string();
+        if data.len() <= PLAIN {
+            return ("data", data);
+        }
+        let packed = packed(&data);
+        if packed.len() <= MOST_PACKED || kept.numbers.len() <= 2 {
+            return ("packed-data", packed);
+        }
+        // The size is nearly in proportion; a little less, so that the next one fits.
+        most = most * 9 / 10 * MOST_PACKED / packed.len();
+    }
+}
+
+/// A string of JSON that stands for the data.
+fn packed(data: &str) -> String {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::new(9));
+    let written = encoder.write_all(data.as_bytes()).and_then(|()| encoder.finish());
+    // Writing to a vector does not fail.
+    format!("\"{}\"", BASE64.encode(written.unwrap_or_default()))
+}
+
+fn data(walk: &mut Walk, chosen: &Kept, result: &Value) -> Value {
+    let kept = &chosen.numbers;
+    let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(walk, kept, g)).collect();
     let trace = walk.trace();
     let subject = &trace.subject;
     let (minima, maxima) = ranges(&trace.generations);
@@ -254,7 +322,7 @@ fn data(trace: Trace, result: Value) -> Value {
         trace.scripts.iter().map(|s| json!({"name": s.name, "lines": s.lines})).collect();
     let generations: Vec<Value> =
         kept.iter().map(|&at| generation(at, &trace.generations[at])).collect();
-    let (families, family_of, winner) = families(&trace.generations, &kept);
+    let (families, family_of, winner) = families(&trace.generations, kept);
     json!({
         "model": subject.model,
         "parameters": subject.parameters,
@@ -268,6 +336,11 @@ fn data(trace: Trace, result: Value) -> Value {
         "scripts": scripts,
         "generations": generations,
         "of": trace.generations.len(),
+        "kept": {
+            "first": chosen.first,
+            "improvements": chosen.improvements,
+            "of": chosen.all_improvements,
+        },
         "curve": curve(&trace.generations),
         "families": families,
         "family_of": family_of,
@@ -293,10 +366,10 @@ fn families(generations: &[Generation], kept: &[usize]) -> (Vec<Value>, Vec<Valu
     let of = kept.iter().map(|&g| json!(best(g).map(|(number, _)| place(g, number)))).collect();
     let all = (0..generations.len()).filter_map(|g| best(g).map(|(number, f)| (g, number, f)));
     let winner = all.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(g, number, _)| place(g, number));
-    let told = |family: &Vec<Member>| {
+    let members = |family: &Vec<Member>| {
         family.iter().map(|member| relative(member, &generations[member.generation])).collect()
     };
-    (found.iter().map(told).collect(), of, json!(winner))
+    (found.iter().map(members).collect(), of, json!(winner))
 }
 
 fn relative(member: &Member, generation: &Generation) -> Value {
@@ -333,26 +406,27 @@ fn step(walk: &Walk, g: usize) -> Value {
     let step = walk.step();
     let place = walk.place();
     let of = match step {
-        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) | Step::Operate(_, k) => Some(k),
+        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
+        Step::Operate { row, .. } => Some(row),
         _ => None,
     };
-    let mut told = json!({
+    let mut shown = json!({
         "g": g,
-        "title": title(step),
+        "title": title(walk),
         "of": of,
         "place": place.map(|place| (place.script, place.line)),
         "text": explain(walk),
         "question": quiz::question(walk).map(|question| json!(question)),
     });
-    if let Step::Operate(_, row) = step {
-        told["table"] = table(walk, row);
+    if let Step::Operate { row, .. } = step {
+        shown["table"] = table(walk, row);
     }
-    told
+    shown
 }
 
 /// What an operator was given and what it returned.
 fn table(walk: &Walk, row: usize) -> Value {
-    let Some(operation) = &walk.generation().operation else { return Value::Null };
+    let Some(operation) = walk.operation() else { return Value::Null };
     let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
     let row = |row: &Row| {
         let cells = row.cells.iter().map(|&(value, mark)| (six_digits(value), mark));
@@ -378,6 +452,7 @@ fn generation(at: usize, generation: &Generation) -> Value {
         "number": at + 1,
         "n": generation.n_genes,
         "call": generation.is_call,
+        "unit": unit(generation),
         "genes": rounded(&generation.genes),
         "fitness": rounded(&generation.fitness),
         "origins": origins,

@@ -19,7 +19,7 @@ const SUMMED: usize = 4;
 /// where one helps.
 pub fn step(walk: &Walk) -> String {
     let (at, of) = walk.progress();
-    let title = title(walk.step());
+    let title = title(walk);
     let heading = format!("{}, step {} of {of}: {title}", place_in_run(walk), at + 1);
     let mut text = format!("{heading}\n{}\n", "-".repeat(heading.chars().count()));
     if let Some((script, line)) = walk.line() {
@@ -33,13 +33,22 @@ pub fn step(walk: &Walk) -> String {
 
 /// Which generation it is, or which call of operators where nothing is simulated.
 pub fn place_in_run(walk: &Walk) -> String {
-    let what = if walk.generation().is_call { "Call" } else { "Generation" };
-    format!("{what} {}", walk.number() + 1)
+    format!("{} {}", unit(walk.generation()), walk.number() + 1)
+}
+
+/// What the parts of a trace are that are counted.
+pub fn unit(generation: &Generation) -> &'static str {
+    match (generation.is_call, generation.is_evaluation) {
+        (true, _) => "Call",
+        (_, true) => "Evaluation",
+        _ => "Generation",
+    }
 }
 
 /// What a step is called.
-pub fn title(step: Step) -> &'static str {
-    match step {
+pub fn title(walk: &Walk) -> &'static str {
+    match walk.step() {
+        Step::Draw if walk.generation().is_evaluation => "sampling",
         Step::Draw => "initial population",
         Step::Simulate => "simulation",
         Step::Rate => "fitness",
@@ -50,15 +59,15 @@ pub fn title(step: Step) -> &'static str {
         Step::Complete(_) => "random completion",
         Step::Renew => "next generation",
         Step::Stop => "stop",
-        Step::Operate(kind, _) => kind.title(),
+        Step::Operate { kind, .. } => kind.title(),
     }
 }
 
 /// One line for each generation: the best fitness, the mean of those that were simulated, failures.
 pub fn summary(walk: &Walk) -> String {
-    let mut text =
-        format!("{:>10}  {:>12}  {:>12}  {:>8}\n", "generation", "best", "mean", "failed");
     let generations = &walk.trace().generations;
+    let unit = unit(walk.generation()).to_lowercase();
+    let mut text = format!("{unit:>10}  {:>12}  {:>12}  {:>8}\n", "best", "mean", "failed");
     if generations.iter().all(|generation| generation.is_call) {
         return String::new();
     }
@@ -68,16 +77,14 @@ pub fn summary(walk: &Walk) -> String {
         }
         let rated: Vec<f64> =
             generation.fitness.iter().copied().filter(|fitness| !has_failed(*fitness)).collect();
-        let mean = rated.iter().sum::<f64>() / rated.len() as f64;
-        let best = generation.best().map_or(f64::NAN, |(_, fitness)| fitness);
+        let mean = match rated.len() {
+            0 => "-".to_owned(),
+            count => short(rated.iter().sum::<f64>() / count as f64),
+        };
+        let best = generation.best().filter(|(_, fitness)| !has_failed(*fitness));
+        let best = best.map_or_else(|| "-".to_owned(), |(_, fitness)| short(fitness));
         let failed = generation.failures.len();
-        let _ = writeln!(
-            text,
-            "{:>10}  {:>12}  {:>12}  {failed:>8}",
-            number + 1,
-            short(best),
-            short(mean)
-        );
+        let _ = writeln!(text, "{:>10}  {:>12}  {:>12}  {failed:>8}", number + 1, best, mean);
     }
     text
 }
@@ -102,6 +109,9 @@ fn table(walk: &Walk) -> String {
             individuals(walk, generation, &sequence, Known::Fitness) + &sum_of_best(walk)
         }
         Step::Sort => individuals(walk, generation, &generation.order(), Known::Rank),
+        Step::Stop if generation.fitness.is_empty() => {
+            individuals(walk, generation, &in_sequence(generation), Known::Failures)
+        }
         Step::Stop => individuals(walk, generation, &generation.order(), Known::Fitness),
         Step::Elite => elites(walk),
         Step::Complete(row) => completed(walk, row),
@@ -111,7 +121,7 @@ fn table(walk: &Walk) -> String {
             Some(next) => individuals(walk, next, &in_sequence(next), Known::Genes),
             None => String::new(),
         },
-        Step::Operate(_, row) => operated(walk, row),
+        Step::Operate { row, .. } => operated(walk, row),
     }
 }
 
@@ -271,7 +281,7 @@ fn mutation(walk: &Walk, row: usize) -> String {
 
 /// What an operator was given and what it returned.
 fn operated(walk: &Walk, row: usize) -> String {
-    let Some(operation) = &walk.generation().operation else { return String::new() };
+    let Some(operation) = walk.operation() else { return String::new() };
     let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
     if table.rows.is_empty() {
         return String::new();

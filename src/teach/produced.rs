@@ -2,6 +2,7 @@
 //! to name only what does not follow from the events before.
 
 use super::event::{Event, Genes, Numbers};
+use super::operation::Kind;
 use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 
 /// The results of the paper's functions, as the next ones usually get them.
@@ -136,11 +137,9 @@ impl Produced {
                 let (n_genes, numbers) = (*n_genes as usize, std::mem::take(&mut self.numbers));
                 *self = Produced { n_genes, numbers, ended: true, ..Produced::default() };
             }
-            Event::Script { .. }
-            | Event::Subject(_)
-            | Event::Measured { .. }
-            | Event::Full
-            | Event::Operate(_) => {}
+            // What is sampled may belong to the generation at hand; all else makes the next one.
+            Event::Operate(operation) => self.ended |= operation.kind() != Kind::Sampling,
+            Event::Script { .. } | Event::Subject(_) | Event::Measured { .. } | Event::Full => {}
         }
         Some(())
     }

@@ -1,7 +1,8 @@
 //! Prediction: before a step the learner says what will happen.
 //!
-//! Asked are the selection, the first crossover and the first mutation of a generation, where the
-//! run has them: who becomes a parent, which genes a child gets from whom, whether a gene mutates.
+//! Asked are the selection, crossovers and the first mutation of a generation, where the run has
+//! them: who becomes a parent, who mates with whom, where two parents were cut, which genes a child
+//! gets from whom, whether a gene mutates. An answer that is not one is asked for again.
 
 use super::explain::short;
 use super::generation::{Generation, mate};
@@ -22,9 +23,14 @@ pub struct Question {
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 enum Answer {
-    Individuals(Vec<usize>),
-    Letters(String),
-    Decision(bool),
+    /// The numbers of these individuals, of so many.
+    Individuals { right: Vec<usize>, of: usize },
+    /// A letter for each gene.
+    Letters { right: String },
+    /// Yes or no.
+    Decision { right: bool },
+    /// One number from 1 to `of`.
+    Number { right: usize, of: usize },
 }
 
 /// What became of an answer.
@@ -65,9 +71,12 @@ impl std::fmt::Display for Score {
 /// The question before the step that `walk` stands at, if there is one.
 pub fn question(walk: &Walk) -> Option<Question> {
     let generation = walk.generation();
+    let is_even = walk.number().is_multiple_of(2);
     match walk.step() {
-        Step::Sort => selection(generation),
-        Step::Cross(0) => crossover(walk),
+        Step::Sort => selection(walk),
+        Step::Cross(0) if is_even => pair(generation),
+        Step::Cross(0) => heritage(generation),
+        Step::Cross(2) if is_even => cut(generation),
         Step::Mutate(row) if generation.mutated.as_ref()?.elites == row => mutation(walk, row),
         _ => None,
     }
@@ -75,69 +84,137 @@ pub fn question(walk: &Walk) -> Option<Question> {
 
 impl Question {
     /// Whether an answer is right.
-    pub fn judge(&self, answer: &str) -> Verdict {
+    ///
+    /// # Errors
+    ///
+    /// It is not an answer; the message says what to enter.
+    pub fn judge(&self, answer: &str) -> Result<Verdict, String> {
         let answer = answer.trim().to_lowercase();
         let (right, solution) = match &self.answer {
-            Answer::Individuals(expected) => {
-                let numbers = answer.split(|c: char| !c.is_ascii_digit());
-                let mut named: Vec<usize> = numbers.filter_map(|word| word.parse().ok()).collect();
-                named.sort_unstable();
-                named.dedup();
-                let names: Vec<String> = expected.iter().map(usize::to_string).collect();
-                (named == *expected, names.join(" "))
+            Answer::Individuals { right, of } => {
+                let named = numbers(&answer).filter(|n| n.iter().all(|n| (1..=*of).contains(n)));
+                let named = named.filter(|named| named.len() == right.len());
+                let named = named.ok_or_else(|| {
+                    format!("Enter {} different numbers from 1 to {of}.", right.len())
+                })?;
+                let names: Vec<String> = right.iter().map(usize::to_string).collect();
+                (named == *right, names.join(" "))
             }
-            Answer::Letters(expected) => {
-                let letters: String = answer.chars().filter(char::is_ascii_alphabetic).collect();
-                (letters == *expected, expected.clone())
+            Answer::Letters { right } => {
+                let letters: String = answer.chars().filter(|c| !c.is_whitespace()).collect();
+                let fits =
+                    letters.len() == right.len() && letters.chars().all(|c| "ab".contains(c));
+                fits.then_some(()).ok_or_else(|| {
+                    format!("Enter {} letters, each of them a or b.", right.len())
+                })?;
+                (letters == *right, right.clone())
             }
-            Answer::Decision(expected) => {
-                let said = match answer.chars().next() {
-                    Some('y') => Some(true),
-                    Some('n') => Some(false),
-                    _ => None,
+            Answer::Decision { right } => {
+                let said = match answer.as_str() {
+                    "y" | "yes" => true,
+                    "n" | "no" => false,
+                    _ => return Err("Enter y for yes or n for no.".to_owned()),
                 };
-                (said == Some(*expected), if *expected { "yes" } else { "no" }.to_owned())
+                (said == *right, if *right { "yes" } else { "no" }.to_owned())
             }
+            Answer::Number { right, of } => match numbers(&answer).as_deref() {
+                Some([number]) if (1..=*of).contains(number) => {
+                    (number == right, right.to_string())
+                }
+                _ => return Err(format!("Enter one number from 1 to {of}.")),
+            },
         };
         let text = match right {
             true => "Right.".to_owned(),
             false => format!("No: the answer is {solution}."),
         };
-        Verdict { right, text }
+        Ok(Verdict { right, text })
     }
 }
 
-fn selection(generation: &Generation) -> Option<Question> {
+/// The numbers of an answer, sorted, each once; `None` where there is something else.
+fn numbers(answer: &str) -> Option<Vec<usize>> {
+    let words = answer.split(|c: char| c.is_whitespace() || ",;".contains(c));
+    let words = words.filter(|word| !word.is_empty() && *word != "and");
+    let mut named = words.map(|word| word.parse().ok()).collect::<Option<Vec<usize>>>()?;
+    named.sort_unstable();
+    named.dedup();
+    Some(named)
+}
+
+fn selection(walk: &Walk) -> Option<Question> {
+    let generation = walk.generation();
     let sorted = generation.sorted.as_ref()?;
     (generation.fitness.len() == generation.len()).then_some(())?;
     let order = generation.order();
     let parents = order.get(..sorted.parents)?;
     if parents.len() <= MOST_NAMED {
-        let mut expected: Vec<usize> = parents.iter().map(|k| k + 1).collect();
-        expected.sort_unstable();
+        let mut right: Vec<usize> = parents.iter().map(|k| k + 1).collect();
+        right.sort_unstable();
         let text = format!(
             "Which {} individuals become parents? Enter their numbers (smaller fitness is better):",
             parents.len()
         );
-        return Some(Question { text, answer: Answer::Individuals(expected) });
+        let answer = Answer::Individuals { right, of: generation.len() };
+        return Some(Question { text, answer });
     }
-    let asked = generation.len() / 2;
-    let fitter =
-        (0..generation.len()).filter(|&k| generation.fitness[k] < generation.fitness[asked]);
+    // Another rank in each generation: parents and others.
+    let asked = *order.get((7 * walk.number() + order.len() / 3) % order.len())?;
     let text = format!(
-        "Individual {} has the fitness {}; {} of {} are better. {} become parents (N_Parents): \
-         does it become one? (y/n)",
+        "Individual {} has the fitness {}. {} of {} become parents (N_Parents); smaller is better. \
+         Compare it with the others: does it become one? (y/n)",
         asked + 1,
         short(generation.fitness[asked]),
-        fitter.count(),
+        parents.len(),
         generation.len(),
-        parents.len()
     );
-    Some(Question { text, answer: Answer::Decision(parents.contains(&asked)) })
+    Some(Question { text, answer: Answer::Decision { right: parents.contains(&asked) } })
 }
 
-fn crossover(walk: &Walk) -> Option<Question> {
-    let generation = walk.generation();
+/// Who mates with the best.
+fn pair(generation: &Generation) -> Option<Question> {
+    let crossed = generation.crossed.as_ref()?;
+    let order = generation.order();
+    let (a, b) = (*order.first()?, *order.get(mate(0, crossed.parents))?);
+    if crossed.parents < 3 {
+        return heritage(generation);
+    }
+    let text = format!(
+        "Individual {} has rank 1. Parents of neighbouring ranks mate. Enter the number of the \
+         individual that it mates with:",
+        a + 1
+    );
+    Some(Question { text, answer: Answer::Number { right: b + 1, of: generation.len() } })
+}
+
+/// Two parents and their first child: where they were cut.
+fn cut(generation: &Generation) -> Option<Question> {
+    let crossed = generation.crossed.as_ref()?;
+    let order = generation.order();
+    let (a, b) = (*order.get(2)?, *order.get(mate(2, crossed.parents))?);
+    let n = generation.n_genes;
+    let child = crossed.rows.chunks_exact(n).nth(crossed.elites + 2)?;
+    let (a, b) = (generation.genome(a), generation.genome(b));
+    let [point] = crossed.points[..] else { return None };
+    // Equal genes at the cut leave open where it is.
+    (point > 0 && point < n && a[point - 1] != b[point - 1] && a[point] != b[point])
+        .then_some(())?;
+    let text = format!(
+        "Rank 3 has the genes  {}\nRank 4 has the genes  {}\nTheir first child has    {}\nAfter \
+         which gene were they cut? Enter its number:",
+        row(a),
+        row(b),
+        row(child)
+    );
+    Some(Question { text, answer: Answer::Number { right: point, of: n - 1 } })
+}
+
+/// The genes of an individual in one line.
+fn row(genes: &[f64]) -> String {
+    genes.iter().map(|gene| short(*gene)).collect::<Vec<_>>().join("  ")
+}
+
+fn heritage(generation: &Generation) -> Option<Question> {
     let crossed = generation.crossed.as_ref()?;
     let order = generation.order();
     let (a, b) = (*order.first()?, *order.get(mate(0, crossed.parents))?);
@@ -146,20 +223,17 @@ fn crossover(walk: &Walk) -> Option<Question> {
         if swaps % 2 == 0 { 'a' } else { 'b' }
     };
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
-    let genes = |k: usize| {
-        let genes = generation.genome(k).iter().map(|gene| short(*gene));
-        genes.collect::<Vec<_>>().join("  ")
-    };
     let text = format!(
         "Parent a, rank 1, has the genes  {}\nParent b, rank 2, has the genes  {}\nThey exchange \
          the genes after gene {}. From which parent is each gene of the first child? One letter \
          per gene, such as {}:",
-        genes(a),
-        genes(b),
+        row(generation.genome(a)),
+        row(generation.genome(b)),
         points.join(" and after gene "),
         "ab".repeat(generation.n_genes.div_ceil(2))[..generation.n_genes].to_owned()
     );
-    Some(Question { text, answer: Answer::Letters((0..generation.n_genes).map(letter).collect()) })
+    let right = (0..generation.n_genes).map(letter).collect();
+    Some(Question { text, answer: Answer::Letters { right } })
 }
 
 fn mutation(walk: &Walk, row: usize) -> Option<Question> {
@@ -173,7 +247,7 @@ fn mutation(walk: &Walk, row: usize) -> Option<Question> {
          (y/n)",
         mutated.factor
     );
-    Some(Question { text, answer: Answer::Decision(*u < mutated.factor) })
+    Some(Question { text, answer: Answer::Decision { right: *u < mutated.factor } })
 }
 
 #[cfg(test)]
@@ -181,34 +255,91 @@ mod tests {
     use super::*;
     use crate::teach::sample;
 
-    /// The questions of the first generation, and whether these answers are right.
-    fn answered(answers: [&str; 3]) -> (Vec<String>, Score) {
+    /// The questions of a generation, and what becomes of these answers.
+    fn answered(generation: usize, answers: &[&str]) -> (Vec<String>, Score) {
         let (mut walk, mut score, mut replies) = (sample::walk(), Score::default(), Vec::new());
-        let mut answers = answers.into_iter();
-        while walk.number() == 0 {
+        walk.go_to(generation);
+        let mut answers = answers.iter();
+        while walk.number() == generation {
             if let Some(question) = question(&walk) {
-                let verdict = question.judge(answers.next().unwrap());
-                replies.push(format!("{}\n{}", question.text, verdict.text));
-                score.count(&verdict);
+                let verdict = question.judge(answers.next().expect("an answer for each question"));
+                match verdict {
+                    Ok(verdict) => {
+                        replies.push(format!("{}\n{}", question.text, verdict.text));
+                        score.count(&verdict);
+                    }
+                    Err(again) => replies.push(again),
+                }
             }
             walk.forward();
         }
+        assert!(answers.next().is_none(), "{replies:?}");
         (replies, score)
     }
 
     #[test]
     fn right_answers_count() {
-        let (replies, score) = answered(["6 3 4, 5", "AB", "no"]);
-        assert_eq!(score, Score { asked: 3, right: 3 }, "{replies:?}");
-        assert_eq!(score.to_string(), "3 of 3 answers were correct.");
+        let (replies, score) = answered(0, &["6 3 4, 5", "3", "1", "no"]);
+        assert_eq!(score, Score { asked: 4, right: 4 }, "{replies:?}");
+        assert_eq!(score.to_string(), "4 of 4 answers were correct.");
+        assert!(replies[1].contains("mates with") && replies[2].contains("were they cut"));
+        assert_eq!(answered(1, &["1 2 3 4", " A b", "y"]).1.asked, 3);
     }
 
     #[test]
     fn wrong_answers_are_put_right() {
-        let (replies, score) = answered(["1 2", "aa", ""]);
-        assert_eq!(score, Score { asked: 3, right: 0 });
+        let (replies, score) = answered(0, &["1 2 3 4", "2", "1", "yes"]);
+        assert_eq!(score, Score { asked: 4, right: 1 });
         assert!(replies[0].ends_with("No: the answer is 3 4 5 6."), "{}", replies[0]);
-        assert!(replies[1].ends_with("No: the answer is ab."), "{}", replies[1]);
-        assert!(replies[2].ends_with("No: the answer is no."), "{}", replies[2]);
+        assert!(replies[3].ends_with("No: the answer is no."), "{}", replies[3]);
+    }
+
+    #[test]
+    fn what_is_no_answer_is_asked_again_and_not_counted() {
+        let (replies, score) = answered(0, &["1 2", "perhaps", "1.5", ""]);
+        assert_eq!(score, Score::default());
+        assert_eq!(
+            replies,
+            [
+                "Enter 4 different numbers from 1 to 6.",
+                "Enter one number from 1 to 6.",
+                "Enter one number from 1 to 1.",
+                "Enter y for yes or n for no.",
+            ]
+        );
+        assert_eq!(answered(1, &["1 2 3 9", "abc", "nonsense"]).1, Score::default());
+    }
+
+    /// Of many parents one individual is asked about; how many are better would be the answer.
+    #[test]
+    fn the_question_about_many_parents_does_not_give_its_answer() {
+        let generation = |parents| crate::teach::Generation {
+            n_genes: 1,
+            genes: vec![0.5; 20],
+            fitness: (0..20).map(f64::from).collect(),
+            origins: vec![crate::teach::Origin::Script; 20],
+            sorted: Some(super::super::generation::Sorted {
+                place: crate::teach::Place::default(),
+                order: (0..20).collect(),
+                parents,
+                elites: 1,
+            }),
+            ..crate::teach::Generation::default()
+        };
+        let generations: Vec<_> = (0..12).map(|_| generation(12)).collect();
+        let mut walk = Walk::new(crate::teach::Trace { generations, ..Default::default() });
+        let mut answers = Vec::new();
+        loop {
+            if let Some(question) = question(&walk) {
+                assert!(!question.text.contains("are better"), "{}", question.text);
+                let Answer::Decision { right } = question.answer else { panic!("yes or no") };
+                answers.push(right);
+            }
+            if !walk.forward() {
+                break;
+            }
+        }
+        assert_eq!(answers.len(), 12);
+        assert!(answers.contains(&true) && answers.contains(&false), "{answers:?}");
     }
 }

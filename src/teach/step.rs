@@ -1,7 +1,7 @@
 //! The steps in which a generation is explained.
 
 use super::event::Place;
-use super::generation::{Generation, Origin, mate};
+use super::generation::{Generation, Origin, Part, mate};
 use super::operation::Kind;
 
 /// One step of a generation.
@@ -27,8 +27,15 @@ pub enum Step {
     Renew,
     /// The run ends with this generation.
     Stop,
-    /// An operator is called by name: the first of the rows that the step is about, from 0.
-    Operate(Kind, usize),
+    /// An operator is called by name.
+    Operate {
+        /// Which of the calls of the generation, from 0.
+        call: usize,
+        /// What kind of operator it is.
+        kind: Kind,
+        /// The first of the rows that the step is about, from 0.
+        row: usize,
+    },
 }
 
 /// The parts of a generation that a learner may want to skip as a whole.
@@ -58,7 +65,7 @@ impl Step {
             Step::Cross(_) => Phase::Crossing,
             Step::Mutate(_) => Phase::Mutating,
             Step::Complete(_) | Step::Renew | Step::Stop => Phase::Renewing,
-            Step::Operate(kind, _) => match kind {
+            Step::Operate { kind, .. } => match kind {
                 Kind::Sampling => Phase::Drawing,
                 Kind::Selection => Phase::Selecting,
                 Kind::Crossover => Phase::Crossing,
@@ -82,48 +89,70 @@ impl Step {
             Step::Mutate(_) => mutated,
             Step::Complete(_) => next.and_then(|next| next.drawn.last()).map(|drawn| drawn.place),
             Step::Renew | Step::Stop => sorted.or(generation.rated),
-            Step::Operate(..) => generation.operation.as_ref().map(|operation| operation.place),
+            Step::Operate { call, .. } => {
+                generation.operations.get(call).map(|called| called.operation.place)
+            }
         }
     }
 }
 
-/// The steps of `generation` number `number`, which `next` follows.
-pub fn steps(number: usize, generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
-    if let Some(operation) = &generation.operation {
-        let rows = operation.rows_of_steps().into_iter();
-        return rows.map(|row| Step::Operate(operation.kind(), row)).collect();
-    }
-    let mut steps = Vec::new();
-    if number == 0 && !generation.drawn.is_empty() && !generation.is_call {
-        steps.push(Step::Draw);
-    }
+/// The steps of `generation`, which `next` follows.
+pub fn steps(generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
+    let mut steps = operated(generation, Part::Opening);
+    steps.extend(generation.is_drawn().then_some(Step::Draw));
     if !generation.is_call {
         steps.push(Step::Simulate);
         steps.extend((!generation.fitness.is_empty()).then_some(Step::Rate));
     }
+    steps.extend(operated(generation, Part::Simulated));
     if generation.sorted.is_some() {
         steps.push(Step::Sort);
     }
+    steps.extend(operated(generation, Part::Sorted));
     if let Some(crossed) = &generation.crossed {
         steps.extend((crossed.elites > 0).then_some(Step::Elite));
         let begins_pair = |rank: &usize| mate(*rank, crossed.parents) != rank.wrapping_sub(1);
         steps.extend((0..crossed.parents).filter(begins_pair).map(Step::Cross));
     }
+    steps.extend(operated(generation, Part::Crossed));
     if let Some(mutated) = &generation.mutated {
         let rows = mutated.before.len() / generation.n_genes.max(1);
         steps.extend((mutated.elites..rows).map(Step::Mutate));
     }
+    steps.extend(operated(generation, Part::Mutated));
+    end(generation, next, &mut steps);
+    steps
+}
+
+/// The calls of operators by name in a part of a generation.
+fn operated(generation: &Generation, part: Part) -> Vec<Step> {
+    let calls = generation.operations.iter().enumerate();
+    let calls = calls.filter(|(_, called)| called.part == part);
+    let rows = calls.flat_map(|(call, called)| {
+        let kind = called.operation.kind();
+        called.operation.rows_of_steps().into_iter().map(move |row| Step::Operate {
+            call,
+            kind,
+            row,
+        })
+    });
+    rows.collect()
+}
+
+/// How a generation ends: with the next one, or with the run.
+fn end(generation: &Generation, next: Option<&Generation>, steps: &mut Vec<Step>) {
     match next {
         // Calls end with what they do; one that does nothing has this step all the same.
         _ if generation.is_call && !next.is_some_and(Generation::has_parents) => {
             steps.extend(steps.is_empty().then_some(Step::Stop));
         }
         None => steps.push(Step::Stop),
+        Some(_) if generation.is_evaluation => {}
         Some(next) => {
-            let random = |k: &usize| next.origins[*k] == Origin::Random;
+            let completes = next.has_parents();
+            let random = |k: &usize| completes && next.origins[*k] == Origin::Random;
             steps.extend((0..next.len()).filter(random).map(Step::Complete));
             steps.push(Step::Renew);
         }
     }
-    steps
 }

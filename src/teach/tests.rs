@@ -2,7 +2,9 @@
 
 use super::sample::{self, POPULATION};
 use super::{Step, Trace, Walk, page, plain};
+use base64::Engine as _;
 use proptest::prelude::*;
+use std::io::Read as _;
 
 #[test]
 fn every_step_as_text() {
@@ -126,4 +128,28 @@ fn a_page_is_whole_and_needs_no_network() {
     assert_eq!(data["generations"].as_array().unwrap().len(), 3);
     assert_eq!(data["parameters"][1], "slope");
     assert_eq!(data["y"], serde_json::json!([1.0, 4.0, 7.0]));
+}
+
+/// A run with so many generations of the sample's size; its best improves in each of the first ones.
+#[test]
+fn a_page_of_a_long_run_is_compressed_and_stays_small() {
+    let trace = Trace::read(&sample::run(3000, 12345.0).bytes).unwrap();
+    let text = page::page(trace, None, None);
+    assert!(text.len() < 3_000_000, "{} bytes", text.len());
+    let data = text.split_once(r#"id="packed-data">""#).unwrap().1.split_once('"').unwrap().0;
+    let bytes = base64::engine::general_purpose::STANDARD.decode(data).unwrap();
+    let mut json = String::new();
+    flate2::read::GzDecoder::new(&bytes[..]).read_to_string(&mut json).unwrap();
+    let data: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let numbers: Vec<u64> = data["generations"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|g| g["number"].as_u64().unwrap())
+        .collect();
+    let kept = &data["kept"];
+    assert_eq!(kept["improvements"], kept["of"], "{kept}");
+    assert_eq!(numbers.last(), Some(&3000));
+    let first = kept["first"].as_u64().unwrap();
+    assert!(first > 100 && numbers[..first as usize].iter().copied().eq(1..=first));
 }

@@ -3,8 +3,8 @@
 use super::errors::BAD_TRACE;
 use super::event::{Event, Genes, Numbers, Subject};
 use super::file;
-use super::generation::{Crossed, Drawn, Generation, Mutated, Origin, Sorted};
-use super::operation::Operation;
+use super::generation::{Called, Crossed, Drawn, Generation, Mutated, Origin, Part, Sorted};
+use super::operation::{Kind, Operation};
 use super::produced::Produced;
 use crate::bail;
 use crate::diag::Fault;
@@ -44,15 +44,11 @@ impl Trace {
     /// `bad-trace` when they are no trace, or no generation was recorded.
     pub fn read(bytes: &[u8]) -> Result<Trace, Fault> {
         let (events, whole) = file::read(bytes)?;
-        let mut reading = Reading::default();
+        let evolves = events.iter().any(makes_children);
+        let mut reading = Reading { evolves, ..Reading::default() };
         events.into_iter().for_each(|event| reading.follow(event));
         let mut trace = reading.trace;
         trace.cut = !whole;
-        // What a script does with the functions of the paper is a run or a call of theirs, whatever
-        // else it calls.
-        if trace.generations.iter().all(Generation::is_empty) {
-            trace.generations = reading.operations;
-        }
         if trace.generations.is_empty() {
             bail!(
                 BAD_TRACE, "the trace contains no generation: no individual was simulated, and no operator was called";
@@ -76,8 +72,17 @@ struct Reading {
     drawn: Vec<Drawn>,
     /// Whether something was simulated.
     is_run: bool,
-    /// The calls of operators by name.
-    operations: Vec<Generation>,
+    /// Whether something selects, crosses or mutates individuals.
+    evolves: bool,
+}
+
+/// Whether an event belongs to a genetic algorithm.
+fn makes_children(event: &Event) -> bool {
+    match event {
+        Event::Sort { .. } | Event::Cross { .. } | Event::Mutate { .. } => true,
+        Event::Operate(operation) => operation.kind() != Kind::Sampling,
+        _ => false,
+    }
 }
 
 impl Reading {
@@ -86,17 +91,50 @@ impl Reading {
         if matches!(event, Event::Simulate { n_genes: 0, .. }) {
             return;
         }
-        if let Event::Operate(operation) = event {
-            self.operations.extend(called(operation));
-            return;
-        }
-        self.is_run |= matches!(event, Event::Simulate { .. });
+        let begins = matches!(event, Event::Simulate { .. });
+        self.produced.ended |= begins && !self.evolves && self.is_rated();
+        self.is_run |= begins;
         if !self.is_run {
             self.begin_call(&event);
         }
         self.note(&event);
         self.produced.follow(&event);
         self.complete(&event);
+    }
+
+    /// Whether all that was simulated last has its fitness.
+    fn is_rated(&self) -> bool {
+        let last = self.trace.generations.last();
+        last.is_some_and(|last| last.rated.is_some() && last.fitness.len() >= last.len())
+    }
+
+    /// Notes a call of an operator by name: in the generation at hand, or alone where nothing was
+    /// simulated yet.
+    fn operate(&mut self, operation: Operation) {
+        if !operation.is_whole() {
+            return;
+        }
+        let n_genes = operation.n_genes as usize;
+        match self.trace.generations.last_mut().filter(|_| self.is_run) {
+            Some(generation) => {
+                let part = generation.part();
+                generation.operations.push(Called { part, operation });
+            }
+            None => self.trace.generations.push(Generation {
+                is_call: true,
+                n_genes,
+                operations: vec![Called { part: Part::Opening, operation }],
+                ..Generation::default()
+            }),
+        }
+    }
+
+    /// The calls of operators that came before the first simulation belong to the first generation.
+    fn opening(&mut self) -> Vec<Called> {
+        let generations = &mut self.trace.generations;
+        let is_call = |generation: &Generation| generation.is_call && generation.is_empty();
+        let first = generations.iter().rposition(|g| !is_call(g)).map_or(0, |at| at + 1);
+        generations.drain(first..).flat_map(|generation| generation.operations).collect()
     }
 
     /// Begins a generation of individuals that were not simulated, where an operator is called on
@@ -146,20 +184,26 @@ impl Reading {
             }
             Event::Simulate { place, n_genes, .. } => {
                 let n_genes = *n_genes as usize;
+                let operations = self.opening();
                 let begins = self.produced.ended
                     || self.trace.generations.last().is_some_and(|last| last.is_call)
                     || self.trace.generations.last().is_none_or(|last| last.n_genes != n_genes);
                 if begins {
                     let drawn = std::mem::take(&mut self.drawn);
                     let simulated = *place;
-                    let generation =
-                        Generation { drawn, n_genes, simulated, ..Generation::default() };
-                    self.trace.generations.push(generation);
+                    self.trace.generations.push(Generation {
+                        is_evaluation: !self.evolves,
+                        operations,
+                        drawn,
+                        n_genes,
+                        simulated,
+                        ..Generation::default()
+                    });
                 }
             }
             Event::Full => self.trace.full = true,
+            Event::Operate(operation) => self.operate(operation.clone()),
             Event::Alone { .. }
-            | Event::Operate(_)
             | Event::Rate { .. }
             | Event::Sort { .. }
             | Event::Cross { .. }
@@ -213,20 +257,15 @@ impl Reading {
                 let shifted = |(k, cause): &(u32, String)| (*k as usize + offset, cause.clone());
                 generation.failures.extend(failures.iter().map(shifted));
                 generation.genes = produced.simulated.clone();
-                let count = generation.len();
-                generation.origins = match before.last() {
-                    Some(before) if before.n_genes == generation.n_genes && !before.is_call => {
-                        before.origins_of(&generation.genes)
-                    }
-                    None if !generation.drawn.is_empty() => vec![Origin::Random; count],
-                    _ => vec![Origin::Script; count],
-                };
+                generation.origins = origins(generation, before.last());
             }
             Event::Rate { place, fitness, best } => {
                 let known = generation.best().map_or(f64::INFINITY, |(_, fitness)| fitness);
                 if fitness.iter().any(|fitness| *fitness < known) {
                     generation.best_simulated = best.clone();
                 }
+                generation.more_ratings +=
+                    usize::from(generation.fitness.len() >= generation.len());
                 generation.rated = Some(*place);
                 generation.fitness = produced.fitness.clone();
             }
@@ -251,13 +290,17 @@ impl Reading {
     }
 }
 
-/// A call of an operator by name, where a generation is otherwise; none that is damaged.
-fn called(operation: Operation) -> Option<Generation> {
-    let n_genes = operation.n_genes as usize;
-    operation.is_whole().then(|| Generation {
-        is_call: true,
-        n_genes,
-        operation: Some(operation),
-        ..Generation::default()
-    })
+/// How the individuals of a generation came into it. Where none descends from the one before, the
+/// script begins again.
+fn origins(generation: &Generation, before: Option<&Generation>) -> Vec<Origin> {
+    let is_like = |before: &&Generation| before.n_genes == generation.n_genes && !before.is_call;
+    let inherited = before.filter(is_like).map(|before| before.origins_of(&generation.genes));
+    let is_child = |origin: &Origin| matches!(origin, Origin::Elite { .. } | Origin::Child { .. });
+    match inherited {
+        Some(origins) if origins.iter().any(is_child) => origins,
+        _ if generation.numbers_of_genes().is_some() && !generation.is_empty() => {
+            vec![Origin::Random; generation.len()]
+        }
+        _ => vec![Origin::Script; generation.len()],
+    }
 }

@@ -20,8 +20,6 @@ pub struct Tracer {
     produced: Produced,
     /// Whether something was simulated.
     is_run: bool,
-    /// Whether individuals were simulated, sorted, crossed or mutated by the functions of the paper.
-    uses_paper: bool,
     unwritten: Vec<u8>,
     size: usize,
     largest: usize,
@@ -61,7 +59,6 @@ impl Tracer {
             points: (Vec::new(), Vec::new()),
             produced: Produced::default(),
             is_run: false,
-            uses_paper: false,
             size: unwritten.len(),
             unwritten,
             largest,
@@ -106,7 +103,7 @@ impl Tracer {
         genes: &[f64],
         failures: Vec<(u32, String)>,
     ) {
-        (self.is_run, self.uses_paper) = (true, true);
+        self.is_run = true;
         if self.subject.as_ref() != Some(subject) {
             self.push(&Event::Subject(subject.clone()));
             self.subject = Some(subject.clone());
@@ -179,10 +176,9 @@ impl Tracer {
         });
     }
 
-    /// Whether calls of operators by name are recorded: not beside functions of the paper, whose
-    /// steps are what the trace shows then.
+    /// Whether calls of operators by name are recorded: not where the trace has its largest size.
     pub fn takes_operations(&self) -> bool {
-        !self.uses_paper && !self.full
+        !self.full
     }
 
     /// An operator was called by name.
@@ -195,7 +191,6 @@ impl Tracer {
     /// An operator is called on individuals with so many genes. In a run the simulations say how many
     /// these are.
     fn alone(&mut self, n_genes: usize) {
-        self.uses_paper = true;
         if !self.is_run && n_genes != self.produced.n_genes {
             self.push(&Event::Alone { n_genes: n_genes as u32 });
         }

@@ -2,6 +2,7 @@
 
 use super::event::Place;
 use super::generation::Generation;
+use super::operation::Operation;
 use super::step::{Step, steps};
 use super::stop_test::loop_around;
 use super::trace::{Script, Trace};
@@ -51,6 +52,16 @@ impl Walk {
     /// The step.
     pub fn step(&self) -> Step {
         self.steps[self.at]
+    }
+
+    /// The call of an operator by name that the step is about.
+    pub fn operation(&self) -> Option<&Operation> {
+        match self.step() {
+            Step::Operate { call, .. } => {
+                self.generation().operations.get(call).map(|called| &called.operation)
+            }
+            _ => None,
+        }
     }
 
     /// Which of the steps of this generation it is, from 0, and how many there are.
@@ -158,6 +169,6 @@ impl Walk {
         self.generation = generation;
         self.at = 0;
         let next = self.trace.generations.get(generation + 1);
-        self.steps = steps(generation, &self.trace.generations[generation], next);
+        self.steps = steps(&self.trace.generations[generation], next);
     }
 }

@@ -11,7 +11,12 @@
   const choose = (id, value, event) => { at(id).value = value; at(id).dispatchEvent(new Event(event || "change", { bubbles: true })); };
   const step = () => Number(/^#step=(\d+)$/.exec(location.hash)[1]);
   const find = (part, g) => data.steps.findIndex(s => s.title === part && s.g === g) + 1;
-  const visit = number => { click("first"); for (let k = 1; k < number; k++) click("next"); };
+  // Browsers count changes of the address, and ignore them where there are many.
+  const visit = number => {
+    const { g } = data.steps[number - 1];
+    choose("generations", String(g + 1), "input");
+    choose("slider", String(number - data.steps.findIndex(s => s.g === g)), "input");
+  };
 
   function buttonsAndKeys() {
     check("the first step is shown first", title().startsWith("Generation 1 of") && at("back").disabled && at("first").disabled);
@@ -56,11 +61,29 @@
     check("a line parts the parents from the others", all("population", ".cut").length === 1);
     visit(find("fitness", 0));
     check("all measured points are drawn", all("fit", "circle").length === data.x.length, all("fit", "circle").length);
-    check("the sum is told", /sum of the squared distances.*: [\d.]+/.test(at("fit").textContent), at("fit").textContent);
+    check("the sum is given", /sum of the squared distances.*: [\d.]+/.test(at("fit").textContent), at("fit").textContent);
     check("the fitness stands behind each row", all("population", ".row").every(row => row.querySelectorAll("text").length === 2));
     future();
     visit(find("fitness", 0));
     landscapeAndFamily();
+  }
+  // On each kind of step the sentence, the drawing and rows of the population are in the window.
+  function inView() {
+    const height = window.innerHeight - (innerWidth < 760 ? 56 : 0), bottom = id => { const { top, bottom } = at(id).getBoundingClientRect(); return [top, bottom]; };
+    for (const kind of new Set(data.steps.map(s => s.title))) {
+      visit(find(kind, data.steps.find(s => s.title === kind).g));
+      scrollTo(0, 0);
+      check(kind + " is drawn", all("drawing", "svg").length === 1, at("drawing").textContent);
+      const cut = all("drawing", "text").filter(t => t.getBBox().x < -1 || t.getBBox().x + t.getBBox().width > t.ownerSVGElement.viewBox.baseVal.width + 1);
+      check(kind + ": no text is cut off", cut.length === 0, cut.map(t => t.textContent).join());
+      check(kind + ": the sentence is in view", bottom("text")[1] <= height, bottom("text"));
+      check(kind + ": the drawing is in view", bottom("drawing")[1] <= height, bottom("drawing"));
+      const rows = all("population", ".row").filter(row => row.getBoundingClientRect().bottom <= height).length;
+      check(kind + ": rows of the population are in view", rows >= 4, rows);
+      if (innerWidth >= 1180) check(kind + ": the line of the script is in view", !at("script").querySelector(".now") || (at("script").querySelector(".now").getBoundingClientRect().bottom <= height && at("script").getBoundingClientRect().top < height), "below");
+    }
+    click("last");
+    check("no generation is announced behind the last one", !at("population").textContent.includes("generation " + (data.of + 1)), at("population").textContent);
   }
   function drawings(count) {
     visit(find("initial population", 0));
@@ -91,14 +114,15 @@
     check("the verdict of the data is kept for the end", all("tell", "tr").length === 0);
     click("last");
     check("every parameter is judged", !data.result || all("tell", "tr").length === data.parameters.length + 1, all("tell", "tr").length);
-    choose("generation", String(data.of + 50)); check("the box shows a generation that is there", at("generation").value === String(data.of), at("generation").value);
+    choose("generation", String(data.of + 50)); check("the box shows a generation that is there", at("generation").value === String(data.of) && at("jump").textContent === "There are 1 to " + data.of + ". Shown is " + data.of + ".", at("jump").textContent);
   }
   function prediction() {
     click("first");
     at("predicting").click();
     const asked = data.steps.map((s, k) => s.question ? k + 1 : 0).filter(k => k);
     const say = text => { at("answer").value = text; at("prediction").dispatchEvent(new Event("submit", { cancelable: true })); };
-    const right = answer => answer.Individuals ? answer.Individuals.join(" ") : answer.Letters !== undefined ? answer.Letters : answer.Decision ? "yes" : "no";
+    const right = answer => { const [[kind, { right }]] = Object.entries(answer); return kind === "Individuals" ? right.join(" ") : kind === "Decision" ? (right ? "yes" : "no") : String(right); };
+    const wrong = answer => { const [[kind, { right, of }]] = Object.entries(answer); return kind === "Number" ? String(right % of + 1) : kind === "Decision" ? (right ? "no" : "yes") : kind === "Letters" ? right.replace(/[ab]/g, c => c === "a" ? "b" : "a") : [...Array(right.length + 1).keys()].slice(1).map(k => k === right[0] ? right.length + 1 : k).join(" "); };
     visit(asked[0]);
     const question = data.steps[asked[0] - 1].question;
     check("the question is asked instead of the answer", at("text").textContent === question.text && !at("prediction").hidden, at("text").textContent);
@@ -106,7 +130,17 @@
     say(right(question.answer));
     check("a right answer counts", at("score").textContent === "Right. 1 of 1 correct", at("score").textContent);
     check("then the step is shown", at("text").textContent === data.steps[asked[0] - 1].text && all("population", ".cut").length === 1);
-    visit(asked[1]); say("nonsense 99");
+    const kinds = new Set(data.steps.filter(s => s.question).map(s => s.title + " " + Object.keys(s.question.answer)[0]));
+    check("parents, pair, heritage and mutation are asked for", ["crossover Number", "crossover Letters", "mutation Decision"].every(kind => kinds.has(kind)) && [...kinds].some(kind => kind.startsWith("selection ")), [...kinds].join());
+    for (const number of asked) {
+      visit(number);
+      const score = at("score").textContent;
+      if (number === asked[0]) continue;
+      say("nonsense 99x");
+      check("nonsense is asked again and does not count, step " + number, at("score").textContent.startsWith("Enter ") && !at("answer").disabled, at("score").textContent);
+      if (number > asked[4]) break;
+    }
+    visit(asked[1]); say(wrong(data.steps[asked[1] - 1].question.answer));
     check("a wrong answer is put right", at("score").textContent.startsWith("No: the answer is") && at("score").textContent.endsWith("1 of 2 correct"), at("score").textContent);
     at("predicting").click();
     check("without predictions nothing is asked", at("prediction").hidden);
@@ -168,7 +202,7 @@
 
   window.addEventListener("error", event => reports.push("WRONG: " + event.message));
   window.addEventListener("load", async () => {
-    try { buttonsAndKeys(); slidersAndLink(); panels(); prediction(); outside(); rows(); await playing(); outside(); } catch (error) { reports.push("WRONG: " + error.stack); }
+    try { buttonsAndKeys(); slidersAndLink(); inView(); panels(); prediction(); outside(); rows(); await playing(); outside(); } catch (error) { reports.push("WRONG: " + error.stack); }
     const told = "[[" + reports.join("\n") + "\nwidth " + innerWidth + "]]";
     if (parent !== window) return parent.postMessage(told, "*");
     document.body.replaceChildren(told);

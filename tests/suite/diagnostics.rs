@@ -16,6 +16,8 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "bad-trace",
     // `gapi teach --what-if` reports it: see `teach.rs`.
     "cannot-branch",
+    // A pause or `gapi teach --what-if` reports it: see `watching.rs`.
+    "bad-change",
     // `gapi compare` reports it, no script: see `cli.rs`.
     "bad-reference",
     // A result table is checked before it is written; only a fault of the program can raise it.

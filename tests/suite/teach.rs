@@ -146,26 +146,107 @@ fn operators_on_nobody() {
     assert!(code == 1 && errors.contains("unknown crossover `unifrom`"), "{errors}");
 }
 
-/// Beside functions of the paper, whose steps are what is shown, operators by name change nothing.
+/// Operators by name are shown in their place beside functions of the paper.
 #[test]
-fn operators_beside_functions_of_the_paper_change_nothing() {
+fn operators_beside_functions_of_the_paper_are_shown() {
     let operator = "(C, s) := Op_Crossover(\"uniform\", [1; 2], {0}, {9}, Seed);\n";
-    let seed = "Seed := {1, 2, 3, 4, 5, 6};\n";
     let paper = "Alone := Cross(2, 0, [5, 6, 7; 8, 9, 10], {2});\n";
-    let other = "s := Seed;\n";
-    let here = folder(&[
-        ("before.mos", &format!("{seed}{operator}{paper}{other}")),
-        ("after.mos", &format!("{seed}{other}{paper}{operator}")),
-        ("without.mos", &format!("{seed}{other}{paper}{other}")),
-    ]);
-    let steps = |name: &str| {
-        let (code, out, errors) = gapi(&here, &["teach", &format!("{name}.mos")]);
+    let seed = "Seed := {1, 2, 3, 4, 5, 6};\n";
+    let here = folder(&[("calls.mos", &format!("{seed}{operator}{paper}{operator}"))]);
+    let (code, out, errors) = gapi(&here, &["teach", "calls.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    for part in [
+        "Call 1, step 1 of 1: crossover\n------------------------------\ncalls.mos:2",
+        "Call 2, step 1 of 1: crossover\n------------------------------\ncalls.mos:3",
+        "Call 3, step 1 of 1: crossover\n------------------------------\ncalls.mos:4",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+}
+
+/// A genetic algorithm whose operators are called by name has generations with these steps.
+#[test]
+fn operators_by_name_are_steps_of_a_run() {
+    let script = "model Line\n  parameter Real a = 1;\n  output Real y = a*time;\n\
+        annotation(experiment(StopTime = 1));\nend Line;\nSeed := {1, 2, 3, 4, 5, 6};\n\
+        (Pop, Seed) := Op_Sampling(\"uniform\", 4, {0}, {2}, Seed);\nfor k in 1:3 loop\n\
+        Fitness := Fit(Eval(\"\", \"Line\", {0.5, 1.0}, Pop, {\"a\"}, \"time\", \"y\"), {0.4, 0.8});\n\
+        (Places, Seed) := Op_Selection(\"tournament\", Fitness, 4, Seed);\n\
+        (Pop, Seed) := Op_Crossover(\"sbx\", Pop[Places,:], {0}, {2}, Seed);\n\
+        (Pop, Seed) := Op_Mutation(\"uniform\", Pop, 0.5, {0}, {2}, Seed);\nend for\n";
+    let here = folder(&[("run.mos", script)]);
+    let (code, out, errors) = gapi(&here, &["teach", "run.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    for part in [
+        "Generation 1, step 1 of 11: sampling",
+        "Generation 1, step 2 of 11: simulation",
+        "Generation 1, step 3 of 11: fitness",
+        "Generation 1, step 4 of 11: selection",
+        "Op_Selection with `tournament",
+        "Generation 1, step 6 of 11: crossover",
+        "Generation 1, step 10 of 11: mutation",
+        "Generation 1, step 11 of 11: next generation",
+        "The script makes the next generation: 4 individuals.",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+    let (code, out, _) = gapi(&here, &["teach", "run.mos", "--generation", "3"]);
+    assert!(code == 0 && out.contains("Generation 3, step 1 of 10: simulation"), "{out}");
+    assert!(out.contains("The run ends here, after 3 generations."), "{out}");
+}
+
+/// Scripts that simulate without a genetic algorithm have evaluations: nothing is said of stop
+/// conditions, first populations and search ranges that there are not.
+#[test]
+fn evaluations_are_no_generations() {
+    let model = "model Line\n  parameter Real a = 1;\n  output Real y = a*time;\n\
+        annotation(experiment(StopTime = 1));\nend Line;\n";
+    let eval = "Fit(Eval(\"\", \"Line\", {0.5, 1.0}, P, {\"a\"}, \"time\", \"y\"), {0.4, 0.8})";
+    let once = format!(
+        "{model}P := [0.7];\nS := Eval(\"\", \"Line\", {{1.0}}, P, {{\"a\"}}, \"time\", \"y\");\n"
+    );
+    let random = format!(
+        "{model}Seed := {{1, 2, 3, 4, 5, 6}};\nfor Count in {{1, 3, 9}} loop\n\
+         (R, Seed) := Ram_Gen_ARENA(Seed, Count);\nP := transpose(R);\nF := {eval};\nend for\n"
+    );
+    let scaled = random.replace("P := transpose(R)", "P := 2*transpose(R)");
+    let here = folder(&[("once.mos", &once), ("random.mos", &random), ("scaled.mos", &scaled)]);
+    let shown = |name: &str| {
+        let (code, out, errors) = gapi(&here, &["teach", name]);
         assert_eq!(code, 0, "{errors}");
-        out.lines().filter(|line| !line.contains(".mos:")).collect::<Vec<_>>().join("\n")
+        for word in ["stop condition", "N_Population", "eneration", "Param_Min", "NaN"] {
+            assert!(!out.contains(word), "`{word}` in {name}:\n{out}");
+        }
+        out
     };
-    assert!(steps("without").contains("Call 1, step 1 of 1: crossover"));
-    assert_eq!(steps("before"), steps("without"));
-    assert_eq!(steps("after"), steps("without"));
+    let out = shown("once.mos");
+    assert!(out.contains("Evaluation 1, step 1 of 2: simulation"), "{out}");
+    assert!(out.contains("Eval simulates `Line` once, with one set of values of a."), "{out}");
+    assert!(out.contains("1 individual in all. No fitness was"), "{out}");
+    assert!(out.contains("    1          -     0.7000"), "the table is not empty:\n{out}");
+    let out = shown("random.mos");
+    for part in [
+        "Evaluation 1, step 1 of 3: sampling",
+        "1 individual is sampled: Ram_Gen_ARENA returned 1 random number between 0 and\n1. The script takes each number as it is as a gene.",
+        "Evaluation 3, step 1 of 4: sampling",
+        "9 individuals are sampled",
+        "The script simulates nothing further: 13 individuals in all. The best is",
+    ] {
+        assert!(out.contains(part), "`{part}` is missing:\n{out}");
+    }
+    assert!(shown("scaled.mos").contains("The script makes the genes of them."));
+}
+
+/// A page of calls, or of evaluations, names them so, and no model where there is none.
+#[test]
+fn pages_name_what_they_count() {
+    let script = "Alone := Cross(2, 0, [5, 6, 7; 8, 9, 10], {2});\n";
+    let here = folder(&[("calls.mos", script)]);
+    let (code, _, errors) = gapi(&here, &["teach", "calls.mos", "--html", "calls.html"]);
+    assert_eq!(code, 0, "{errors}");
+    let page = std::fs::read_to_string(here.path().join("calls.html")).unwrap();
+    assert!(page.contains("\"unit\":\"Call\"") && page.contains("\"model\":\"\""));
+    assert!(!page.contains("DATA.model + \": \" +"), "the name of the model may be empty");
 }
 
 #[test]

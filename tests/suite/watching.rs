@@ -15,6 +15,7 @@ model Line
   annotation(experiment(StopTime = 1));
 end Line;
 F = 0.2;
+x = 0.0;
 pop = {{0.1}, {0.5}, {0.9}, {1.3}};
 for k in 1:8 loop
   sim := Eval(\"\", \"Line\", {0.0, 0.5, 1.0}, pop, {\"a\"}, \"time\", \"y\");
@@ -78,8 +79,11 @@ fn what_was_typed_in_a_pause_is_done_again_when_the_run_resumes() {
     assert_eq!(whole.variable("x"), Some(&1.5.into()));
     let changed = result(&whole);
     assert!(changed.contains("F := 0.5") && !changed.contains("nonsense"), "{changed}");
-    let (_, text, cut) = run(typing().interrupted_after(60), Journaling::Fresh(2.0));
-    let bytes = cut.world.read(&journal(&cut)).unwrap_or_else(|_| panic!("{text}"));
+    let interrupted = |patience| {
+        let (_, _, cut) = run(typing().interrupted_after(patience), Journaling::Fresh(2.0));
+        Some((cut.world.read(&journal(&cut)).ok()?, cut))
+    };
+    let (bytes, cut) = (3..80).rev().find_map(interrupted).expect("interrupted behind an `Eval`");
     let world = MemoryWorld::new().with_file(journal(&cut), bytes);
     let (_, text, resumed) = run(world, Journaling::Resume(2.0));
     assert!(!text.contains("Paused"), "{text}");
@@ -87,6 +91,60 @@ fn what_was_typed_in_a_pause_is_done_again_when_the_run_resumes() {
     assert_eq!(result(&resumed), changed);
     let (_, _, plain) = run(MemoryWorld::new(), Journaling::Fresh(2.0));
     assert_ne!(plain.variable("pop"), whole.variable("pop"), "the change has changed something");
+}
+
+/// What cannot be a change is refused with the reason, and the run ends as if it had not been typed.
+#[test]
+fn changes_that_cannot_be_are_refused_and_the_run_continues() {
+    let (_, _, plain) = run(MemoryWorld::new(), Journaling::Off);
+    for (line, says) in [
+        ("garbage (", "error"),
+        ("f := 0.5", "did you mean `F`?"),
+        ("F_Mut := 0.5", "the script has no variable `F_Mut`"),
+        ("F := 0,5", "numbers are written with a point"),
+        ("F := \"much\"", "`F` is a Real"),
+        ("F := {0.5, 0.5}", "`F` is a"),
+        ("F := 0.5; x := \"much\"", "`x` is a Real"),
+    ] {
+        let (code, text, typed) = run(MemoryWorld::new().paused_after(3, &[line]), Journaling::Off);
+        assert_eq!(code, 0, "{line}: {text}");
+        assert!(says == "error" || text.contains(says), "{line}: {text}");
+        assert!(text.contains("warning["), "{line}: {text}");
+        assert_eq!(typed.variable("F"), Some(&0.2.into()), "{line}");
+        assert_eq!(typed.variable("pop"), plain.variable("pop"), "{line}");
+    }
+}
+
+/// The settings of the genetic algorithm are checked as its functions do.
+#[test]
+fn settings_out_of_range_are_refused() {
+    let settings = "F_Mut = 0.25;\nN_Population = 4;\nN_Parents = 2;\nN_Elitism = 1;\n\
+                    Seed = [1, 2, 3, 4, 5, 6];\n";
+    let script = format!("{settings}{SCRIPT}");
+    let with = |line: &str| {
+        let world = MemoryWorld::new().paused_after(3, &[line]);
+        let streams = world.streams();
+        let mut session = Session::new(Box::new(world));
+        let code = session.run_text("line.mos", &script).code;
+        (code, streams.errors())
+    };
+    for (line, says) in [
+        ("F_Mut := 7", "F_Mut is 7"),
+        ("F_Mut := -1", "F_Mut is -1"),
+        ("N_Parents := 9", "N_Parents + N_Elitism = 9 + 1"),
+        ("N_Parents := 1.5", "use a whole number"),
+        ("N_Elitism := -1", "at least 0"),
+        ("N_Population := 8", "cannot change in a run"),
+        ("Seed := {1, 2, 3}", "keep the type and the size"),
+        ("Seed := zeros(6)", "seed"),
+    ] {
+        let (code, errors) = with(line);
+        assert!(code == 0 && errors.contains(says), "{line}: {errors}");
+    }
+    for line in ["F_Mut := 1", "N_Parents := 3; N_Elitism := 1", "Seed := {6, 5, 4, 3, 2, 1}"] {
+        let (code, errors) = with(line);
+        assert!(code == 0 && !errors.contains("warning"), "{line}: {errors}");
+    }
 }
 
 #[test]
@@ -121,9 +179,10 @@ fn a_view_shows_generations_genes_and_fit() {
     let (code, text, _) = run(MemoryWorld::new().watched(&views), Journaling::Off);
     assert_eq!(code, 0, "{text}");
     let views = views.lock().expect("no panic");
-    assert_eq!(views.len(), 8, "one for each generation");
-    let View { progress, best, spreads, fitted, .. } = &views[7];
-    assert_eq!((progress.total, best.len()), (8, 7), "`Fit` comes after `Eval`");
+    assert_eq!(views.len(), 9, "one for each generation, and one for the whole run");
+    assert_eq!((views[7].progress.done, views[7].best.len()), (7, 7), "`Fit` comes after `Eval`");
+    let View { progress, best, spreads, fitted, .. } = &views[8];
+    assert_eq!((progress.total, progress.done, best.len()), (8, 8, 8));
     assert!(best.is_sorted_by(|a, b| a >= b), "{best:?}");
     assert_eq!((spreads[0].name.as_str(), spreads[0].unit.as_str()), ("a", "m/s"));
     let [low, middle, high] = spreads[0].generation;

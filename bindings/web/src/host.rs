@@ -1,4 +1,4 @@
-//! What the module asks of its host: a clock, an ear for events, and what the user wants meanwhile.
+//! What the module asks of its host: a clock, a receiver of events, and the user's commands.
 //!
 //! `gapilib.js` gives the functions. [`poll`] may suspend the module while the host looks for
 //! messages (JavaScript Promise Integration), where the engine can.
@@ -10,15 +10,15 @@ mod imported {
         pub(super) safe fn unix() -> f64;
         pub(super) safe fn poll() -> i32;
         pub(super) safe fn next_line() -> i32;
-        pub(super) safe fn tell(place: *const u8, length: usize);
+        pub(super) safe fn send(place: *const u8, length: usize);
     }
 }
 
-/// What the user wants.
+/// A command of the user to a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wish {
-    /// Nothing: the run goes on.
-    Nothing,
+pub(crate) enum Command {
+    /// The run continues.
+    Continue,
     /// The run is to end.
     Stop,
     /// There are statements to be executed.
@@ -35,12 +35,12 @@ pub(crate) fn unix() -> f64 {
     imported::unix()
 }
 
-/// Lets the host look for messages, and asks what they say.
-pub(crate) fn poll() -> Wish {
+/// Lets the host look for messages, and returns the command that came.
+pub(crate) fn poll() -> Command {
     match imported::poll() {
-        1 => Wish::Stop,
-        2 => Wish::Change,
-        _ => Wish::Nothing,
+        1 => Command::Stop,
+        2 => Command::Change,
+        _ => Command::Continue,
     }
 }
 
@@ -50,8 +50,8 @@ pub(crate) fn next_line() -> Option<String> {
         .then(|| String::from_utf8_lossy(&crate::take_request()).into_owned())
 }
 
-/// Tells the host something, as JSON.
-pub(crate) fn tell(event: &serde_json::Value) {
+/// Sends the host an event, as JSON.
+pub(crate) fn send(event: &serde_json::Value) {
     let text = event.to_string();
-    imported::tell(text.as_ptr(), text.len());
+    imported::send(text.as_ptr(), text.len());
 }

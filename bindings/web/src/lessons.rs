@@ -16,7 +16,7 @@ pub(crate) struct Check {
     lesson: usize,
     /// The learner's script.
     text: String,
-    /// The learner's further files: names and texts.
+    /// The learner's further files: names and contents.
     #[serde(default)]
     companions: Vec<(String, String)>,
 }
@@ -32,9 +32,11 @@ pub(crate) struct Lesson {
     file: &'static str,
     /// The unsolved script.
     text: &'static str,
-    /// Further files: names and texts.
+    /// Further files: names and contents.
     companions: &'static [(String, String)],
     hints: &'static [String],
+    /// What there is to watch step by step, if there is something.
+    watch: Option<&'static str>,
     /// What a solution replaces, and with what.
     solution: &'static [[String; 2]],
 }
@@ -57,6 +59,7 @@ pub(crate) fn all() -> Vec<Lesson> {
         text: &lesson.text,
         companions: &lesson.companions,
         hints: &lesson.hints,
+        watch: lesson.watch.as_deref(),
         solution: &lesson.solution,
     };
     lessons::all().iter().map(lesson).collect()

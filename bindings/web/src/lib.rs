@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A panic is a trap: the host finds its message where the answer would be. The module must be
-//! loaded anew after it.
+//! loaded again after it.
 
 mod host;
 mod lessons;

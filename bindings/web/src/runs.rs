@@ -25,13 +25,17 @@ pub(crate) struct Run {
     /// Whether the script may change files that it has not made.
     #[serde(default)]
     write: bool,
-    /// Whether somebody watches: there is a clock, the program's own models are there, the host is
-    /// told what happens, and the steps are recorded.
+    /// Whether somebody watches: there is a clock, the program's own models are there, the host gets
+    /// events, and the steps are recorded.
     #[serde(default)]
     live: bool,
     /// Statements that change the run from a generation on.
     #[serde(default)]
     changes: Vec<Change>,
+    /// Statements that the user has typed in the generations of a run that is computed again: one
+    /// that is refused changes nothing.
+    #[serde(default)]
+    typed: Vec<Change>,
     /// Whether this is what would have been: it is shown beside the run that was recorded before.
     #[serde(default)]
     compare: bool,
@@ -55,6 +59,8 @@ pub(crate) struct Change {
 pub(crate) struct Answer {
     /// The exit code of `gapi run`.
     exit_code: u8,
+    /// Whether the user has stopped the run.
+    stopped: bool,
     /// Standard output.
     output: String,
     /// Standard error: the diagnostics as a terminal without colours shows them.
@@ -76,7 +82,7 @@ pub(crate) fn answered(mut run: Run) -> Result<Answer, String> {
     let streams = memory.streams();
     let start = memory.current_dir();
     let world: Box<dyn World> = match run.live {
-        true => Box::new(LiveWorld::new(memory, run.last)),
+        true => Box::new(LiveWorld::new(memory, run.last, std::mem::take(&mut run.typed))),
         false => Box::new(memory),
     };
     let permissions = Permissions { write: run.write, ..Permissions::default() };
@@ -84,10 +90,10 @@ pub(crate) fn answered(mut run: Run) -> Result<Answer, String> {
     let mut session = Session::new(world).with_options(options);
     session.output.transcript = Some(Transcript::default());
     prepare(&mut session, &run)?;
-    let RunStatus { code, .. } = session.run_file(&run.script);
+    let RunStatus { code, interrupted, .. } = session.run_file(&run.script);
     let transcript = session.output.transcript.take().unwrap_or_default();
     if run.live {
-        keep_steps(&mut session, &run);
+        keep_steps(&mut session, &run, code == 0 || interrupted);
     }
     let mut files = BTreeMap::new();
     collect(&*session.world, Path::new("/"), &mut files).map_err(text)?;
@@ -97,6 +103,7 @@ pub(crate) fn answered(mut run: Run) -> Result<Answer, String> {
     let named = |path: &Path| path.strip_prefix(&start).unwrap_or(path).display().to_string();
     Ok(Answer {
         exit_code: code,
+        stopped: interrupted,
         output: streams.output(),
         errors: streams.errors(),
         transcript: transcript.to_string(),
@@ -115,13 +122,17 @@ fn prepare(session: &mut Session, run: &Run) -> Result<(), String> {
     Ok(())
 }
 
-/// Takes the trace out of the world: the page of the steps is made of it when it is asked for.
-fn keep_steps(session: &mut Session, run: &Run) {
+/// Takes the trace out of the world: the page of the steps is made of it when it is asked for. What
+/// a run would have been is no result where it has failed.
+fn keep_steps(session: &mut Session, run: &Run, has_ended: bool) {
     let trace = session.world.read(Path::new(TRACE)).unwrap_or_default();
     let result = session.world.read(&session.world.output_dir().join("result.json")).ok();
     let result = result.and_then(|bytes| String::from_utf8(bytes).ok());
     let removed = session.world.remove(Path::new(TRACE));
     debug_assert!(removed.is_ok(), "the trace is the run's own");
+    if run.compare && !has_ended {
+        return steps::forget_changed();
+    }
     steps::keep(trace, result, run.compare.then(|| run.changes.last().cloned()).flatten());
 }
 

@@ -1,7 +1,8 @@
 //! The world of a run that somebody watches: the files are in memory, those of the program's own
-//! models included; what happens is told to the host, and the host is asked what the user wants.
+//! models included; events are sent to the host, and the host is asked for the user's commands.
 
-use crate::host::{self, Wish};
+use crate::host::{self, Command};
+use crate::runs::Change;
 use gapilib::models;
 use gapilib::script::access::policy::{Access, Grant};
 use gapilib::script::runs::view::{Fitted, Progress, Spread, View};
@@ -35,11 +36,13 @@ pub(crate) struct LiveWorld {
     total: u64,
     /// The generation that the run ends with, if the user has stopped it before.
     last: Option<u64>,
+    /// What the user types in generations to come, where the engine cannot ask him meanwhile.
+    typed: Vec<Change>,
 }
 
 impl LiveWorld {
     /// A world with these files.
-    pub(crate) fn new(memory: MemoryWorld, last: Option<u64>) -> LiveWorld {
+    pub(crate) fn new(memory: MemoryWorld, last: Option<u64>, typed: Vec<Change>) -> LiveWorld {
         LiveWorld {
             memory,
             asked: Cell::new(0),
@@ -50,7 +53,13 @@ impl LiveWorld {
             generation: 0,
             total: 0,
             last,
+            typed,
         }
+    }
+
+    /// Whether something is to be typed in this generation.
+    fn is_due(&self) -> bool {
+        self.typed.iter().any(|change| change.generation as u64 == self.generation)
     }
 
     /// Looks for messages where that was long ago.
@@ -60,9 +69,9 @@ impl LiveWorld {
             return;
         }
         match host::poll() {
-            Wish::Stop => self.stops.set(true),
-            Wish::Change => self.changes.set(true),
-            Wish::Nothing => {}
+            Command::Stop => self.stops.set(true),
+            Command::Change => self.changes.set(true),
+            Command::Continue => {}
         }
         // The user may have paused the run meanwhile.
         self.looked.set(host::monotonic());
@@ -72,12 +81,12 @@ impl LiveWorld {
 impl Screen for LiveWorld {
     fn print(&mut self, text: &str) {
         self.memory.print(text);
-        host::tell(&json!({ "print": text }));
+        host::send(&json!({ "print": text }));
     }
 
     fn eprint(&mut self, text: &str) {
         self.memory.eprint(text);
-        host::tell(&json!({ "eprint": text }));
+        host::send(&json!({ "eprint": text }));
     }
 
     fn progress(&mut self, progress: &Progress) {
@@ -94,24 +103,31 @@ impl Screen for LiveWorld {
 
     fn show_view(&mut self, view: &View) {
         self.shown = host::monotonic();
-        host::tell(&json!({ "view": told(view) }));
+        host::send(&json!({ "view": described(view) }));
     }
 
     fn wants_pause(&mut self) -> bool {
         self.look();
-        self.changes.replace(false)
+        self.changes.replace(false) || self.is_due()
     }
 
     fn begin_pause(&mut self, _help: &str) {}
 
     fn ask(&mut self, _prompt: &str) -> Option<String> {
-        let line = host::next_line()?;
-        host::tell(&json!({ "typed": { "generation": self.generation, "statement": line } }));
-        Some(line)
+        let is_due = |change: &mut Change| change.generation as u64 == self.generation;
+        let planned = self.typed.extract_if(.., is_due).next();
+        planned.map(|change| change.statement).or_else(host::next_line)
+    }
+
+    fn changed(&mut self, line: &str, outcome: Result<(), &str>) {
+        let change = json!({
+            "generation": self.generation, "statement": line.trim(), "refused": outcome.err(),
+        });
+        host::send(&json!({ "typed": change }));
     }
 }
 
-fn told(view: &View) -> serde_json::Value {
+fn described(view: &View) -> serde_json::Value {
     let Progress { label, done, total, best, failures } = &view.progress;
     let spread = |Spread { name, unit, value, best, generation }: &Spread| json!({ "name": name, "unit": unit, "value": value, "best": best, "generation": generation });
     let fitted = |Fitted { y_name, x_name, x, measured, simulated }: &Fitted| json!({ "y_name": y_name, "x_name": x_name, "x": x, "measured": measured, "simulated": simulated });

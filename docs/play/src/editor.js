@@ -80,6 +80,12 @@ export class Editor {
     this.#view.focus();
   }
 
+  /** Scrolls to a line, from 1, and leaves the focus where it is. */
+  look(line) {
+    const at = this.#place(line, 1);
+    this.#view.dispatch({ selection: { anchor: at }, effects: EditorView.scrollIntoView(at, { y: "center" }) });
+  }
+
   /** Marks places with what is wrong there. */
   mark(wrong) {
     const diagnostics = wrong.map(({ line, column, message, severity }) => {

@@ -23,7 +23,7 @@ export class Engine {
   #loaded = null;
   /** Whether a run can be stopped and changed while it goes on; known when `ready` is fulfilled. */
   suspends = false;
-  /** Gets what a run tells. */
+  /** Gets the events of a run. */
   onevent = () => {};
 
   /** The worker with the module in it. */
@@ -36,7 +36,7 @@ export class Engine {
     this.#worker = new Worker(SOURCES.worker);
     this.#worker.onmessage = ({ data }) => this.#heard(data);
     this.#worker.onerror = (error) => this.#fail(error.message ?? "the worker cannot be started");
-    const { suspends } = await this.#send("load", SOURCES.module());
+    const { suspends } = await this.#request("load", SOURCES.module());
     this.suspends = suspends;
   }
 
@@ -53,7 +53,7 @@ export class Engine {
     this.#waiting.clear();
   }
 
-  #send(what, value) {
+  #request(what, value) {
     const id = this.#next++;
     const answer = new Promise((done, fail) => this.#waiting.set(id, { done, fail }));
     this.#worker.postMessage({ id, what, value });
@@ -63,11 +63,11 @@ export class Engine {
   /** Asks `run`, `steps`, `lessons` or `check`. */
   async ask(what, value) {
     await this.ready();
-    return this.#send(what, value);
+    return this.#request(what, value);
   }
 
-  /** Tells a run that goes on `stop`, `pause`, `resume` or `line`. */
-  tell(what, value) {
+  /** Sends a run that continues `stop`, `pause`, `resume` or `line`. */
+  send(what, value) {
     this.#worker?.postMessage({ what, value });
   }
 

@@ -1,15 +1,8 @@
 // The lessons: what is passed is remembered in this browser.
 
-const at = (id) => document.getElementById(id);
+import { digest, putAside, store } from "./works.js";
 
-export const store = {
-  get(key, otherwise) {
-    try { return JSON.parse(localStorage.getItem("gapilib-" + key)) ?? otherwise; } catch { return otherwise; }
-  },
-  set(key, value) {
-    try { localStorage.setItem("gapilib-" + key, JSON.stringify(value)); } catch { /* private windows keep nothing */ }
-  },
-};
+const at = (id) => document.getElementById(id);
 
 export class Lessons {
   #engine;
@@ -17,25 +10,36 @@ export class Lessons {
   #lesson = null;
   #hints = 0;
 
-  /** `work` has `files()`, `open(work)`, `onpassed()` and `last()`, the number of the last lesson. */
+  /** `work` has `files()`, `open(work)`, `restart(work)`, `linked(element, text)`, `onpassed()` and `last()`,
+   * the number of the last lesson. */
   constructor(engine, work) {
     this.#engine = engine;
     this.#work = work;
     at("check").addEventListener("click", () => this.#check());
     at("hint").addEventListener("click", () => this.#hint());
     at("solution").addEventListener("click", () => this.#solution());
-    at("reset").addEventListener("click", () => { store.set("lesson-" + this.#lesson.number, null); this.open(this.#lesson); });
+    at("reset").addEventListener("click", () => this.#work.restart({ ...Lessons.#shipped(this.#lesson), lesson: this.#lesson.number }));
   }
 
   static passed() {
     return store.get("passed", []);
   }
 
+  static #shipped(lesson) {
+    return { files: { [lesson.file]: lesson.text, ...Object.fromEntries(lesson.companions) }, main: lesson.file };
+  }
+
   /** Opens a lesson as the learner has left it. */
   open(lesson) {
-    const own = { files: { [lesson.file]: lesson.text, ...Object.fromEntries(lesson.companions) }, main: lesson.file };
-    this.#work.open({ ...own, files: { ...own.files, ...store.get("lesson-" + lesson.number, {}) }, lesson: lesson.number });
-    this.enter(lesson);
+    const own = Lessons.#shipped(lesson);
+    const files = { ...own.files, ...store.get("lesson-" + lesson.number, {}) };
+    this.#work.open({ ...own, files, opened: digest(own.files), lesson: lesson.number });
+  }
+
+  /** Before a shared link replaces what the learner has written in a lesson, that is put aside. */
+  spare({ lesson, main, files }) {
+    const own = lesson && store.get("lesson-" + lesson, null);
+    if (own && digest(own) !== digest(files)) putAside({ title: `Lesson ${lesson}`, files: own, main, lesson });
   }
 
   /** The lesson that the files on the page belong to, if they do to one. */
@@ -45,7 +49,17 @@ export class Lessons {
     at("lesson").hidden = !lesson;
     if (!lesson) return;
     at("lesson-title").textContent = `Lesson ${lesson.number}: ${lesson.title}`;
-    this.#say("The comments in the script say what to do. Change it, run it, and press Check.");
+    // The task is the last paragraph of the comment that the script begins with.
+    const paragraphs = lesson.introduction.trim().split(/\n\s*\n/);
+    const task = paragraphs.findIndex((part) => part.startsWith("Your task"));
+    const about = paragraphs.slice(1, task).concat(paragraphs.slice(task));
+    at("lesson-about").replaceChildren(...about.map((part) => {
+      const element = document.createElement("p");
+      element.textContent = part.replace(/\n(?!\d\.)/g, " ");
+      return element;
+    }));
+    at("lesson-task").open = true;
+    this.#say("");
   }
 
   /** Keeps what the learner has written. */
@@ -61,7 +75,8 @@ export class Lessons {
     at("check").disabled = true;
     try {
       const { passed, text: said } = await this.#engine.ask("check", { lesson: number, text, companions });
-      this.#say((passed ? `Lesson ${number} is passed.\n` : `Lesson ${number} is not passed yet.\n`) + said, passed);
+      const { watch } = this.#lesson, steps = passed && watch ? `\n\nWatch ${watch}: press Run, then open Step by step.` : "";
+      this.#say((passed ? `Lesson ${number} is passed.\n` : `Lesson ${number} is not passed yet.\n`) + said + steps, passed);
       if (passed) store.set("passed", [...new Set([...Lessons.passed(), number])]);
       if (passed) this.#work.onpassed();
     } catch (error) {
@@ -91,7 +106,9 @@ export class Lessons {
   }
 
   #say(text, passed = false) {
-    at("lesson-said").textContent = text;
+    at("lesson-said").replaceChildren();
+    if (text) this.#work.linked(at("lesson-said"), text);
+    if (text) at("lesson-said").scrollIntoView({ block: "nearest" });
     at("lesson-said").className = passed ? "passed" : "";
     at("next-lesson").hidden = !passed || this.#lesson.number === this.#work.last();
   }

@@ -3,9 +3,12 @@
 import { EXAMPLES } from "examples";
 import { Editor } from "./editor.js";
 import { Engine } from "./engine.js";
-import { Lessons, store } from "./lessons.js";
+import { Lessons } from "./lessons.js";
 import { Live, short } from "./live.js";
+import { appendLinked, places } from "./places.js";
 import { archive, download, oneScript, packed, unpacked } from "./share.js";
+import { advice, decodedText, placeOfCell } from "./tables.js";
+import { digest, forget, fromShelf, keepWork, lastWork, putAside, shelf } from "./works.js";
 
 const at = (id) => document.getElementById(id);
 const engine = new Engine();
@@ -20,35 +23,73 @@ const editor = new Editor(at("editor"), (text) => {
   work.files[work.shown] = text;
   save();
 });
-const trainer = new Lessons(engine, { files: () => work.files, open, onpassed: listWork, last: () => lessons.length });
-at("next-lesson").addEventListener("click", () => {
-  at("open").value = "lesson " + (work.lesson + 1);
-  opened(at("open").value);
-});
+const trainer = new Lessons(engine, { files: () => work.files, open, restart, linked, onpassed: listWork, last: () => lessons.length });
+at("next-lesson").addEventListener("click", () => opened("lesson " + (work.lesson + 1)));
 
-function say(text) {
+/** A message for some seconds; `undo` is what its button does. */
+function say(text, undo = null) {
   at("said").textContent = text;
+  if (undo) {
+    const button = document.createElement("button");
+    button.id = "undo";
+    button.textContent = "Undo";
+    button.addEventListener("click", () => { at("said").replaceChildren(); undo(); });
+    at("said").append(" ", button);
+  }
   clearTimeout(say.timer);
-  say.timer = setTimeout(() => { at("said").textContent = ""; }, 5000);
+  say.timer = setTimeout(() => at("said").replaceChildren(), undo ? 20000 : 6000);
 }
 function status(text) { at("status").textContent = text; }
 
 // ---- Files -------------------------------------------------------------------------------------
 
-/** Opens files: an example, a lesson, what a link holds. */
+/** Opens files: an example, a lesson, what a link holds. What was on the page and has been changed is put
+ * aside first. */
 function open(next) {
+  // A lesson is kept as the learner has left it.
+  const before = work, isKept = work.lesson && next.lesson !== work.lesson;
+  const aside = isChanged() && !isKept ? putAside({ ...work, title: titleOf(work) }) : undefined;
+  place(next);
+  listWork();
+  if (aside === undefined) return;
+  const where = aside === null ? "This browser keeps nothing" : "Your work is kept: Open, Your work";
+  say(`${where}.`, () => {
+    if (aside !== null) forget(aside);
+    place(before);
+    listWork();
+  });
+}
+/** Puts files on the page in place of those that are there. */
+function place(next) {
   work = { ...next, files: { ...next.files }, shown: next.shown ?? next.edit ?? next.main };
+  work.opened = next.opened ?? digest(work.files);
   clearResults();
   editor.clear();
   trainer.enter(lessons.find(({ number }) => number === next.lesson) ?? null);
   show(work.shown);
   save();
+  showTask();
 }
+/** A lesson as it was at the beginning; the learner's version is put aside. */
+function restart(next) {
+  const before = work;
+  const aside = isChanged() ? putAside({ ...work, title: titleOf(work) }) : undefined;
+  place(next);
+  listWork();
+  if (aside !== undefined) say("The lesson is as it was at the beginning; your version is kept: Open, Your work.", () => { forget(aside); place(before); listWork(); });
+}
+const isChanged = () => work.main !== "" && digest(work.files) !== work.opened;
+const titleOf = ({ title, lesson, main }) => title ?? (lesson ? `Lesson ${lesson}` : base(main));
 function save() {
-  // Binary tables are numbers in JSON: too large to be kept, and they are not edited.
-  const texts = Object.fromEntries(Object.entries(work.files).filter(([, content]) => typeof content === "string"));
-  if (work.lesson) trainer.keep(texts);
-  store.set("work", { ...work, files: texts });
+  if (work.lesson) trainer.keep(Object.fromEntries(Object.entries(work.files).filter(([, content]) => typeof content === "string")));
+  const isKept = keepWork(work);
+  if (!isKept && !save.said) say("This browser does not keep your work when the page is closed: use Download.");
+  save.said ||= !isKept;
+}
+/** The place that a lesson asks to change is in view. */
+function showTask() {
+  const text = work.files[work.shown], line = work.lesson ? text.split("\n").findIndex((line) => /<-|^Guess :=/.test(line)) + 1 : 0;
+  if (line > 0) editor.look(line);
 }
 const isText = (path) => typeof work.files[path] === "string";
 const base = (path) => path.slice(path.lastIndexOf("/") + 1);
@@ -79,15 +120,20 @@ async function add(list) {
     const known = Object.keys(work.files).find((path) => base(path) === file.name);
     const path = known ?? folder + file.name;
     const isBinary = !/\.(mos?|csv|txt|toml|json)$/i.test(file.name);
-    work.files[path] = isBinary ? new Uint8Array(await file.arrayBuffer()) : await file.text();
+    const bytes = new Uint8Array(await file.arrayBuffer()), before = work.files[path];
+    work.files[path] = isBinary ? bytes : decodedText(bytes);
     if (!isBinary) show(path);
-    else say(`${file.name} is here; scripts can read it.`);
-    if (/\.csv$/i.test(file.name)) say(`${file.name} is here. Name it in the line with Exp_Adq_SISO: columns ${columns(work.files[path])}.`);
+    const undo = before === undefined ? null : () => { work.files[path] = before; editor.clear(); show(path); save(); };
+    const replaced = undo ? " It replaces the file of this name." : "";
+    if (isBinary) say(`${file.name} is here; scripts can read it.${replaced}`, undo);
+    else if (/\.(csv|txt)$/i.test(file.name)) {
+      const { text, isWarning } = advice(file.name, work.files[path], work.files);
+      say((isWarning ? "Warning: " : "") + text + replaced, undo);
+    } else if (undo) say(`${file.name} is here.${replaced}`, undo);
     if (/\.mos$/i.test(file.name) && !known && !work.files[work.main]) work.main = path;
   }
   save();
 }
-const columns = (text) => text.split(/\r?\n/, 1)[0].slice(0, 100);
 
 // ---- A run -------------------------------------------------------------------------------------
 
@@ -111,6 +157,13 @@ function busy(is) {
   at("pause").disabled = !is || !engine.suspends;
   at("pause").textContent = "Pause";
   at("change").hidden = !is;
+  if (is) changeSaid("");
+}
+/** What became of a change, beside its field. */
+function changeSaid(text, isRefused = false) {
+  at("change-said").textContent = text;
+  at("change-said").className = isRefused ? "refused" : "";
+  at("statement").setAttribute("aria-invalid", isRefused);
 }
 
 /** Paths as the page shows them: the files of a run are in memory. */
@@ -123,9 +176,15 @@ const LISTENERS = {
     const { done, total, best } = picture.progress;
     status(`Generation ${done}${total ? " of " + total : ""}, best ${short(best)}`);
   },
-  typed(change) {
-    typed.push(change);
-    say(`${change.statement} from generation ${change.generation} on.`);
+  typed({ generation, statement, refused }) {
+    const known = typed.findIndex((change) => change.generation === generation && change.statement === statement);
+    if (refused !== null) {
+      if (known >= 0) typed.splice(known, 1);
+      return changeSaid(`Not changed: ${refused}. The run continues.`, true);
+    }
+    if (known < 0) typed.push({ generation, statement });
+    if (at("statement").value.trim() === statement) at("statement").value = "";
+    changeSaid(`${statement} from generation ${generation} on.`);
   },
   paused: () => status("Paused. Statements that you apply take effect from this generation on."),
 };
@@ -144,7 +203,7 @@ async function run(options = {}) {
   view("see");
   if (!options.compare) {
     clearResults();
-    typed = options.changes ?? [];
+    typed = [...(options.typed ?? [])];
     select(at("tab-live"));
   }
   status("Loading ...");
@@ -155,11 +214,12 @@ async function run(options = {}) {
     const before = performance.now();
     running = engine.ask("run", { script: work.main, files: work.files, options });
     const answer = await running;
-    if (options.compare) return await showSteps(false);
+    if (options.compare) return answer;
     finished(answer, (performance.now() - before) / 1000);
     await showSteps(answer.exit_code !== 0);
   } catch (error) {
-    if (error.message === "ended") return;
+    if (error.message === "ended") return null;
+    if (options.compare) return { exit_code: 1, errors: `error: ${error.message}` };
     status("The run failed.");
     write(`error: ${error.message}\n`, "errors");
     select(at("tab-output"));
@@ -171,7 +231,8 @@ async function run(options = {}) {
 
 function finished(answer, seconds) {
   const failed = answer.exit_code !== 0 && answer.exit_code !== 130;
-  status(failed ? "The script ended with an error." : `Done in ${seconds.toFixed(1)} s.`);
+  const time = `${seconds.toFixed(1)} s`;
+  status(answer.stopped ? `Stopped in generation ${live.now()?.done ?? 0}, after ${time}.` : failed ? "The script ended with an error." : `Done in ${time}.`);
   results(answer.files);
   markErrors(answer.errors);
   if (failed || !live.now()) select(at("tab-output"));
@@ -197,36 +258,43 @@ async function showSteps(isQuiet) {
 /** The page of the steps asks what would have been. */
 async function whatIf({ generation, statement }) {
   status(`Running again with ${statement} from generation ${generation} on ...`);
-  await run({ compare: true, changes: [...typed, { generation, statement }] });
+  const answer = await run({ compare: true, changes: [...typed, { generation, statement }] });
+  if (!answer) return;
   select(at("tab-steps"));
+  if (answer.exit_code !== 0 && !answer.stopped) {
+    const reason = /^error(?:\[[\w-]+\])?: (.*)/m.exec(answer.errors)?.[1] ?? "the changed run ended with an error";
+    at("steps").querySelector("iframe")?.contentWindow.postMessage({ whatIfFailed: reason }, "*");
+    return status(`No comparison: ${reason}`);
+  }
+  await showSteps(false);
   status(`Compared: ${statement} from generation ${generation} on.`);
 }
 
 async function stop() {
-  if (engine.suspends) return engine.tell("stop");
+  if (engine.suspends) return engine.send("stop");
   const done = live.now()?.done;
   engine.end();
   if (!done) return status("Stopped before the first generation.");
   say("This browser cannot stop a run gently: it is computed again up to this generation, for its report.");
-  await run({ last: done, changes: typed });
+  await run({ last: done, typed });
 }
 async function change(statement) {
-  if (engine.suspends) return engine.tell("line", statement);
+  changeSaid("");
+  if (engine.suspends) return engine.send("line", statement);
   const generation = (live.now()?.done ?? 0) + 1;
   engine.end();
-  say(`This browser cannot change a run that goes on: it is computed again, with ${statement} from generation ${generation} on.`);
-  await run({ changes: [...typed, { generation, statement }] });
+  say(`This browser cannot change a run while it is computed: it is computed again, with ${statement} from generation ${generation} on.`);
+  await run({ typed: [...typed, { generation, statement }] });
 }
 function pause() {
   const isPaused = at("pause").textContent === "Resume";
-  engine.tell(isPaused ? "resume" : "pause");
+  engine.send(isPaused ? "resume" : "pause");
   at("pause").textContent = isPaused ? "Pause" : "Resume";
   if (isPaused) status("Running ...");
 }
 
 // ---- Output ------------------------------------------------------------------------------------
 
-const PLACE = /([\w.\-/]+\.mos?):(\d+):(\d+)/g;
 /** Appends text, line by line: an unfinished line goes on with the next text of its kind. */
 function write(text, kind) {
   const lines = text.split("\n");
@@ -247,18 +315,14 @@ function showLine(element, text, kind) {
   const layout = gaps > 1 || isSource ? "row" : gaps === 1 && text.startsWith("  ") ? "labelled" : "sentence";
   element.className = `${kind || "plain"} ${layout}`;
   element.replaceChildren();
-  let from = 0;
-  for (const found of text.matchAll(PLACE)) {
-    const path = pathOf(found[1]);
-    if (!path) continue;
-    const link = document.createElement("a");
-    link.href = "#";
-    link.textContent = found[0];
-    link.addEventListener("click", (event) => { event.preventDefault(); goTo(path, Number(found[2]), Number(found[3])); });
-    element.append(text.slice(from, found.index), link);
-    from = found.index + found[0].length;
-  }
-  element.append(text.slice(from) || "\u00a0");
+  linked(element, text || "\u00a0");
+}
+/** Appends text to an element; places in files of the page are links into the editor. */
+function linked(element, text) {
+  appendLinked(element, text, ({ name, line, column, isCell }) => {
+    const path = pathOf(name);
+    return path && (() => goTo(path, line, isCell ? placeOfCell(work.files[path], line, column) : column));
+  });
 }
 /** The file that a message means. */
 function pathOf(name) {
@@ -277,11 +341,13 @@ function markErrors(text) {
   for (const line of text.split("\n")) {
     const begins = /^(error|warning)(?:\[[\w-]+\])?: (.*)/.exec(line);
     if (begins) head = { severity: begins[1], message: begins[2] };
-    const place = new RegExp(PLACE.source).exec(line);
-    if (place && head) {
-      wrong.push({ ...head, path: pathOf(place[1]), line: Number(place[2]), column: Number(place[3]) });
-      head = null;
-    }
+    if (!head) continue;
+    const [place] = places(line);
+    if (!place) continue;
+    const path = pathOf(place.name), { column } = place;
+    wrong.push({ ...head, path, line: place.line, column: place.isCell && path ? placeOfCell(work.files[path], place.line, column) : column });
+    // A table's place is named in the sentence, the script's below it.
+    if (!place.isCell) head = null;
   }
   editor.mark(wrong.filter(({ path }) => path === work.shown));
 }
@@ -327,11 +393,12 @@ async function share() {
   const { files, main, shown, lesson } = work;
   const link = location.href.split("#")[0] + "#p=" + await packed({ files, main, shown, lesson });
   history.replaceState(null, "", link);
+  const local = location.protocol === "file:" ? " It leads to this file on this computer: for others, use Download, or open the page from a web server." : "";
   try {
     await navigator.clipboard.writeText(link);
-    say(`The link is in the clipboard (${link.length} characters); it holds all files.`);
+    say(`The link is in the clipboard (${link.length} characters); it holds all files.${local}`);
   } catch {
-    say("The link is in the address bar; it holds all files.");
+    say(`The link is in the address bar; it holds all files.${local}`);
   }
 }
 function save_files() {
@@ -354,16 +421,19 @@ function listWork() {
     element.append(...options.map(([text, value]) => new Option(text, value)));
     return element;
   };
-  const chosen = at("open").value;
+  const mine = shelf();
   at("open").replaceChildren(
     new Option("an example or a lesson ...", ""),
     group("Examples", EXAMPLES.map(({ title }, k) => [title, "example " + k])),
+    ...(mine.length ? [group("Your work", mine.map((entry) => [`${titleOf(entry)}, ${new Date(entry.time).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}`, "work " + entry.id]))] : []),
     group("Lessons", lessons.map(({ number, title }) => [`${passed.includes(number) ? "\u2713" : "\u25cb"} ${number}. ${title}`, "lesson " + number])),
   );
-  at("open").value = chosen;
+  at("open").value = work.lesson ? "lesson " + work.lesson : "";
 }
 function opened(value) {
   const [kind, number] = value.split(" ");
+  const mine = kind === "work" && fromShelf(Number(number));
+  if (mine) open(mine);
   if (kind === "example") open(EXAMPLES[number]);
   if (kind === "lesson") trainer.open(lessons.find((lesson) => lesson.number === Number(number)));
   view("edit");
@@ -381,18 +451,20 @@ function arrows(event) {
 
 async function fromLink() {
   const { p, open: wanted } = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
-  const linked = p && await unpacked(p);
-  if (p && !linked) say("The link is damaged: it holds no files.");
-  if (linked) open(linked);
-  if (wanted) at("open").value = wanted.replace("-", " ");
+  const shared = p && await unpacked(p);
+  if (p && !shared) say("The link is damaged: it holds no files.");
+  if (shared) {
+    trainer.spare(shared);
+    open(shared);
+  }
   if (wanted) opened(wanted.replace("-", " "));
-  return linked || wanted;
+  return shared || wanted;
 }
 
 async function begin() {
   view("edit");
+  place(lastWork() ?? EXAMPLES[0]);
   listWork();
-  open(store.get("work", null) ?? EXAMPLES[0]);
   for (const id of ["run", "run-here"]) at(id).addEventListener("click", () => run());
   at("stop").addEventListener("click", stop);
   at("pause").addEventListener("click", pause);
@@ -407,6 +479,8 @@ async function begin() {
     const statement = at("statement").value.trim();
     if (statement) change(statement);
   });
+  const licences = document.getElementById("licences");
+  if (licences) at("to-licences").href = URL.createObjectURL(new Blob([licences.textContent], { type: "text/plain" }));
   for (const tab of at("tabs").children) tab.addEventListener("click", () => select(tab));
   for (const list of ["tabs", "files", "views"]) at(list).addEventListener("keydown", arrows);
   document.addEventListener("keydown", (event) => {
@@ -433,6 +507,7 @@ async function loadLessons() {
   }
   listWork();
   if (work.lesson) trainer.enter(lessons.find(({ number }) => number === work.lesson));
+  showTask();
   if (!location.hash.startsWith("#p=")) await fromLink();
   status("Ready.");
   document.body.dataset.ready = "true";

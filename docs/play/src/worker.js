@@ -4,7 +4,7 @@
 import { load, suspends } from "../../../bindings/web/gapilib.js";
 
 let gapilib = null;
-let wishes = { stop: false, lines: [], resumed: null };
+let commands = { stop: false, lines: [], resumed: null };
 
 /** Lets the messages in that have come. */
 function messages() {
@@ -19,27 +19,27 @@ function messages() {
 }
 
 const host = {
-  tell: (event) => postMessage({ event }),
+  send: (event) => postMessage({ event }),
   poll: suspends ? async () => {
     await messages();
-    if (wishes.paused && !wishes.stop) {
+    if (commands.paused && !commands.stop) {
       postMessage({ event: { paused: true } });
-      await new Promise((resumed) => { wishes.resumed = resumed; });
+      await new Promise((resumed) => { commands.resumed = resumed; });
     }
-    return wish();
-  } : wish,
-  nextLine: () => wishes.lines.shift() ?? null,
+    return command();
+  } : command,
+  nextLine: () => commands.lines.shift() ?? null,
 };
 
-function wish() {
-  return wishes.stop ? 1 : wishes.lines.length > 0 ? 2 : 0;
+function command() {
+  return commands.stop ? 1 : commands.lines.length > 0 ? 2 : 0;
 }
 
 const CONTROLS = {
-  stop() { wishes.stop = true; wishes.resumed?.(); },
-  pause() { wishes.paused = true; },
-  resume() { wishes.paused = false; wishes.resumed?.(); },
-  line(text) { wishes.lines.push(text); },
+  stop() { commands.stop = true; commands.resumed?.(); },
+  pause() { commands.paused = true; },
+  resume() { commands.paused = false; commands.resumed?.(); },
+  line(text) { commands.lines.push(text); },
 };
 
 const REQUESTS = {
@@ -50,7 +50,7 @@ const REQUESTS = {
     return { suspends };
   },
   run({ script, files, options }) {
-    wishes = { stop: false, lines: [], paused: false, resumed: null };
+    commands = { stop: false, lines: [], paused: false, resumed: null };
     return gapilib.start(script, files, options, host);
   },
   // A run that nobody watches, without a clock: what the tests compare.

@@ -95,7 +95,10 @@ fn work_on(
     }
     let file = copies.file(&lesson.file).display().to_string();
     if copies.make(lesson)? {
-        terminal::print(&format!("{}\ncopied to {file}\n\n", filled(&lesson.introduction())));
+        terminal::print(&format!(
+            "{}\ncopied to {file}\nOpen it in an editor, change it, save it, and repeat the command.\n\n",
+            filled(&lesson.introduction())
+        ));
     } else {
         terminal::print(&format!("Lesson {}: {}\n{file}\n\n", lesson.number, lesson.title()));
     }
@@ -209,6 +212,10 @@ fn run_and_check(
             progress.passed.insert(number);
             copies.keep(&progress)?;
             terminal::print(&format!("\nLesson {number} passed.\n\n{}", filled(&lesson.passed)));
+            if let Some(what) = &lesson.watch {
+                let file = copies.file(&lesson.file);
+                terminal::print(&format!("\nWatch {what}: gapi teach {}\n", file.display()));
+            }
             if number < lessons::all().len() {
                 terminal::print(&format!("\nThe next lesson: gapi lesson {}\n", number + 1));
             }
@@ -221,7 +228,9 @@ fn run_and_check(
         Verdict::NotYet(message) => {
             terminal::print(&format!("\nLesson {number} is not passed yet.\n\n"));
             terminal::print(&filled(&message));
-            terminal::print(&format!("\nA hint: gapi lesson {number} --hint\n"));
+            terminal::print(&format!(
+                "\nA hint: gapi lesson {number} --hint\nStart again: gapi lesson {number} --reset\n"
+            ));
             Ok(ExitCode::FAILURE)
         }
     }

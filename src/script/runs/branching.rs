@@ -1,11 +1,12 @@
 //! What if: statements that change a run from one of its generations on.
 
+use super::changing;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::script::Session;
 use crate::script::builtins::Failure;
 use crate::script::errors::CANNOT_BRANCH;
-use crate::syntax::{self, ast::Script};
+use crate::syntax::ast::Script;
 use std::sync::Arc;
 
 /// What is to be executed when, and how far the run has come.
@@ -18,14 +19,14 @@ pub(super) struct Branching {
 impl Session {
     /// Executes `text` among the variables of the script as soon as `Eval` has simulated the
     /// generation of this number, from 1: what follows in the generation uses the new values. Texts
-    /// for the same generation are executed in the order of the calls.
+    /// for the same generation are executed in the order of the calls. A change that names nothing in
+    /// the script, or makes a value that the run cannot continue with, ends the run with an error.
     ///
     /// # Errors
     ///
     /// `text` is no script.
     pub fn branch_at(&mut self, generation: usize, text: &str) -> Result<(), Diagnostic> {
-        let source = self.sources.add("what if", text);
-        let script = syntax::parse_script(source, text)?;
+        let script = changing::parsed(self, "what if", text)?;
         self.extension::<Branching>().pending.push((generation, Arc::new(script)));
         Ok(())
     }
@@ -51,8 +52,7 @@ impl Session {
                 help: "call `Eval` from the script itself")
             .into());
         }
-        let mut statements = due.iter().flat_map(|(_, script)| &script.statements);
-        let done = statements.try_for_each(|statement| self.top_level(statement, false));
+        let done = due.iter().try_for_each(|(_, script)| self.change(script, false));
         done.map_err(|diagnostic| Failure::Elsewhere(vec![diagnostic]))
     }
 }

@@ -28,6 +28,8 @@ pub(in crate::script) struct Identification {
     pub(in crate::script) recorder: Recorder,
     /// The evaluators of the last requests, for the next generation; the latest is the last.
     prepared: Vec<Prepared>,
+    /// What was viewed last: model, individuals, and how many generations there will be.
+    pub(super) shown: Option<(Study, Genomes, u64)>,
     /// When the run began.
     started: Option<f64>,
     /// Whether measured data could not be read.
@@ -276,6 +278,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
+    session.show_end(&recorder);
     if session.options.reporting == Reporting::Off {
         session.world.end_view();
         return Ok(());

@@ -2,6 +2,7 @@
 //! problem files.
 
 pub(in crate::script) mod branching;
+mod changing;
 pub(in crate::script) mod checkpoint;
 pub(in crate::script) mod identification;
 pub(in crate::script) mod journal;

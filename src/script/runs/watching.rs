@@ -1,6 +1,7 @@
 //! What the user sees of the generations of a script while it runs, and the statements that he may
 //! type between two of them.
 
+use super::changing;
 use super::view::{Fitted, Spread, View, labelled};
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
@@ -8,7 +9,6 @@ use crate::identify::{Compared, Quantity, Recorder, Study};
 use crate::script::Session;
 use crate::script::builtins::Failure;
 use crate::script::runs::view::Progress;
-use crate::syntax;
 
 const HELP: &str = "\
 Paused. Type script statements, such as F_Mut := 0.3; they take effect from this generation on. \
@@ -36,7 +36,23 @@ impl Session {
         if self.world.wants_view() {
             let view = view(&self.identification().recorder, study, genomes, progress);
             self.world.show_view(&view);
+            self.identification().shown = Some((study.clone(), genomes.clone(), iterations));
         }
+    }
+
+    /// The view of the whole run, where the run was viewed: each of the others is drawn before its
+    /// generation is rated.
+    pub(super) fn show_end(&mut self, recorder: &Recorder) {
+        let Some((study, genomes, total)) = self.identification().shown.take() else { return };
+        let progress = Progress {
+            label: "generation".to_owned(),
+            done: recorder.history.generations.len() as u64,
+            total,
+            best: recorder.best.as_ref().map(|best| best.fitness),
+            failures: recorder.failures,
+        };
+        let view = view(recorder, &study, &genomes, progress);
+        self.world.show_view(&view);
     }
 
     /// Executes what the user types where he asks for a pause, among the variables of the script;
@@ -56,17 +72,25 @@ impl Session {
         self.world.begin_pause(HELP);
         while let Some(line) = self.world.ask(PROMPT).filter(|line| !line.trim().is_empty()) {
             match self.typed(&line) {
-                Ok(()) => self.journal_typed(&line),
-                Err(diagnostic) => self.report(diagnostic),
+                Ok(()) => {
+                    self.journal_typed(&line);
+                    self.world.changed(&line, Ok(()));
+                }
+                // The run continues as it was.
+                Err(refused) => {
+                    let reason = std::iter::once(&refused.message).chain(&refused.helps);
+                    let reason: Vec<&str> = reason.map(String::as_str).collect();
+                    self.world.changed(&line, Err(&reason.join("; ")));
+                    self.report(refused.warning());
+                }
             }
         }
         Ok(())
     }
 
     fn typed(&mut self, line: &str) -> Result<(), Diagnostic> {
-        let source = self.sources.add("typed during a pause", line);
-        let script = syntax::parse_script(source, line)?;
-        script.statements.iter().try_for_each(|statement| self.top_level(statement, true))?;
+        let script = changing::parsed(self, "typed during a pause", line)?;
+        self.change(&script, true)?;
         let recorder = &mut self.identification().recorder;
         let generation = recorder.history.generations.len() + 1;
         recorder.changes.push((generation, line.trim().to_owned()));

@@ -30,6 +30,8 @@ pub trait Screen {
     fn ask(&mut self, _prompt: &str) -> Option<String> {
         None
     }
+    /// Whether the run took the line that the user typed, or why it did not.
+    fn changed(&mut self, _line: &str, _outcome: Result<(), &str>) {}
     /// Whether diagnostics may be coloured.
     fn colour(&self) -> bool {
         false

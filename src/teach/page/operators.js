@@ -2,9 +2,14 @@
 
 // What only a run has to show.
 const OF_RUNS = ["population", "fit", "curve", "landscape", "family", "tell", "what-if"];
-function showOperation(step) {
+function hideRun() {
   for (const id of OF_RUNS) at(id + "-panel").hidden = true;
   at("subject").textContent = DATA.parameters.join(", ");
+}
+function showRun() {
+  for (const id of OF_RUNS) at(id + "-panel").hidden = false;
+}
+function showOperation(step) {
   const { columns, rows, left, legend } = step.table;
   const table = document.createElement("table");
   const hasNotes = rows.some(row => row.note);

@@ -1,6 +1,4 @@
-"use strict";
 // The steps of a run: which one is shown, and the controls. What a step looks like is in the panels.
-const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
 // Within another page there is no address that a link could lead to.
 const EMBEDDED = location.href === "about:srcdoc";
@@ -96,24 +94,49 @@ function once(id, key, draw) {
   shown[id] = key;
   draw();
 }
+// In a window of another width all is drawn again: a page within a hidden one begins with no width.
+function redraw() {
+  const before = [WIDE, TALL].join();
+  measure();
+  if ([WIDE, TALL].join() === before) return;
+  Object.keys(shown).forEach(id => delete shown[id]);
+  show();
+}
 // Predictions: which steps were answered, and how many of the answers were right.
 const answered = new Map();
 const waits = () => at("predicting").checked && DATA.steps[current].question && !answered.has(current);
-function isRight(answer, text) {
-  const said = text.trim().toLowerCase();
-  if (answer.Individuals) {
-    const named = [...new Set((said.match(/\d+/g) || []).map(Number))].sort((a, b) => a - b);
-    return named.join() === answer.Individuals.join();
-  }
-  if (answer.Letters !== undefined) return said.replace(/[^a-z]/g, "") === answer.Letters;
-  return said[0] === (answer.Decision ? "y" : "n");
+// The numbers of an answer, sorted, each once; null where there is something else or too large a one.
+function numbersOf(said, most) {
+  const words = said.split(/[\s,;]+/).filter(word => word && word !== "and");
+  const named = [...new Set(words.map(word => /^\d+$/.test(word) ? Number(word) : NaN))].sort((a, b) => a - b);
+  return named.every(n => n >= 1 && n <= most) ? named : null;
 }
-const solution = answer => answer.Individuals ? answer.Individuals.join(" ") : answer.Letters !== undefined ? answer.Letters : answer.Decision ? "yes" : "no";
+// What each kind of question has for an answer: how it is read (null where it is none), what is right,
+// and what to enter.
+const KINDS = {
+  Individuals: ({ right, of }) => ({
+    read: said => { const named = numbersOf(said, of); return named && named.length === right.length ? named.join(" ") : null; },
+    right: right.join(" "), enter: "Enter " + right.length + " different numbers from 1 to " + of + "." }),
+  Letters: ({ right }) => ({
+    read: said => { const letters = said.replace(/\s/g, ""); return letters.length === right.length && /^[ab]*$/.test(letters) ? letters : null; },
+    right, enter: "Enter " + right.length + " letters, each of them a or b." }),
+  Decision: ({ right }) => ({
+    read: said => ({ y: "yes", yes: "yes", n: "no", no: "no" })[said] || null,
+    right: right ? "yes" : "no", enter: "Enter y for yes or n for no." }),
+  Number: ({ right, of }) => ({
+    read: said => { const named = numbersOf(said, of); return named && named.length === 1 ? String(named[0]) : null; },
+    right: String(right), enter: "Enter one number from 1 to " + of + "." }),
+};
+const kindOf = answer => { const [kind, content] = Object.entries(answer)[0]; return KINDS[kind](content); };
+const solution = answer => kindOf(answer).right;
 function predict(event) {
   event.preventDefault();
-  if (!waits() || !at("answer").value.trim()) return;
-  const { answer } = DATA.steps[current].question;
-  answered.set(current, isRight(answer, at("answer").value));
+  if (!waits()) return;
+  const { read, right, enter } = kindOf(DATA.steps[current].question.answer);
+  const answer = read(at("answer").value.trim().toLowerCase());
+  // What is no answer is asked for again, and does not count.
+  if (answer === null) { at("score").textContent = enter; return; }
+  answered.set(current, answer === right);
   at("answer").value = "";
   show();
 }
@@ -135,8 +158,13 @@ function show() {
   at("step").textContent = (place + 1) + " of " + stepsOf(step.g);
   at("generation").value = number(step.g);
   at("generations").value = step.g + 1;
-  at("generations").setAttribute("aria-valuetext", "generation " + number(step.g));
-  at("title").textContent = (DATA.generations[step.g].call ? "Call " : "Generation ") + number(step.g) + " of " + DATA.of + ": " + step.title;
+  at("generations").setAttribute("aria-valuetext", DATA.generations[step.g].unit.toLowerCase() + " " + number(step.g));
+  const counted = DATA.generations[step.g].unit;
+  at("unit").textContent = counted;
+  at("generations").setAttribute("aria-label", counted);
+  at("generation").setAttribute("aria-label", "Number of the " + counted.toLowerCase());
+  at("jump").textContent = "";
+  at("title").textContent = counted + " " + number(step.g) + " of " + DATA.of + ": " + step.title;
   at("text").textContent = step.text;
   at("link").href = "#step=" + (current + 1);
   at("first").disabled = at("back").disabled = current === 0;
@@ -146,9 +174,11 @@ function show() {
   showPrediction(step);
   const drawn = waits() && current > 0 ? DATA.steps[current - 1] : step;
   showScript(step);
-  if (step.table) return showOperation(step);
+  if (step.table) showOperation(step);
+  if (DATA.generations[step.g].call && step.table) return hideRun();
+  showRun();
   showPopulation(drawn);
-  showDrawing(drawn);
+  if (!drawn.table) showDrawing(drawn);
   showFit(drawn);
   showCurve(drawn);
   showLandscape(drawn);
@@ -157,6 +187,21 @@ function show() {
   showTell();
 }
 
+// Which generations of a long run the page has.
+function whatIsKept() {
+  const { first, improvements, of } = DATA.kept;
+  const gains = improvements === of ? (of === 1 ? "the only one" : "all " + of) + " in which the best improves"
+    : "of the " + of + " in which the best improves, the " + improvements + " with the largest gains";
+  return "A long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations: the first " + first + ", " + gains + ", each with the one before it, and the last.";
+}
+// To the generation of this number, or to the last one before it that is on the page.
+function jump(wanted) {
+  const g = upTo(wanted);
+  goGeneration(g);
+  if (number(g) === wanted) return;
+  const why = wanted > DATA.of || wanted < 1 ? "There are 1 to " + DATA.of + "." : "Generation " + wanted + " is not on this page.";
+  at("jump").textContent = why + " Shown is " + number(g) + ".";
+}
 function previousGeneration() {
   const { g } = DATA.steps[current];
   if (current > STARTS[g]) go(STARTS[g]); else goGeneration(g - 1);
@@ -187,7 +232,7 @@ function begin() {
   at("generations").max = DATA.generations.length;
   at("generation").max = DATA.of;
   at("generations").addEventListener("input", event => goGeneration(Number(event.target.value) - 1));
-  at("generation").addEventListener("change", event => goGeneration(upTo(Number(event.target.value))));
+  at("generation").addEventListener("change", event => jump(Number(event.target.value)));
   for (const id of ["across", "up"]) {
     DATA.parameters.forEach((_, j) => at(id).append(new Option(name(j), j)));
     at(id).addEventListener("change", () => showLandscape(DATA.steps[current]));
@@ -195,14 +240,15 @@ function begin() {
   at("whose").addEventListener("change", () => showFamily(DATA.steps[current]));
   at("population").addEventListener("keydown", alongRows);
   at("up").value = Math.min(1, DATA.parameters.length - 1);
-  const left = DATA.of - DATA.generations.length;
-  at("subject").textContent = DATA.model + ": " + DATA.parameters.map((_, j) => titled(j)).join(", ") +
-    (left > 0 ? " - a long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations, the first ones, the largest improvements, and the last" : "");
+  at("subject").textContent = (DATA.model ? DATA.model + ": " : "") + DATA.parameters.map((_, j) => titled(j)).join(", ");
+  at("kept").textContent = whatIsKept();
+  at("kept").hidden = DATA.generations.length === DATA.of;
   at("prediction").addEventListener("submit", predict);
   at("predicting").addEventListener("change", () => show());
   at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   at("link").hidden = EMBEDDED;
+  window.addEventListener("resize", redraw);
   follow();
   beginWhatIf();
   if (EMBEDDED && WHAT_IF) {
@@ -216,4 +262,4 @@ function follow() {
   const asked = /^#step=(\d+)$/.exec(location.hash);
   go(asked ? Number(asked[1]) - 1 : 0, true);
 }
-document.addEventListener("DOMContentLoaded", begin);
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else queueMicrotask(begin);

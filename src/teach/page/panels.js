@@ -38,17 +38,30 @@ function cameAs(origin) {
   return "child of " + (origin.of[0] + 1) + " and " + (origin.of[1] + 1) + changed;
 }
 
-// Units of a drawing across; fewer on a phone, so that its text stays readable.
-const WIDE = window.innerWidth < 760 ? 370 : 560;
+// Units of a drawing across: about as many as it has pixels, so that its text stays readable; pixels
+// for the rows of the population, and how many there are without folding. The columns are those of the
+// style sheet.
+let WIDE, TALL, ROOM;
+function measure() {
+  const { innerWidth, innerHeight } = window;
+  const columns = innerWidth < 760 ? 1 : innerWidth < 1180 ? 2 : 3;
+  WIDE = Math.round(Math.max(330, Math.min(560, (Math.min(innerWidth, 1600) - 32) / columns - 38)));
+  const isPhone = columns === 1;
+  TALL = isPhone ? Math.max(130, Math.min(300, innerHeight - 540)) : Math.max(240, Math.min(520, innerHeight - 380));
+  ROOM = isPhone ? 12 : Math.max(12, Math.min(26, Math.floor(TALL / 16)));
+}
+measure();
 // Which places of a long list are shown: the first ones, the last, and those that the step is about
 // with their neighbours; between them, how many are folded. All where there is room.
-const ROOM = 26;
 function folded(count, focus) {
   if (count <= ROOM || at("unfold").checked) return [...Array(count).keys()].map(place => ({ place }));
-  const shown = new Set([...Array(focus.length ? 3 : 10).keys(), count - 1]);
-  for (const place of focus) for (const near of [place - 1, place, place + 1]) if (near >= 0 && near < count) shown.add(near);
+  // What the step is about first, then its neighbours, the ends, and the first ones as far as there is room.
+  const near = focus.flatMap(place => [place - 1, place + 1]);
+  const wanted = [...focus, ...near, 0, count - 1, ...Array(ROOM).keys()].filter(place => place >= 0 && place < count);
+  const shown = new Set();
+  for (const place of wanted) if (shown.size < ROOM - 2) shown.add(place);
   const list = [];
-  [...shown].sort((a, b) => a - b).slice(0, ROOM + 4).forEach(place => {
+  [...shown].sort((a, b) => a - b).forEach(place => {
     const before = list.length ? list[list.length - 1].place : -1;
     if (place > before + 1) list.push({ left: place - before - 1 });
     list.push({ place });
@@ -74,7 +87,7 @@ function showPopulation(step) {
   const list = folded(count, left), born = made ? folded(made.length, rightRows) : [];
   at("unfolding").hidden = Math.max(count, made ? made.length : 0) <= ROOM;
   const rows = Math.max(list.length, born.length);
-  const height = Math.max(9, Math.min(26, 520 / rows));
+  const height = at("unfold").checked ? Math.max(9, Math.min(26, 520 / rows)) : Math.max(13, Math.min(24, TALL / rows));
   const width = made ? WIDE * 0.34 : WIDE - 150;
   const right = WIDE - width - 20;
   const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
@@ -97,7 +110,8 @@ function showPopulation(step) {
       image.append(svg("line", { class: "cut", x1: 20, y1: cut, x2: 44 + width + 90, y2: cut, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
     }
   });
-  if (made) image.append(label(right, 14, "generation " + (number(step.g) + 1)));
+  // The children of the last generation are not simulated any more.
+  if (made) image.append(label(right, 14, number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
   born.forEach(({ place, left }, line) => {
     const y = 36 + line * height;
     if (left) return image.append(label(right, y + height * 0.75, "\u22ee " + left + " more", { class: "remark", "font-size": Math.min(12, height) }));
@@ -206,6 +220,8 @@ function individual({ number, values, text, failed, crown, changed, fitness }, x
   return group;
 }
 
+// A line of text that fits the drawing.
+const fitted = (x, y, text, more) => label(x, y, text, Object.assign({ "font-size": Math.min(12, (WIDE - x) / text.length / 0.56) }, more));
 // Genes as boxes with numbers, as in a textbook; `marks` are drawn with a thick edge.
 function genes(values, y, title, fills, marks) {
   const group = svg("g", {}, label(0, y + 20, title));
@@ -217,29 +233,94 @@ function genes(values, y, title, fills, marks) {
   return group;
 }
 const DRAWINGS = { "crossover": crossover, "mutation": mutation };
-const CHART_DRAWINGS = { "initial population": drawn, "random completion": drawn, "fitness": ranking, "selection": ranking };
+const CHART_DRAWINGS = {
+  "initial population": drawn, "sampling": drawn, "random completion": drawn, "simulation": simulated, "fitness": ranking,
+  "selection": ranking, "elite": elites, "next generation": composition, "stop": ending,
+};
 function showDrawing(step) {
   const generation = DATA.generations[step.g];
   const chart = CHART_DRAWINGS[step.title];
   const parts = DRAWINGS[step.title] ? DRAWINGS[step.title](step, generation) : chart ? chart(step, generation) : null;
-  if (!parts) return note("drawing", "Draw, fitness, selection, crossover and mutation are drawn here.");
+  if (!parts) return note("drawing", "Nothing is known that could be drawn.");
   const cell = (WIDE - 90) / generation.n;
   const heads = chart ? [] : DATA.parameters.map((_, j) => label(90 + (j + 0.5) * cell, 14, name(j), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
   at("drawing").replaceChildren(svg("svg", { viewBox: "0 0 " + WIDE + " " + parts.height, role: "img", "aria-label": step.text }, ...heads, ...parts.rows));
+}
+// A simulation: the model with the genes of an individual, and which of all have failed.
+function simulated(step, generation) {
+  const n = generation.n, count = generation.genes.length / n, across = Math.min(count, 20), wide = Math.min(26, (WIDE - 10) / across);
+  const model = DATA.model.length > 30 ? DATA.model.slice(0, 29) + "\u2026" : DATA.model;
+  const rows = [fitted(0, 12, "the genes of each individual are parameters of the model")];
+  const one = genome(generation.genes, n, 0), most = Math.min(n, 4), cell = (WIDE * 0.5) / most;
+  one.slice(0, most).forEach((value, j) => {
+    const text = name(j) + " = " + short(value);
+    rows.push(svg("rect", { x: j * cell, y: 24, width: cell - 3, height: 28, rx: 3, fill: "var(--first)", stroke: "var(--soft)" }), label((j + 0.5) * cell, 42, text.length * 6 > cell ? short(value) : text, { "text-anchor": "middle", "font-size": Math.min(12, cell / 5) }));
+  });
+  const x = WIDE * 0.5 + 4;
+  rows.push(label(x, 42, "\u2192", { "font-size": 16 }), svg("rect", { x: x + 22, y: 20, width: WIDE - x - 24, height: 36, rx: 5, fill: "var(--plain)", stroke: "var(--ink)" }), label((x + 20 + WIDE) / 2, 42, model, { "text-anchor": "middle", "font-size": Math.min(12, (WIDE - x - 26) / model.length / 0.56) }));
+  const lines = Math.min(Math.ceil(count / across), 6), failures = new Map(generation.failures);
+  for (let k = 0; k < Math.min(count, across * lines); k++) {
+    const [cx, cy] = [5 + (k % across + 0.5) * wide, 80 + Math.floor(k / across) * 18];
+    rows.push(failures.has(k) ? svg("path", { class: "run", d: "M" + (cx - 4) + " " + (cy - 4) + "l8 8m0 -8l-8 8", stroke: "var(--red)", "stroke-width": 2 }, svg("title", {}, "individual " + (k + 1) + ": " + failures.get(k)))
+      : svg("circle", { class: "run", cx, cy, r: 4, fill: "var(--blue)" }, svg("title", {}, "individual " + (k + 1))));
+  }
+  const left = count - across * lines;
+  rows.push(fitted(0, 88 + lines * 18, count + (count === 1 ? " simulation, " : " simulations, ") + failures.size + " failed (\u2715)" + (left > 0 ? "; the first " + across * lines + " are shown" : ""), { class: "remark" }));
+  return { rows, height: 98 + lines * 18 };
+}
+// Elites: the best rows of the order are copied, gene by gene.
+function elites(step, generation) {
+  const count = Math.min(generation.elites || 0, 3), rows = [fitted(0, 12, "the genes of the best are copied as they are")];
+  for (let k = 0; k < count; k++) {
+    const own = genome(generation.genes, generation.n, generation.order[k]);
+    rows.push(genes(own, 24 + 84 * k, "rank " + (k + 1), () => "var(--first)", () => false));
+    for (let j = 0; j < generation.n; j++) rows.push(label(90 + (j + 0.5) * (WIDE - 90) / generation.n, 67 + 84 * k, "\u2193", { "text-anchor": "middle" }));
+    rows.push(genes(genome(generation.children, generation.n, k), 72 + 84 * k, "row " + (k + 1), () => "var(--first)", () => false));
+  }
+  if ((generation.elites || 0) > count) rows.push(label(90, 34 + 84 * count, "and " + (generation.elites - count) + " more", { class: "remark" }));
+  return { rows, height: 44 + 84 * count };
+}
+// The next generation: where its individuals come from.
+function composition(step, generation) {
+  const next = follows(step.g);
+  if (!next) return null;
+  const kinds = [["elites", "var(--orange)", o => o && o.elite !== undefined], ["children", "var(--blue)", o => o && (o.of || o.was !== undefined)], ["random", "var(--soft)", o => o && o.random], ["from the script", "var(--line)", o => !o || o.script]];
+  const count = next.origins.length, rows = [fitted(0, 12, "generation " + (number(step.g) + 1) + " has " + count + " individuals")];
+  let x = 0, line = 0;
+  for (const [what, fill, belongs] of kinds) {
+    const own = next.origins.filter(belongs).length;
+    if (!own) continue;
+    const wide = WIDE * own / count;
+    rows.push(svg("rect", { class: "part", x, y: 24, width: Math.max(2, wide - 1), height: 34, fill }), svg("rect", { x: 0, y: 70 + 20 * line, width: 12, height: 12, fill }), label(20, 81 + 20 * line, own + " " + what));
+    x += wide;
+    line += 1;
+  }
+  return { rows, height: 80 + 20 * line };
+}
+// The end: where the best and the others lie in their ranges.
+function ending(step, generation) {
+  if (!generation.n || !generation.genes.length) return null;
+  const best = generation.order.length ? generation.order[0] : 0;
+  return inRanges(generation, best, generation.order.length ? "the best, individual " + (best + 1) + "; grey, the others of the last generation" : "individual " + (best + 1), true);
 }
 // A draw: each gene of an individual in its range; grey, those of the others.
 function drawn(step, generation) {
   const next = step.title === "random completion" ? follows(step.g) : generation;
   if (!next) return null;
-  const k = step.title === "random completion" ? step.of : 0, n = next.n, high = 44, left = 100, width = WIDE - left - 20;
-  const rows = [label(0, 14, "individual " + (k + 1) + ": a random place in each range" + (k === 0 ? "; grey, the others" : ""))];
+  const k = step.title === "random completion" ? step.of : 0;
+  return inRanges(next, k, "individual " + (k + 1) + ": a random place in each range" + (k === 0 ? "; grey, the others" : ""), k === 0);
+}
+// The genes of an individual in their ranges, with those of the others where they are wanted.
+function inRanges(next, k, title, withOthers) {
+  const n = next.n, high = n > 5 ? 38 : 44, left = 100, width = WIDE - left - 20;
+  const rows = [fitted(0, 14, title)];
   for (let j = 0; j < n; j++) {
     const y = 40 + j * high, value = next.genes[k * n + j];
-    const title = titled(j).length > 14 ? titled(j).slice(0, 13) + "\u2026" : titled(j);
-    rows.push(label(0, y + 4, title), svg("line", { x1: left, y1: y, x2: left + width, y2: y, stroke: "var(--soft)", "stroke-width": 2 }));
+    const named = titled(j).length > 14 ? titled(j).slice(0, 13) + "\u2026" : titled(j);
+    rows.push(label(0, y + 4, named), svg("line", { x1: left, y1: y, x2: left + width, y2: y, stroke: "var(--soft)", "stroke-width": 2 }));
     rows.push(label(left, y + 18, short(DATA.minima[j]), { "font-size": 11, class: "remark" }), label(left + width, y + 18, short(DATA.maxima[j]), { "text-anchor": "end", "font-size": 11, class: "remark" }));
     const place = v => left + Math.min(1, Math.max(0, part(v, j))) * width;
-    if (k === 0) for (let other = 1; other < next.genes.length / n; other++) rows.push(svg("line", { class: "other", x1: place(next.genes[other * n + j]), x2: place(next.genes[other * n + j]), y1: y - 5, y2: y + 5, stroke: "var(--soft)", opacity: 0.5 }));
+    if (withOthers) for (let other = 0; other < next.genes.length / n; other++) if (other !== k) rows.push(svg("line", { class: "other", x1: place(next.genes[other * n + j]), x2: place(next.genes[other * n + j]), y1: y - 5, y2: y + 5, stroke: "var(--soft)", opacity: 0.5 }));
     rows.push(svg("circle", { class: "drawn", cx: place(value), cy: y, r: 6, fill: "var(--orange)", stroke: "var(--ink)" }), label(Math.min(left + width - 30, Math.max(left + 30, place(value))), y - 10, short(value), { "text-anchor": "middle", "font-size": 11 }));
   }
   return { rows, height: 40 + n * high };
@@ -254,7 +335,7 @@ function ranking(step, generation) {
   const [low, high] = [Math.min(...good), Math.max(...good)], left = 66, wide = (WIDE - left - 10) / order.length, floor = 150, tall = 110;
   const length = v => 8 + (high > low ? (Math.log10(Math.max(v, 10 ** low)) - low) / (high - low) : 0.5) * (tall - 8);
   const best = generation.order[0];
-  const rows = [label(0, 12, isSorted ? "sorted by fitness: the shorter the bar, the fitter" : "fitness of each individual: the shorter the bar, the fitter")];
+  const rows = [fitted(0, 12, isSorted ? "sorted by fitness: the shorter the bar, the fitter" : "fitness of each individual: the shorter the bar, the fitter")];
   [[high, short(10 ** high)], [low, short(10 ** low)]].forEach(([v, text]) => rows.push(label(left - 6, floor - length(10 ** v) + 4, text, { "text-anchor": "end", "font-size": 11 })));
   order.forEach((k, place) => {
     const v = generation.fitness[k], x = left + place * wide;
@@ -269,7 +350,7 @@ function ranking(step, generation) {
     rows.push(svg("line", { class: "border", x1: x, x2: x, y1: 24, y2: floor + 4, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
     text = "orange: elite; blue: parents, up to the dashed line; grey: no children";
   }
-  rows.push(label(left, floor + 34, text, { class: "remark", "font-size": 11 }));
+  rows.push(fitted(0, floor + 34, text, { class: "remark" }));
   return { rows, height: floor + 42 };
 }
 function crossover(step, generation) {
@@ -303,8 +384,8 @@ function mutation(step, generation) {
     genes(u, 70, "u", fill, hit),
     genes(genome(generation.after, n, step.of), 116, "after", fill, hit),
     label(0, 166, "place"),
-    label(0, 192, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge); u/F_Mut is its new"),
-    label(0, 207, "place in its range, from Param_Min on the left to Param_Max"),
+    fitted(0, 190, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge);"),
+    fitted(0, 206, "u/F_Mut is its new place from Param_Min to Param_Max"),
   ];
   const cell = (WIDE - 90) / n;
   u.forEach((value, j) => {

@@ -7,6 +7,10 @@ function beginWhatIf() {
   at("what-if").addEventListener("submit", askWhatIf);
   at("changed").addEventListener("change", proposeValue);
   proposeValue();
+  // The page around this one says why there is nothing to compare.
+  window.addEventListener("message", ({ source, data }) => {
+    if (source === window.parent && data && data.whatIfFailed) at("what-if-said").textContent = "No comparison: " + data.whatIfFailed;
+  });
 }
 // A value that differs from the present one.
 function proposeValue() {

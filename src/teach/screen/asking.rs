@@ -20,6 +20,8 @@ pub struct Quiz {
 struct Asking {
     question: Question,
     answer: String,
+    /// What to enter, where the answer was none.
+    again: Option<String>,
     /// Whether it was right, and the sentence of the step that was asked about.
     verdict: Option<String>,
 }
@@ -44,7 +46,7 @@ impl Screen {
         if !quiz.asked.insert(place) {
             return;
         }
-        quiz.asking = Some(Asking { question, answer: String::new(), verdict: None });
+        quiz.asking = Some(Asking { question, answer: String::new(), again: None, verdict: None });
         self.walk.back();
     }
 
@@ -59,14 +61,20 @@ impl Screen {
                 self.walk.forward();
                 return true;
             }
-            Key::Enter => {
-                let verdict = asking.question.judge(&asking.answer);
-                quiz.score.count(&verdict);
-                self.walk.forward();
-                let reason = explain(&self.walk);
-                self.walk.back();
-                asking.verdict = Some(format!("{} {reason}", verdict.text));
-            }
+            Key::Enter => match asking.question.judge(&asking.answer) {
+                Ok(verdict) => {
+                    quiz.score.count(&verdict);
+                    self.walk.forward();
+                    let reason = explain(&self.walk);
+                    self.walk.back();
+                    asking.again = None;
+                    asking.verdict = Some(format!("{} {reason}", verdict.text));
+                }
+                Err(again) => {
+                    asking.answer.clear();
+                    asking.again = Some(again);
+                }
+            },
             Key::Backspace => {
                 asking.answer.pop();
             }
@@ -80,9 +88,11 @@ impl Screen {
     /// What is asked, and what became of the answer, in place of the sentence of the step.
     pub(super) fn question(&self) -> Option<String> {
         let asking = self.quiz.as_ref()?.asking.as_ref()?;
-        let Asking { question, answer, verdict } = asking;
+        let Asking { question, answer, again, verdict } = asking;
         let answered = match verdict {
-            None => format!("{answer}_"),
+            None => {
+                format!("{answer}_{}", again.iter().map(|a| format!("\n{a}")).collect::<String>())
+            }
             Some(verdict) => format!("{answer}\n{verdict}"),
         };
         Some(format!("{} {answered}", question.text))

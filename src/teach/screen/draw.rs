@@ -62,7 +62,7 @@ fn heading(screen: &Screen) -> Line<'static> {
         place_in_run(walk),
         walk.trace().generations.len(),
         at + 1,
-        title(walk.step())
+        title(walk)
     );
     Line::styled(text, Style::new().add_modifier(Modifier::BOLD))
 }
@@ -93,7 +93,7 @@ fn step(screen: &Screen, frame: &mut Frame, area: Rect) {
     // No further than to the last row.
     let offset = (needed + screen.scrolled).min(lines.len().saturating_sub(height));
     let what = match screen.walk.step() {
-        Step::Operate(kind, _) => format!(" {} ", kind.command()),
+        Step::Operate { kind, .. } => format!(" {} ", kind.command()),
         _ => " population ".to_owned(),
     };
     let panel = Paragraph::new(lines).block(titled(&what)).scroll((offset as u16, 0));

@@ -26,7 +26,7 @@ pub fn lines(screen: &Screen, width: u16) -> (Vec<Line<'static>>, usize) {
     match walk.step() {
         Step::Cross(rank) => (crossover(screen, rank), 0),
         Step::Mutate(row) => (mutation(screen, row), 0),
-        Step::Operate(kind, row) => (operation(screen, kind, row), 0),
+        Step::Operate { kind, row, .. } => (operation(screen, kind, row), 0),
         _ => population(screen, width >= width_of_numbers(screen)),
     }
 }
@@ -198,7 +198,7 @@ fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
 /// What an operator was given and what it returned: one gene a line for a family, whose rows are
 /// few, else one individual a line.
 fn operation(screen: &Screen, kind: Kind, row: usize) -> Vec<Line<'static>> {
-    let Some(operation) = &screen.walk.generation().operation else { return Vec::new() };
+    let Some(operation) = screen.walk.operation() else { return Vec::new() };
     let table = operation_table::table(operation, row, &screen.walk.trace().subject.parameters);
     let mut lines = match kind {
         Kind::Crossover | Kind::Mutation => genes_down(screen, &table),

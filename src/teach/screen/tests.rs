@@ -110,10 +110,16 @@ fn before_a_step_its_outcome_is_asked() {
     let judged = press(&mut screen, &answer("3 4 5 6"));
     sample::snapshots().bind(|| insta::assert_snapshot!("screen_quiz_verdict", judged));
     assert!(press(&mut screen, &[Key::Right]).contains(": selection"));
-    // Wrong, put right; then no answer to the last question, and nothing is asked twice.
-    let crossed = press(&mut screen, &[&[Key::Tab][..], &answer("aa")].concat());
-    assert!(crossed.contains("No: the answer is ab."), "{crossed}");
+    // What is no answer is asked for again. Wrong, put right; then no answer to the last question,
+    // and nothing is asked twice.
+    let again = press(&mut screen, &[&[Key::Tab][..], &answer("aa")].concat());
+    assert!(again.contains("Enter one number from 1 to 6."), "{again}");
+    let crossed = press(&mut screen, &answer("1"));
+    assert!(crossed.contains("No: the answer is 3."), "{crossed}");
     assert!(crossed.contains("1 of 2 answers were correct."), "{crossed}");
+    let cut = press(&mut screen, &[Key::Right, Key::Right]);
+    assert!(cut.contains("After which gene were they cut?"), "{cut}");
+    press(&mut screen, &[Key::Escape]);
     let mutation = press(&mut screen, &[Key::Right, Key::Tab]);
     assert!(mutation.contains("Does the gene"), "{mutation}");
     let skipped = press(&mut screen, &[Key::Escape, Key::Right]);

@@ -337,7 +337,11 @@ pub(super) fn write(
         }
     }
     match why {
-        None => session.print(&format!("\n  written to {}\n", folder.display())),
+        None => {
+            let here = session.world.current_dir();
+            let shown = folder.strip_prefix(&here).unwrap_or(folder).display().to_string();
+            session.print(&format!("\n  written to {shown}\n"));
+        }
         Some(mut fault) => {
             let (missing, folder) = (missing.join(", "), folder.display());
             fault.message =
