@@ -3,7 +3,7 @@
 use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
-use super::memo::{Memos, worth_keeping};
+use super::memo::{Kept, Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
@@ -272,7 +272,7 @@ impl Machine {
     }
 
     /// Writes the results of a call that is known; whether it is, and the budget suffices.
-    fn recall<T: Number>(
+    fn recall<T: Kept>(
         &mut self,
         functions: &Functions,
         function: u32,
@@ -294,7 +294,7 @@ impl Machine {
     }
 
     /// Keeps a call that has ended.
-    fn keep<T: Number>(
+    fn keep<T: Kept>(
         &mut self,
         functions: &Functions,
         function: u32,
@@ -328,7 +328,7 @@ struct Call {
 }
 
 /// Numbers whose derivatives another function may compute.
-trait Differentiate: RunExternal {
+trait Differentiate: RunExternal + Kept {
     /// Calls a function with its derivative function, from and to the stack; whether this is
     /// possible.
     fn differentiate(
@@ -369,7 +369,7 @@ impl Differentiate for f64 {
 
 impl<T: Differentiate> Differentiate for Dual<T>
 where
-    Dual<T>: RunExternal,
+    Dual<T>: RunExternal + Kept,
 {
     fn differentiate(
         machine: &mut Machine,

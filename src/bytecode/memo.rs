@@ -38,6 +38,30 @@ struct Known<T> {
     cost: u64,
 }
 
+/// Numbers for which calls are kept.
+pub(super) trait Kept: Number {
+    /// The calls that a machine keeps for them.
+    fn memo(memos: &mut Memos) -> &mut Memo<Self>;
+}
+
+impl Kept for f64 {
+    fn memo(memos: &mut Memos) -> &mut Memo<f64> {
+        &mut memos.values
+    }
+}
+
+impl Kept for Dual<f64> {
+    fn memo(memos: &mut Memos) -> &mut Memo<Dual<f64>> {
+        &mut memos.first
+    }
+}
+
+impl Kept for Dual<Dual<f64>> {
+    fn memo(memos: &mut Memos) -> &mut Memo<Dual<Dual<f64>>> {
+        &mut memos.second
+    }
+}
+
 impl<T: Number> Memo<T> {
     /// Results and cost of the last call of a function, if it had these arguments.
     pub(super) fn find(&self, function: u32, arguments: &[T]) -> Option<(&[T], u64)> {

@@ -1,7 +1,6 @@
 //! Numbers that instructions compute with.
 
 use super::elementary::Elementary;
-use super::memo::{Memo, Memos};
 use crate::elementary;
 
 /// A number with its derivatives, or without.
@@ -30,8 +29,6 @@ pub trait Number: Copy {
     fn binary(self, b: Self, function: &Elementary) -> Self;
     /// The stack of a machine for such numbers.
     fn stack(stacks: &mut Stacks) -> &mut Vec<Self>;
-    /// The calls that a machine keeps for such numbers.
-    fn memo(memos: &mut Memos) -> &mut Memo<Self>;
     /// Whether all bits are the same.
     fn has_bits_of(self, other: Self) -> bool;
 }
@@ -91,10 +88,6 @@ impl Number for f64 {
 
     fn stack(stacks: &mut Stacks) -> &mut Vec<f64> {
         &mut stacks.values
-    }
-
-    fn memo(memos: &mut Memos) -> &mut Memo<f64> {
-        &mut memos.values
     }
 
     fn has_bits_of(self, other: f64) -> bool {
@@ -192,10 +185,6 @@ macro_rules! dual {
 
             fn stack(stacks: &mut Stacks) -> &mut Vec<Self> {
                 &mut stacks.$stack
-            }
-
-            fn memo(memos: &mut Memos) -> &mut Memo<Self> {
-                &mut memos.$stack
             }
 
             fn has_bits_of(self, other: Self) -> bool {

@@ -20,7 +20,7 @@ use super::execution::run_loop;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
-use super::open_loops::is_open;
+use super::open_loops::{is_open, polish};
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
@@ -183,6 +183,7 @@ impl LoopSolver {
                 Err(_) if !initial && is_open(equations, &self.start, &self.nominal) => {
                     self.is_singular = true;
                     self.x.copy_from_slice(&self.start);
+                    polish(equations, &mut self.x, &self.nominal);
                     return Ok(());
                 }
                 Err(NewtonFailure::Singular) if !initial => {

@@ -12,6 +12,10 @@ use crate::sim::Equations;
 const DISTANCE: f64 = 1e-3;
 /// Pivots below this part of the first are zero.
 const RANK: f64 = 1e-12;
+/// Steps of [`polish`]; each leaves the square of the error.
+const CORRECTIONS: usize = 3;
+/// Iterations for singular values.
+const MOST_SWEEPS: usize = 1000;
 /// More unknowns are not looked at: complete pivoting costs the cube of their number.
 const MOST_UNKNOWNS: usize = 300;
 
@@ -32,8 +36,51 @@ pub(super) fn is_open(equations: &mut dyn Equations, x: &[f64], nominal: &[f64])
     ranks[0].is_some_and(|rank| rank < x.len()) && ranks.iter().all(|rank| *rank == ranks[0])
 }
 
+/// Improves a solution by steps of Gauss and Newton, the shortest ones in units of the unknowns: least
+/// squares end when residuals are small, here they become rounding errors.
+pub(super) fn polish(equations: &mut dyn Equations, x: &mut [f64], nominal: &[f64]) {
+    let n = x.len();
+    let scale: Vec<f64> = x.iter().zip(nominal).map(|(x, nominal)| x.abs().max(*nominal)).collect();
+    let (mut residual, mut trial) = (vec![0.0; n], vec![0.0; n]);
+    for _ in 0..CORRECTIONS {
+        if equations.residual(x, &mut residual).is_err() {
+            return;
+        }
+        let Some((matrix, rows)) = scaled_jacobian(equations, x, &scale) else { return };
+        let weighted = |f: &[f64]| {
+            nalgebra::DVector::from_iterator(n, f.iter().zip(&rows).map(|(f, row)| f * row))
+        };
+        let right = weighted(&residual);
+        let Some(factors) = matrix.try_svd(true, true, f64::EPSILON, MOST_SWEEPS) else { return };
+        let smallest = RANK * factors.singular_values.amax();
+        let Ok(step) = factors.solve(&right, smallest) else { return };
+        for (at, value) in trial.iter_mut().enumerate() {
+            *value = x[at] - step[at] * scale[at];
+        }
+        let is_better = equations.residual(&trial, &mut residual).is_ok()
+            && weighted(&residual).amax() < right.amax();
+        if !is_better {
+            return;
+        }
+        x.copy_from_slice(&trial);
+    }
+}
+
 /// The rank of the Jacobian; `None` where it has no values.
 fn rank(equations: &mut dyn Equations, x: &[f64], scale: &[f64]) -> Option<usize> {
+    let (matrix, _) = scaled_jacobian(equations, x, scale)?;
+    let pivots = matrix.full_piv_lu().u().diagonal();
+    let first = pivots.amax();
+    Some(pivots.iter().filter(|pivot| pivot.abs() > RANK * first).count())
+}
+
+/// The Jacobian in units of the unknowns, its rows with largest entries of one, and what these were
+/// multiplied by.
+fn scaled_jacobian(
+    equations: &mut dyn Equations,
+    x: &[f64],
+    scale: &[f64],
+) -> Option<(nalgebra::DMatrix<f64>, Vec<f64>)> {
     let n = x.len();
     let mut entries = vec![0.0; n * n];
     equations.jacobian(x, &mut entries).ok()?;
@@ -41,16 +88,12 @@ fn rank(equations: &mut dyn Equations, x: &[f64], scale: &[f64]) -> Option<usize
     for (mut column, scale) in matrix.column_iter_mut().zip(scale) {
         column *= *scale;
     }
+    let mut rows = Vec::with_capacity(n);
     for mut row in matrix.row_iter_mut() {
         let largest = row.amax();
-        if largest > 0.0 {
-            row /= largest;
-        }
+        let factor = if largest > 0.0 { largest.recip() } else { 1.0 };
+        row *= factor;
+        rows.push(factor);
     }
-    if matrix.iter().any(|entry| !entry.is_finite()) {
-        return None;
-    }
-    let pivots = matrix.full_piv_lu().u().diagonal();
-    let first = pivots.amax();
-    Some(pivots.iter().filter(|pivot| pivot.abs() > RANK * first).count())
+    matrix.iter().all(|entry| entry.is_finite()).then_some((matrix, rows))
 }

@@ -126,7 +126,7 @@ fn a_network_without_ground_has_its_currents() {
     warns(text, "may not determine");
     // v1 - v2 = v2 - v3 = d: d (d + 2 d) = 9 p, with p = 1.15 at the end.
     let difference = format!("Real d = v[1] - v[2]; {text}");
-    assert!((last(&difference, "d") - (3.0f64 * 1.15).sqrt()).abs() < 1e-4);
+    assert!((last(&difference, "d") - (3.0f64 * 1.15).sqrt()).abs() < 1e-12);
 }
 
 #[test]
