@@ -111,7 +111,7 @@ function showPopulation(step) {
     }
   });
   // The children of the last generation are not simulated any more.
-  if (made) image.append(label(right, 14, number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
+  if (made) image.append(fitted(right, 14, number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
   born.forEach(({ place, left }, line) => {
     const y = 36 + line * height;
     if (left) return image.append(label(right, y + height * 0.75, "\u22ee " + left + " more", { class: "remark", "font-size": Math.min(12, height) }));
