@@ -500,7 +500,7 @@ for (const { name, path, options } of BROWSERS) {
         data.items.add(new File(["t,level\n0,1.4\n2,1.2\n4,1.0\n6,0.8\n"], "levels.csv", { type: "text/csv" }));
         dispatchEvent(new DragEvent("drop", { dataTransfer: data }));
       });
-      await page.waitForFunction(() => /levels.csv is here/.test(document.getElementById("said").textContent));
+      await page.waitForFunction(() => /^levels.csv: 4 rows.*It replaces the file of this name/.test(document.getElementById("said").textContent));
       await click(page, "share");
       await page.waitForFunction(() => location.hash.startsWith("#p="));
       const link = await page.evaluate(() => location.href);

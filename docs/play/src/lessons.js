@@ -93,6 +93,7 @@ export class Lessons {
 
   #solution() {
     this.#say("");
+    at("lesson-task").open = false;
     for (const [gap, filled] of this.#lesson.solution) {
       const part = (title, text) => {
         const pre = document.createElement("pre");
@@ -107,6 +108,8 @@ export class Lessons {
 
   #say(text, passed = false) {
     at("lesson-said").replaceChildren();
+    // What is said has the place of the task, which opens again.
+    if (text) at("lesson-task").open = false;
     if (text) this.#work.linked(at("lesson-said"), text);
     if (text) at("lesson-said").scrollIntoView({ block: "nearest" });
     at("lesson-said").className = passed ? "passed" : "";

@@ -248,6 +248,8 @@ function begin() {
   at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));
   at("link").hidden = EMBEDDED;
+  // Not every browser reports a resize to a page within a hidden one.
+  new ResizeObserver(redraw).observe(document.documentElement);
   window.addEventListener("resize", redraw);
   follow();
   beginWhatIf();

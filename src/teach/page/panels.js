@@ -92,7 +92,7 @@ function showPopulation(step) {
   const right = WIDE - width - 20;
   const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
   const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (40 + rows * height + 4), role: "group", "aria-label": "population of generation " + number(step.g) });
-  image.append(label(44, 14, "generation " + number(step.g) + (known(step, "selection") ? ", best first" : "")));
+  image.append(label(44, 14, generation.unit.toLowerCase() + " " + number(step.g) + (known(step, "selection") ? ", best first" : "")));
   // The names of the genes above their columns, where there is room for them.
   const cell = width / generation.n;
   for (let j = 0; j < generation.n; j++) {
@@ -111,7 +111,7 @@ function showPopulation(step) {
     }
   });
   // The children of the last generation are not simulated any more.
-  if (made) image.append(label(right, 14, number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
+  if (made) image.append(fitted(right, 14, generation.call ? "after the operators" : number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
   born.forEach(({ place, left }, line) => {
     const y = 36 + line * height;
     if (left) return image.append(label(right, y + height * 0.75, "\u22ee " + left + " more", { class: "remark", "font-size": Math.min(12, height) }));
@@ -196,7 +196,7 @@ function concerns(step, generation, row) {
 }
 const mate = (rank, parents) => rank % 2 ? rank - 1 : rank + 1 < parents ? rank + 1 : 0;
 
-// One row: a box for each gene, its number, marks, and the fitness where it is told.
+// One row: a box for each gene, its number, marks, and the fitness where it is known.
 function individual({ number, values, text, failed, crown, changed, fitness }, x, y, width, height) {
   const cell = width / values.length;
   const group = svg("g", { class: "row", tabindex: -1, role: "img", "aria-label": text });
