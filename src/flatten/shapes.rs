@@ -224,7 +224,9 @@ impl Instantiation<'_> {
 
     fn call_shape(&mut self, name: &Name, arguments: &Arguments) -> Option<Vec<usize>> {
         if !arguments.iterators.is_empty() {
-            return Some(Vec::new());
+            // A sum of arrays has their sizes (MLS §10.3.4.1), which its iterators may decide.
+            let element = self.shape_of(arguments.positional.first()?);
+            return element.is_none_or(|dims| dims.is_empty()).then(Vec::new);
         }
         if let Some(Some(function)) = self.functions.table.get(name).cloned() {
             return self.function_shape(&function, arguments);

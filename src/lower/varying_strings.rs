@@ -35,7 +35,7 @@ impl Builder<'_> {
     pub(super) fn is_varying_text(&self, position: usize) -> bool {
         let variable = &self.flat.variables[position];
         variable.base == BaseType::String
-            && variable.len() > 0
+            && !variable.is_empty()
             && self.dae.variable(self.scalars.first[position]).kind == Kind::Discrete
     }
 

@@ -325,3 +325,16 @@ fn integers_among_several_outputs_may_change_between_events() {
         end M;";
     assert_eq!(both_ends(text), [1.0, 2.0]);
 }
+
+#[test]
+fn a_sum_with_iterators_has_the_sizes_of_what_is_added() {
+    let text = "function columns input Real v[:, :]; input Integer n; output Real s[size(v, 1)]; \
+        protected Integer k = 0; algorithm while k < 1 loop k := k + 1; \
+        s := sum(v[:, j] for j in 1:n); end while; end columns; \
+        model M Real y[2] = sum({i*time, 2*i} for i in 1:3); \
+        Real w[2] = columns([1, 2, time; 4, 5, 6], 3); \
+        Real x = y[1] + 10*y[2] + 100*w[1] + 1000*w[2]; end M;";
+    assert_eq!(at_end(text), 6.0 + 120.0 + 400.0 + 15_000.0);
+    let scalar = "model M Real x = sum({i, 2*i} for i in 1:3); end M;";
+    assert!(causalize(&flattened(scalar).model).is_err(), "a vector is not a scalar");
+}

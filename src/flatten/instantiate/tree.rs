@@ -1,6 +1,8 @@
 //! The instance tree (MLS §5.6.1): its nodes, and the variables among them.
 
-use super::instance::{Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeKind};
+use super::instance::{
+    Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeKind,
+};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{TOO_LARGE, UNKNOWN_ELEMENT};

@@ -37,7 +37,7 @@ impl<T: Target> Lowering<'_, T> {
         if let Meaning::Reduction(reduction) = entry.meaning
             && (!arguments.iterators.is_empty() || arguments.positional.len() == 1)
         {
-            return self.reduction(reduction, arguments, span).map(Lowered::scalar);
+            return self.reduction(reduction, arguments, span).map(Lowered::Array);
         }
         if let Meaning::Operator(Operator::InTime(operator)) = entry.meaning
             && let Some(clocked) = on_clocks(operator)
@@ -303,18 +303,34 @@ impl<T: Target> Lowering<'_, T> {
         reduction: Reduction,
         arguments: &Arguments,
         span: Span,
-    ) -> Result<T::Scalar, Diagnostic> {
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
         let name = reduction.name();
         let [element] = arguments.positional.as_slice() else {
             return Err(fault!(ARRAY_MISMATCH, "`{name}` takes one array").at(span));
         };
-        let elements = match arguments.iterators.is_empty() {
-            true => self.array(element)?.elements,
-            false => self.reduction_elements(element, &arguments.iterators)?,
+        let elements = match arguments.iterators.as_slice() {
+            [] => self.array(element)?.elements,
+            iterators => {
+                let all = self.reduction_elements(element, iterators)?;
+                let dims = all.dims.get(iterators.len()..).unwrap_or_default().to_vec();
+                match (dims.is_empty(), reduction) {
+                    (true, _) => all.elements,
+                    (false, Reduction::Sum) => return Ok(self.sum_of_arrays(dims, &all.elements)),
+                    (false, _) => {
+                        return Err(fault!(
+                            ARRAY_MISMATCH,
+                            "`{name}` of arrays, one for each \
+                            iteration, is not defined"
+                        )
+                        .at(span));
+                    }
+                }
+            }
         };
+        let scalar = |element| Ok(Array { dims: Vec::new(), elements: vec![element] });
         match reduction {
-            Reduction::Sum => return Ok(self.fold(Binary::Add, 0.0, &elements)),
-            Reduction::Product => return Ok(self.fold(Binary::Mul, 1.0, &elements)),
+            Reduction::Sum => return scalar(self.fold(Binary::Add, 0.0, &elements)),
+            Reduction::Product => return scalar(self.fold(Binary::Mul, 1.0, &elements)),
             Reduction::Min | Reduction::Max => {}
         }
         let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
@@ -324,7 +340,16 @@ impl<T: Target> Lowering<'_, T> {
         for element in rest {
             result = self.target.apply(id, &[result, *element], self.live, span)?;
         }
-        Ok(result)
+        scalar(result)
+    }
+
+    /// The sum of arrays of these sizes, which follow one another (MLS §10.3.4.1).
+    fn sum_of_arrays(&mut self, dims: Vec<usize>, elements: &[T::Scalar]) -> Array<T::Scalar> {
+        let length: usize = dims.iter().product();
+        let column = |at: usize| elements[at..].iter().step_by(length).copied();
+        let columns: Vec<Vec<T::Scalar>> = (0..length).map(|at| column(at).collect()).collect();
+        let sums = columns.iter().map(|column| self.fold(Binary::Add, 0.0, column));
+        Array { dims, elements: sums.collect() }
     }
 
     fn size(

@@ -264,14 +264,14 @@ impl<T: Target> Lowering<'_, T> {
         Ok(values.elements)
     }
 
-    /// Every element of `f(e for i in …)`.
+    /// Every element of `f(e for i in …)`, after the dimensions of the iterators those of `e`.
     pub(crate) fn reduction_elements(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
-    ) -> Result<Vec<T::Scalar>, Diagnostic> {
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
         match self.comprehension(element, indices, element.span)? {
-            Lowered::Array(array) => Ok(array.elements),
+            Lowered::Array(array) => Ok(array),
             _ => Err(fault!(ARRAY_MISMATCH, "a reduction over elements that are not numbers")
                 .at(element.span)),
         }
