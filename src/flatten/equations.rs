@@ -248,17 +248,15 @@ impl Instantiation<'_> {
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
-        let mut iterations = Vec::new();
         let indices = self.loop_ranges(indices, body, context, local)?;
-        self.iterations(&indices, context, local, &mut iterations)?;
-        for iteration in iterations {
-            out.extend(self.equations(body, context, &iteration)?);
+        self.each_iteration(&indices, context, local, &mut |instantiation, iteration| {
+            out.extend(instantiation.equations(body, context, iteration)?);
             if out.len() > MAX_EQUATIONS {
                 return Err(fault!(super::errors::TOO_LARGE, "the loop has too many equations")
                     .at(indices[0].name.span));
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// The loop variables of a loop of equations with their ranges.
@@ -281,10 +279,29 @@ impl Instantiation<'_> {
         local: &Local,
         out: &mut Vec<Local>,
     ) -> Result<(), Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else {
-            out.push(local.clone());
-            return Ok(());
-        };
+        let span = indices.first().map(|index| index.name.span);
+        self.each_iteration(indices, context, local, &mut |_, iteration| {
+            out.push(iteration.clone());
+            match span {
+                Some(span) if out.len() > MAX_EQUATIONS => {
+                    let fault =
+                        fault!(super::errors::TOO_LARGE, "the loop has too many iterations");
+                    Err(fault.at(span))
+                }
+                _ => Ok(()),
+            }
+        })
+    }
+
+    /// Visits a loop's body with what it knows in each of its iterations.
+    fn each_iteration(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+        visit: &mut dyn FnMut(&mut Self, &Local) -> Result<(), Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else { return visit(self, local) };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
             fault!(NOT_SUPPORTED, "the range of `{}` is unknown", index.name.node;
@@ -295,15 +312,11 @@ impl Instantiation<'_> {
             Some(values) => values,
             None => self.resolve(range, context, local)?,
         };
+        let mut iteration = local.clone();
         for value in self.range_values(&resolved)? {
-            let mut iteration = local.clone();
             iteration.names.push((index.name.node, Some(literal(&value, span))));
-            self.iterations(inner, context, &iteration, out)?;
-            if out.len() > MAX_EQUATIONS {
-                return Err(
-                    fault!(super::errors::TOO_LARGE, "the loop has too many iterations").at(span)
-                );
-            }
+            self.each_iteration(inner, context, &iteration, visit)?;
+            iteration.names.pop();
         }
         Ok(())
     }
