@@ -116,7 +116,7 @@ for (const { name, path, options } of BROWSERS) {
       await page.setViewport({ width, height });
       if (dark && name === "chromium") await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
       await page.goto(url);
-      await page.evaluate(() => { try { localStorage.clear(); } catch { /* none */ } });
+      await page.evaluate(() => { try { localStorage.clear(); sessionStorage.clear(); } catch { /* none */ } });
       await page.goto("about:blank");
       await page.goto(url);
       await page.waitForSelector("body[data-ready]", { timeout: 60000 });
@@ -344,6 +344,57 @@ for (const { name, path, options } of BROWSERS) {
       await open(page, "example 0");
       await open(page, "example 1");
       assert.equal((await listed(page)).length, 1);
+      await closed(page);
+    });
+
+    test("two windows keep what was written in each", async () => {
+      const first = await opened();
+      const second = await browser.newPage();
+      await second.goto(at);
+      await second.waitForSelector("body[data-ready]", { timeout: 60000 });
+      await write(second, "// of the second");
+      await first.bringToFront();
+      await write(first, "// of the first");
+      await second.bringToFront();
+      await second.reload();
+      await second.waitForSelector("body[data-ready]", { timeout: 60000 });
+      const texts = Object.values(await second.evaluate(() => JSON.parse(sessionStorage.getItem("gapilib-work")).files));
+      assert.ok(texts.some((text) => text.includes("// of the second")));
+      assert.equal((await listed(first)).length + (await listed(second)).length > 0, true, "the other's work is on the list");
+      await second.close();
+      await closed(first);
+    });
+
+    test("keys go on from what is open, and the focus stays", async () => {
+      const page = await opened();
+      await page.focus("#open");
+      assert.equal(await page.$eval("#open", (select) => select.value), "example 0");
+      await page.keyboard.press("ArrowDown");
+      await page.waitForFunction(() => document.getElementById("open").value === "example 1");
+      await page.focus("#open");
+      await page.keyboard.press("ArrowDown");
+      await page.waitForFunction(() => document.getElementById("open").value === "example 2");
+      await open(page, "lesson 1");
+      await page.focus("#check");
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => /Lesson 1 is/.test(document.getElementById("lesson-said").textContent), { timeout: 60000 });
+      await page.waitForFunction(() => document.activeElement.id === "check");
+      await page.focus("#run");
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => /Done|error/.test(document.getElementById("status").textContent), { timeout: 60000 });
+      await page.waitForFunction(() => document.activeElement.id === "run");
+      assert.equal(await page.$eval("#output", (panel) => panel.hidden), false, "a script without generations shows what it prints");
+      await closed(page);
+    });
+
+    test("a file that is not needed is removed, and comes back with Undo", async () => {
+      const page = await opened();
+      await drop(page, "not_needed.csv", Buffer.from("# from the lab\nt;y\ns;mV\n1;2,5\n2;3\n"));
+      await page.waitForFunction(() => /2 rows/.test(document.getElementById("said").textContent));
+      await page.click("#remove");
+      assert.ok(!("not_needed.csv" in await files(page)));
+      await page.click("#undo");
+      assert.ok("not_needed.csv" in await files(page));
       await closed(page);
     });
 

@@ -13,7 +13,7 @@ pub(super) struct Global {
     /// A folder with Modelica packages to load by name (repeatable; also MODELICAPATH)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub library: Vec<PathBuf>,
-    /// Translate models anew, and keep none for later [large ones are in
+    /// Translate models again, and keep none for later [large ones are in
     /// the folder `gapi` of the user's cache]
     #[arg(long, global = true, env = "GAPI_NO_CACHE", hide_env = true)]
     #[arg(value_parser = clap::builder::FalseyValueParser::new())]

@@ -72,6 +72,7 @@ export class Lessons {
     const names = this.#lesson.companions.map(([name]) => name);
     const companions = Object.entries(others).filter(([name, content]) => names.includes(name) && typeof content === "string");
     this.#say("Checking ...");
+    const focused = document.activeElement;
     at("check").disabled = true;
     try {
       const { passed, text: said } = await this.#engine.ask("check", { lesson: number, text, companions });
@@ -83,6 +84,7 @@ export class Lessons {
       this.#say(String(error.message));
     }
     at("check").disabled = false;
+    if (focused === at("check")) focused.focus();
   }
 
   #hint() {

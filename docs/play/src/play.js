@@ -59,8 +59,13 @@ function open(next) {
     listWork();
   });
 }
-/** Puts files on the page in place of those that are there. */
+/** Puts files on the page in place of those that are there; a run of these ends. */
 function place(next) {
+  if (running) {
+    engine.end();
+    status("Ready.");
+    say("The run ended: other files were opened.");
+  }
   work = { ...next, files: { ...next.files }, shown: next.shown ?? next.edit ?? next.main };
   work.opened = next.opened ?? digest(work.files);
   clearResults();
@@ -110,7 +115,18 @@ function show(path) {
     return tab;
   }));
   if (before) at("files").querySelector("[aria-selected=true]").focus();
+  at("remove").hidden = work.shown === work.main;
   at("files").querySelector("[aria-selected=true]")?.scrollIntoView({ block: "nearest", inline: "nearest" });
+}
+
+/** Takes the file that is shown away; the main script stays. */
+function removeShown() {
+  const path = work.shown, content = work.files[path];
+  if (path === work.main) return say("The main script stays; other files can be removed.");
+  delete work.files[path];
+  show(work.main);
+  save();
+  say(`${base(path)} is removed.`, () => { work.files[path] = content; show(path); save(); });
 }
 
 async function add(list) {
@@ -150,14 +166,17 @@ function view(name) {
   at("to-edit").setAttribute("aria-selected", name === "edit");
   at("to-see").setAttribute("aria-selected", name === "see");
 }
-/** What the buttons can do now. */
+/** What the buttons can do now; the focus does not stay on one that can do nothing. */
 function busy(is) {
+  const focused = document.activeElement;
   at("run").disabled = at("run-here").disabled = is;
   at("stop").disabled = !is;
   at("pause").disabled = !is || !engine.suspends;
   at("pause").textContent = "Pause";
   at("change").hidden = !is;
   if (is) changeSaid("");
+  if (is && (focused === at("run") || focused === at("run-here"))) at("stop").focus();
+  if (!is && [at("stop"), at("pause"), document.body].includes(focused)) at("run").focus();
 }
 /** What became of a change, beside its field. */
 function changeSaid(text, isRefused = false) {
@@ -180,7 +199,7 @@ const LISTENERS = {
     const known = typed.findIndex((change) => change.generation === generation && change.statement === statement);
     if (refused !== null) {
       if (known >= 0) typed.splice(known, 1);
-      return changeSaid(`Not changed: ${refused}. The run continues.`, true);
+      return changeSaid(`Not changed: ${refused.replace(/[.?]$/, "")}. The run continues.`, true);
     }
     if (known < 0) typed.push({ generation, statement });
     if (at("statement").value.trim() === statement) at("statement").value = "";
@@ -235,7 +254,7 @@ function finished(answer, seconds) {
   status(answer.stopped ? `Stopped in generation ${live.now()?.done ?? 0}, after ${time}.` : failed ? "The script ended with an error." : `Done in ${time}.`);
   results(answer.files);
   markErrors(answer.errors);
-  if (failed || !live.now()) select(at("tab-output"));
+  if (failed || !live.now()?.done) select(at("tab-output"));
 }
 
 /** The page of the steps, if something was recorded. */
@@ -279,7 +298,7 @@ async function stop() {
   await run({ last: done, typed });
 }
 async function change(statement) {
-  changeSaid("");
+  changeSaid(at("pause").textContent === "Resume" ? `${statement} is checked when the run resumes.` : "");
   if (engine.suspends) return engine.send("line", statement);
   const generation = (live.now()?.done ?? 0) + 1;
   engine.end();
@@ -390,7 +409,7 @@ function showFile(path, bytes) {
 
 async function share() {
   if (Object.keys(work.files).some((path) => !isText(path))) return say("A link holds text only; use Download for binary tables.");
-  const { files, main, shown, lesson } = work;
+  const { files, main, shown, lesson } = { ...work, shown: /\.mos?$/.test(work.shown) ? work.shown : work.main };
   const link = location.href.split("#")[0] + "#p=" + await packed({ files, main, shown, lesson });
   history.replaceState(null, "", link);
   const local = location.protocol === "file:" ? " It leads to this file on this computer: for others, use Download, or open the page from a web server." : "";
@@ -428,7 +447,8 @@ function listWork() {
     ...(mine.length ? [group("Your work", mine.map((entry) => [`${titleOf(entry)}, ${new Date(entry.time).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}`, "work " + entry.id]))] : []),
     group("Lessons", lessons.map(({ number, title }) => [`${passed.includes(number) ? "\u2713" : "\u25cb"} ${number}. ${title}`, "lesson " + number])),
   );
-  at("open").value = work.lesson ? "lesson " + work.lesson : "";
+  const example = EXAMPLES.findIndex(({ title }) => title === work.title);
+  at("open").value = work.lesson ? "lesson " + work.lesson : example >= 0 ? "example " + example : "";
 }
 function opened(value) {
   const [kind, number] = value.split(" ");
@@ -436,6 +456,8 @@ function opened(value) {
   if (mine) open(mine);
   if (kind === "example") open(EXAMPLES[number]);
   if (kind === "lesson") trainer.open(lessons.find((lesson) => lesson.number === Number(number)));
+  // Arrow keys go on from what is open.
+  if ([...at("open").options].some((option) => option.value === value)) at("open").value = value;
   view("edit");
 }
 /** Arrow keys among tabs. */
@@ -468,6 +490,7 @@ async function begin() {
   for (const id of ["run", "run-here"]) at(id).addEventListener("click", () => run());
   at("stop").addEventListener("click", stop);
   at("pause").addEventListener("click", pause);
+  at("remove").addEventListener("click", removeShown);
   at("share").addEventListener("click", share);
   at("download").addEventListener("click", save_files);
   at("open").addEventListener("change", () => opened(at("open").value));
@@ -478,6 +501,7 @@ async function begin() {
     event.preventDefault();
     const statement = at("statement").value.trim();
     if (statement) change(statement);
+    else changeSaid("Write a statement, such as F_Mut := 0.5.", true);
   });
   const licences = document.getElementById("licences");
   if (licences) at("to-licences").href = URL.createObjectURL(new Blob([licences.textContent], { type: "text/plain" }));

@@ -11,8 +11,8 @@ export const store = {
   },
 };
 
-/** So many are kept. */
-const MOST = 20;
+/** So many are kept, if there is room. */
+const MOST = 100;
 /** Binary tables up to this size, in bytes, are kept beside the text. */
 const LARGEST_BINARY = 300000;
 
@@ -32,22 +32,45 @@ function restored(files) {
   return Object.fromEntries(Object.entries(files).map(([path, content]) => [path, typeof content === "string" ? content : bytes(content)]));
 }
 
-/** The work that was on the page when it was closed; `null` where there is none. */
+/** What this window keeps for itself; `null` where the browser keeps nothing. */
+const ofWindow = (act) => { try { return act(sessionStorage); } catch { return null; } };
+const WINDOW = ofWindow((session) => {
+  const id = session.getItem("gapilib-window") ?? Math.random().toString(36).slice(2);
+  session.setItem("gapilib-window", id);
+  return id;
+});
+
+/** The work that was in this window, or else on the page when it was closed; `null` where there is none. */
 export function lastWork() {
-  const work = store.get("work", null);
+  const work = ofWindow((session) => JSON.parse(session.getItem("gapilib-work"))) ?? store.get("work", null);
   return work && { ...work, files: restored(work.files) };
 }
 /** Keeps the work for the next visit; whether this browser keeps it. */
-export const keepWork = (work) => store.set("work", { ...work, files: storable(work.files) });
+export function keepWork(work) {
+  const entry = { ...work, window: WINDOW, files: storable(work.files) };
+  rescue();
+  ofWindow((session) => session.setItem("gapilib-work", JSON.stringify(entry)));
+  return store.set("work", entry);
+}
+/** Puts aside what another window has kept, before it is replaced; lessons are kept by their number. */
+function rescue() {
+  const other = store.get("work", null);
+  const isOther = other?.window && other.window !== WINDOW && !other.lesson;
+  if (!isOther || digest(restored(other.files)) === other.opened) return;
+  const others = shelf().filter((entry) => entry.window !== other.window);
+  store.set("shelf", [{ ...other, id: nextId(), time: new Date().toISOString() }, ...others]);
+}
 
 /** All that were put aside, the latest first. */
 export function shelf() {
   return store.get("shelf", []);
 }
 
+const nextId = () => Math.max(0, ...shelf().map(({ id }) => id)) + 1;
+
 /** Puts work aside, and returns under which number; `null` where this browser keeps nothing. */
 export function putAside(work) {
-  const id = Math.max(0, ...shelf().map(({ id }) => id)) + 1;
+  const id = nextId();
   const entry = { id, time: new Date().toISOString(), ...work, files: storable(work.files) };
   let entries = [entry, ...shelf()].slice(0, MOST);
   // The oldest go where there is no room.
@@ -63,7 +86,7 @@ export function fromShelf(id) {
   const found = shelf().find((entry) => entry.id === id);
   if (!found) return null;
   // It is kept already: only what is changed from here on is new.
-  const { id: _, time: __, opened: ___, ...work } = found;
+  const { id: _, time: __, opened: ___, window: ____, ...work } = found;
   return { ...work, files: restored(work.files) };
 }
 
