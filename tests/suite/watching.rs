@@ -119,7 +119,8 @@ fn changes_that_cannot_be_are_refused_and_the_run_continues() {
 #[test]
 fn settings_out_of_range_are_refused() {
     let settings = "F_Mut = 0.25;\nN_Population = 4;\nN_Parents = 2;\nN_Elitism = 1;\n\
-                    Seed = [1, 2, 3, 4, 5, 6];\n";
+                    N_Parameters = 2;\nParam_Min = {0, 0};\nParam_Max = {1, 1};\n\
+                    Cross_Point = {1};\nSeed = [1, 2, 3, 4, 5, 6];\n";
     let script = format!("{settings}{SCRIPT}");
     let with = |line: &str| {
         let world = MemoryWorld::new().paused_after(3, &[line]);
@@ -130,6 +131,8 @@ fn settings_out_of_range_are_refused() {
     };
     for (line, says) in [
         ("F_Mut := 7", "F_Mut is 7"),
+        ("Param_Max[1] := Param_Min[1] - 1", "the range of parameter 1"),
+        ("Cross_Point[1] := 9", "the crossing point 9"),
         ("F_Mut := -1", "F_Mut is -1"),
         ("N_Parents := 9", "N_Parents + N_Elitism = 9 + 1"),
         ("N_Parents := 1.5", "use a whole number"),

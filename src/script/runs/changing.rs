@@ -63,6 +63,12 @@ impl Session {
             Some(Value::Integer(number)) => Some(*number),
             _ => None,
         };
+        let vector = |name: &str| variables.get(Ident::new(name))?.as_vector().ok();
+        check_ranges(vector("Param_Min"), vector("Param_Max"))?;
+        if let (Some(points), Some(genes)) = (vector("Cross_Point"), whole("N_Parameters")) {
+            let points: Vec<i64> = points.iter().map(|point| *point as i64).collect();
+            ga::crossover::check_points(&points, usize::try_from(genes).unwrap_or(0))?;
+        }
         match ["N_Population", "N_Parents", "N_Elitism"].map(whole) {
             [Some(individuals), Some(parents), Some(elites)] => {
                 ga::selection::check_sizes(individuals, parents, elites)
@@ -83,6 +89,23 @@ impl Session {
             // be assigned and keeps its value.
             let _ = self.workspace.variables.set(name, value);
         }
+    }
+}
+
+/// Whether each gene has a range.
+fn check_ranges(least: Option<Vec<f64>>, greatest: Option<Vec<f64>>) -> Result<(), Fault> {
+    let (Some(least), Some(greatest)) = (least, greatest) else { return Ok(()) };
+    let empty = least.iter().zip(&greatest).position(|(least, greatest)| {
+        least.partial_cmp(greatest).is_none_or(std::cmp::Ordering::is_gt)
+    });
+    match empty {
+        Some(at) => Err(fault!(
+            BAD_CHANGE,
+            "the range of parameter {} would begin at {} and end at {}",
+            at + 1, least[at], greatest[at];
+            help: "keep `Param_Min` below `Param_Max`"
+        )),
+        None => Ok(()),
     }
 }
 
