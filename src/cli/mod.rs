@@ -11,6 +11,7 @@ mod completions;
 mod device;
 mod disk;
 mod effort;
+pub mod embedding;
 mod explain;
 mod help;
 mod identify;
@@ -57,7 +58,12 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     #[cfg(unix)]
     signals::survive_large_files();
-    let work = move || with_stack(STACK - (4 << 20), || dispatch(&cli));
+    on_large_stack(move || dispatch(&cli))
+}
+
+/// Works on a thread with a large stack.
+fn on_large_stack(work: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode {
+    let work = move || with_stack(STACK - (4 << 20), work);
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(work);
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(_)) if terminal::output_failed() => ExitCode::FAILURE,

@@ -15,6 +15,7 @@ use crate::script::errors::FILE_ERROR;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::script::runs::view::Progress;
+use crate::script::world::Screen as _;
 use crate::sim::Statistics;
 use crate::source::Span;
 use clap::{Args, ValueHint};

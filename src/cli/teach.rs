@@ -7,6 +7,7 @@ use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use crate::script::world::Screen as _;
 use crate::script::{Echo, Options, Reporting, Session};
 use crate::source::Span;
 use crate::teach::bands::{self, Repeated};

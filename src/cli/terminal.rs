@@ -6,6 +6,7 @@ use super::options::Colour;
 use crate::diag::visible;
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
+use crate::script::world::Screen;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
@@ -68,29 +69,41 @@ impl Terminal {
         self.silent = true;
     }
 
-    /// Whether a run would be drawn now.
-    pub(super) fn wants_view(&mut self) -> bool {
+    /// Takes the progress bar away.
+    pub(super) fn finish_progress(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn suspended(&self, work: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(work),
+            None => work(),
+        }
+    }
+}
+
+impl Screen for Terminal {
+    fn wants_view(&mut self) -> bool {
         self.draws && self.live.is_due()
     }
 
-    /// Draws a run.
-    pub(super) fn show_view(&mut self, view: &View) {
+    fn show_view(&mut self, view: &View) {
         self.finish_progress();
         let said = self.kept.iter().rev().flat_map(|(_, text)| text.lines().rev());
         let last = said.map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
         self.live.show(view, last);
     }
 
-    /// Takes the drawing away, and says what was said meanwhile.
-    pub(super) fn end_view(&mut self) {
+    fn end_view(&mut self) {
         self.live.close();
         for (out, text) in std::mem::take(&mut self.kept) {
             if out { self.print(&text) } else { self.eprint(&text) }
         }
     }
 
-    /// Whether the user wants to pause.
-    pub(super) fn wants_pause(&mut self) -> bool {
+    fn wants_pause(&mut self) -> bool {
         let wants = self.live.pause_was_pressed();
         if wants {
             self.end_view();
@@ -98,8 +111,7 @@ impl Terminal {
         wants
     }
 
-    /// A line that the user types; `None` at the end of the input.
-    pub(super) fn ask(&mut self, prompt: &str) -> Option<String> {
+    fn ask(&mut self, prompt: &str) -> Option<String> {
         let line = rustyline::DefaultEditor::new().and_then(|mut editor| editor.readline(prompt));
         if matches!(line, Err(rustyline::error::ReadlineError::Interrupted)) {
             self.interrupt.store(true, Ordering::SeqCst);
@@ -107,13 +119,11 @@ impl Terminal {
         line.ok()
     }
 
-    /// Whether diagnostics are coloured.
-    pub(super) fn colour(&self) -> bool {
+    fn colour(&self) -> bool {
         self.colour
     }
 
-    /// Writes to standard output. A reader that went away (`| head`) is not an error.
-    pub(super) fn print(&mut self, text: &str) {
+    fn print(&mut self, text: &str) {
         if self.quiet || self.silent {
             return;
         }
@@ -128,8 +138,7 @@ impl Terminal {
         });
     }
 
-    /// Writes to standard error.
-    pub(super) fn eprint(&mut self, text: &str) {
+    fn eprint(&mut self, text: &str) {
         if self.live.is_shown() {
             self.kept.push((false, text.to_owned()));
             return;
@@ -139,8 +148,7 @@ impl Terminal {
         });
     }
 
-    /// Draws how far the work is; on a terminal only.
-    pub(super) fn progress(&mut self, progress: &Progress) {
+    fn progress(&mut self, progress: &Progress) {
         if self.quiet || self.live.is_shown() || !std::io::stderr().is_terminal() {
             return;
         }
@@ -153,20 +161,6 @@ impl Terminal {
         bar.set_message(format!("{best}  failures {}", progress.failures));
         if progress.total > 0 && progress.done >= progress.total {
             self.finish_progress();
-        }
-    }
-
-    /// Takes the progress bar away.
-    pub(super) fn finish_progress(&mut self) {
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
-    }
-
-    fn suspended(&self, work: impl FnOnce()) {
-        match &self.bar {
-            Some(bar) => bar.suspend(work),
-            None => work(),
         }
     }
 }

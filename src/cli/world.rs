@@ -28,7 +28,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// The operating system as scripts see it. The working directory is the session's own, so that
 /// `cd` in a script changes nothing outside it.
 pub(super) struct SystemWorld {
-    terminal: Terminal,
+    screen: Box<dyn Screen>,
     current: PathBuf,
     output: PathBuf,
     threads: usize,
@@ -50,6 +50,17 @@ impl SystemWorld {
         output: &Path,
         threads: Option<usize>,
     ) -> io::Result<Self> {
+        let interrupt = terminal.interrupt();
+        SystemWorld::with_screen(Box::new(terminal), interrupt, output, threads)
+    }
+
+    /// The same with any screen; `interrupt` becomes true when the user asks to stop.
+    pub(super) fn with_screen(
+        screen: Box<dyn Screen>,
+        interrupt: Arc<AtomicBool>,
+        output: &Path,
+        threads: Option<usize>,
+    ) -> io::Result<Self> {
         let current = std::env::current_dir().map_err(|error| {
             io::Error::new(error.kind(), format!("the working directory cannot be read: {error}"))
         })?;
@@ -59,8 +70,8 @@ impl SystemWorld {
         Ok(SystemWorld {
             output: current.join(output),
             current,
-            stopping: Stopping { flag: terminal.interrupt(), ..Stopping::default() },
-            terminal,
+            stopping: Stopping { flag: interrupt, ..Stopping::default() },
+            screen,
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
             claimed: false,
@@ -76,7 +87,18 @@ impl SystemWorld {
         output: Output,
         threads: Option<usize>,
     ) -> io::Result<Self> {
-        let world = SystemWorld::new(terminal, &output.folder, threads)?;
+        let interrupt = terminal.interrupt();
+        SystemWorld::on_screen(Box::new(terminal), interrupt, output, threads)
+    }
+
+    /// The same with any screen; `interrupt` becomes true when the user asks to stop.
+    pub(super) fn on_screen(
+        screen: Box<dyn Screen>,
+        interrupt: Arc<AtomicBool>,
+        output: Output,
+        threads: Option<usize>,
+    ) -> io::Result<Self> {
+        let world = SystemWorld::with_screen(screen, interrupt, &output.folder, threads)?;
         world.own_output();
         let lock = output.lock_if_there()?;
         Ok(SystemWorld { results: Some((output, lock)), ..world })
@@ -301,38 +323,46 @@ impl Environment for SystemWorld {
 
 impl Screen for SystemWorld {
     fn print(&mut self, text: &str) {
-        self.terminal.print(text);
+        self.screen.print(text);
     }
 
     fn eprint(&mut self, text: &str) {
-        self.terminal.eprint(text);
+        self.screen.eprint(text);
     }
 
     fn progress(&mut self, progress: &Progress) {
-        self.terminal.progress(progress);
+        self.screen.progress(progress);
     }
 
     fn wants_view(&mut self) -> bool {
-        self.terminal.wants_view()
+        self.screen.wants_view()
     }
 
     fn show_view(&mut self, view: &View) {
-        self.terminal.show_view(view);
+        self.screen.show_view(view);
     }
 
     fn end_view(&mut self) {
-        self.terminal.end_view();
+        self.screen.end_view();
     }
 
     fn wants_pause(&mut self) -> bool {
-        self.terminal.wants_pause()
+        self.screen.wants_pause()
+    }
+
+    fn begin_pause(&mut self, help: &str) {
+        self.screen.begin_pause(help);
     }
 
     fn ask(&mut self, prompt: &str) -> Option<String> {
-        self.terminal.ask(prompt)
+        self.screen.ask(prompt)
+    }
+
+    fn changed(&mut self, line: &str, outcome: Result<(), &str>) {
+        self.screen.changed(line, outcome);
     }
 
     fn colour(&self) -> bool {
-        self.terminal.colour()
+        self.screen.colour()
     }
 }

@@ -11,7 +11,7 @@ mod library;
 use crate::diag::Fault;
 use crate::external::c::{CCompiler, CLibrary, HEADER, UTILITIES, Unit};
 use crate::external::errors::EXTERNAL_COMPILER;
-use crate::fault;
+use crate::{bail, fault};
 use library::Loaded;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -119,6 +119,14 @@ fn compiler() -> Result<Compiler, Fault> {
 
 /// Compiles a unit, unless the cache has it, and loads it.
 fn compiled(unit: &Unit) -> Result<(Vec<FileState>, Loaded), Fault> {
+    if cfg!(target_feature = "crt-static") {
+        bail!(
+            EXTERNAL_COMPILER,
+            "the library brings functions in C, which this program cannot load because it is \
+             linked statically";
+            help: "use the package `gapi.deb`, the one for Python, or `cargo install gapilib`"
+        );
+    }
     let compiler = compiler()?;
     let folder = cache::Scratch::new()?;
     for (name, text) in [

@@ -8,6 +8,7 @@ use super::options::{Freedom, Global, Limits};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
+use crate::script::world::Screen as _;
 use crate::script::{Dialect, Echo, Options, Session};
 use assistance::Assistance;
 use clap::{Args, ValueHint};

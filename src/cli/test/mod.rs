@@ -13,6 +13,7 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
 use crate::script::language::expectation::{Line, Tolerance, difference, embedded, shown};
+use crate::script::world::Screen as _;
 use crate::script::{Dialect, Echo, Exchange, Options, Transcript};
 use clap::{Args, ValueHint};
 use judgement::{Counts, Judged, judged, summary};

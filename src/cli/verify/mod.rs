@@ -15,6 +15,7 @@ use crate::script::access::policy::Grant;
 use crate::script::models::verification;
 use crate::script::models::verification::{Reference, Stage, Stuck};
 use crate::script::runs::view::Progress;
+use crate::script::world::Screen as _;
 use crate::source::Span;
 use cases::Case;
 use clap::{Args, ValueHint};

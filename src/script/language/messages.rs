@@ -19,6 +19,11 @@ impl Messages {
         self.unread.push(diagnostic);
     }
 
+    /// What the script has not asked for.
+    pub fn unread(&self) -> &[Diagnostic] {
+        &self.unread
+    }
+
     /// Number of errors that the script has not asked for.
     pub fn unread_errors(&self) -> usize {
         self.unread.iter().filter(|diagnostic| diagnostic.is_error()).count()

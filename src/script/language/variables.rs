@@ -1,11 +1,14 @@
 //! Variables, flags and dotted names of a session.
 
-use crate::diag::Diagnostic;
-use crate::name::Name;
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::name::{Ident, Name};
+use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::builtins::component_names;
 use crate::script::errors::NO_WINDOW;
 use crate::syntax;
+use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::value::Value;
 
 /// Classes whose components are completed.
@@ -15,6 +18,28 @@ impl Session {
     /// All variables with types and values.
     pub fn listed_variables(&self) -> String {
         self.workspace.listing("*", true)
+    }
+
+    /// All variables of scripts, in the order in which they were made.
+    pub fn variables(&self) -> impl Iterator<Item = (&'static str, &Value)> {
+        self.workspace.variables.iter().map(|(name, value)| (name.as_str(), value))
+    }
+
+    /// Gives a variable of scripts a value.
+    ///
+    /// # Errors
+    ///
+    /// `bad-option` for what is no identifier; those of an assignment to a variable of another type.
+    pub fn set_variable(&mut self, name: &str, value: Value) -> Result<(), Fault> {
+        let source = self.sources.add("name", name);
+        let reference = syntax::parse_expression(source, name).ok();
+        let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let names_variable =
+            |expression: &Expression| matches!(expression.kind, ExpressionKind::Reference(_));
+        if !is_plain || !reference.as_ref().is_some_and(names_variable) {
+            bail!(BAD_OPTION, "`{name}` cannot be the name of a variable");
+        }
+        self.workspace.variables.set(Ident::new(name), value)
     }
 
     /// What can be typed: variables, classes, and the parameters and variables of the model

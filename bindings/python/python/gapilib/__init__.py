@@ -1,0 +1,30 @@
+"""Identifies the parameters of Modelica models from measured data; compiles and simulates Modelica
+models natively.
+
+    >>> import gapilib
+    >>> session = gapilib.Session()
+    >>> session.load_text("model Decay parameter Real k = 1; Real x(start = 1, fixed = true); "
+    ...                   "equation der(x) = -k*x; end Decay;")
+    ['Decay']
+    >>> result = session.model("Decay").simulate({"k": 2.0}, stop=1.0, tolerance=1e-8)
+    >>> round(float(result["x"][-1]), 6)
+    0.135335
+"""
+
+from . import ga
+from ._gapilib import GapilibError, Model, Session, SimulationResult, Simulator, __version__
+from ._run import run
+from ._solution import Solution, identify
+
+__all__ = [
+    "GapilibError",
+    "Model",
+    "Session",
+    "SimulationResult",
+    "Simulator",
+    "Solution",
+    "__version__",
+    "ga",
+    "identify",
+    "run",
+]

@@ -1,0 +1,97 @@
+//! Identification: problems as `gapi identify` solves them.
+
+use crate::errors::{Reported, raised};
+use crate::session::{Answer, checked};
+use crate::worker::{Worker, written};
+use gapilib::cli::embedding::Embedding;
+use gapilib::script::Session as Engine;
+use gapilib::script::access::policy::Grant;
+use gapilib::script::runs::problem::{RunOptions, grant_inputs, solve};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// The solution as JSON, as text and as the report's page.
+type Solved = (String, String, String);
+
+/// Solves the problem of a file as `gapi identify` does: JSON, text and page of the solution. The
+/// package's `identify` makes an object of them.
+#[pyfunction]
+#[pyo3(signature = (problem, *, out=None, overwrite=false, resume=false, fresh=false, profile=false,
+    design=false, bootstrap=false, posterior=false, sensitivity=None, samples=0, evaluations=None,
+    libraries=Vec::new(), threads=None, allow_read=Vec::new(), allow_external=false, cache=true,
+    progress=None))]
+#[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
+pub(crate) fn identify(
+    py: Python<'_>,
+    problem: PathBuf,
+    out: Option<PathBuf>,
+    overwrite: bool,
+    resume: bool,
+    fresh: bool,
+    profile: bool,
+    design: bool,
+    bootstrap: bool,
+    posterior: bool,
+    sensitivity: Option<String>,
+    samples: usize,
+    evaluations: Option<u64>,
+    libraries: Vec<PathBuf>,
+    threads: Option<usize>,
+    allow_read: Vec<PathBuf>,
+    allow_external: bool,
+    cache: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Solved> {
+    let embedding = Embedding {
+        libraries,
+        threads,
+        read: allow_read,
+        external: allow_external,
+        cache,
+        ..Embedding::default()
+    };
+    let options = RunOptions {
+        resume,
+        fresh,
+        profile,
+        design,
+        bootstrap,
+        posterior,
+        sensitivity,
+        samples,
+        evaluations,
+        ..RunOptions::default()
+    };
+    let file = problem.clone();
+    let worker = Worker::new(
+        move |screen, stop| {
+            let task = ("gapi identify", file.as_path());
+            embedding.session_for(task, (out.as_deref(), overwrite), (screen, stop))
+        },
+        progress,
+    )?;
+    let (answer, errors) =
+        worker.call_quietly(py, move |engine| solved(engine, &problem, &options))?;
+    let (solved, interrupted) = answer.map_err(|errors: Vec<Reported>| raised(py, &errors))?;
+    written(py, "stderr", &errors)?;
+    match interrupted {
+        true => Err(PyKeyboardInterrupt::new_err(
+            "the identification was interrupted; `resume=True` continues it",
+        )),
+        false => Ok(solved),
+    }
+}
+
+fn solved(
+    engine: &mut Engine,
+    problem: &std::path::Path,
+    options: &RunOptions,
+) -> Answer<(Solved, bool)> {
+    engine.world.grant(Grant::Read(problem));
+    grant_inputs(engine, problem);
+    let solution = solve(engine, problem, options);
+    let solution = checked(engine, solution)?;
+    let interrupted = engine.is_interrupted();
+    Ok(((solution.to_json(), solution.text(), solution.html()), interrupted))
+}

@@ -1,0 +1,363 @@
+//! Translated models and the results of their simulations.
+
+use crate::errors::{Reported, raised_fault};
+use crate::session::{Answer, checked};
+use crate::simulator::{Points, Simulator};
+use crate::worker::{Worker, written};
+use gapilib::diag::Fault;
+use gapilib::identify::{CompiledModel, Model as _};
+use gapilib::results::{self, ResultTable, Values};
+use gapilib::script::Session as Engine;
+use gapilib::script::models::simulation::{self, SimulationOptions, Translated};
+use gapilib::sim::Statistics;
+use indexmap::IndexMap;
+use numpy::PyArray1;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A translated model. Made by `Session.model`.
+#[pyclass(frozen, module = "gapilib")]
+pub(crate) struct Model {
+    worker: Arc<Worker>,
+    translated: Arc<Translated>,
+    compiled: Arc<CompiledModel>,
+    threads: Option<usize>,
+}
+
+impl Model {
+    pub(crate) fn new(
+        worker: Arc<Worker>,
+        translated: Arc<Translated>,
+        threads: Option<usize>,
+    ) -> Model {
+        let program = translated.program.clone();
+        let compiled = Arc::new(CompiledModel::new(translated.problem.clone(), program));
+        Model { worker, translated, compiled, threads }
+    }
+}
+
+/// What a simulation is asked for.
+struct Wanted {
+    options: SimulationOptions,
+    parameters: Vec<(String, f64)>,
+    from: Option<(Arc<ResultTable>, Option<f64>)>,
+}
+
+#[pymethods]
+impl Model {
+    /// The class with its modification.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.translated.problem
+    }
+
+    /// Its parameters: dicts with unit, min, max, tunable and top_level by their names.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for parameter in self.compiled.parameters() {
+            let dict = PyDict::new(py);
+            dict.set_item("unit", parameter.unit)?;
+            dict.set_item("min", parameter.min)?;
+            dict.set_item("max", parameter.max)?;
+            dict.set_item("tunable", parameter.tunable)?;
+            dict.set_item("top_level", parameter.top_level)?;
+            all.set_item(parameter.name, dict)?;
+        }
+        Ok(all)
+    }
+
+    /// The names of its top-level outputs.
+    #[getter]
+    fn outputs(&self) -> Vec<String> {
+        self.compiled.outputs()
+    }
+
+    /// The names of its states.
+    #[getter]
+    fn states(&self) -> Vec<String> {
+        self.translated.state_names().map(ToString::to_string).collect()
+    }
+
+    /// The names of all its Real variables and parameters.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.compiled.names()
+    }
+
+    /// The unit of a variable; empty if it has none.
+    fn unit(&self, py: Python<'_>, variable: &str) -> PyResult<String> {
+        match self.compiled.unit(variable) {
+            Some(unit) => Ok(unit),
+            None => {
+                let found = self.translated.program.find_variable(variable);
+                Err(found.err().map_or_else(
+                    || PyKeyError::new_err(variable.to_owned()),
+                    |fault| raised_fault(py, fault),
+                ))
+            }
+        }
+    }
+
+    /// Its `experiment` annotation: start_time, stop_time, tolerance and interval, None where it says
+    /// nothing.
+    #[getter]
+    fn experiment<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let experiment = self.translated.program.experiment();
+        let dict = PyDict::new(py);
+        dict.set_item("start_time", experiment.start_time)?;
+        dict.set_item("stop_time", experiment.stop_time)?;
+        dict.set_item("tolerance", experiment.tolerance)?;
+        dict.set_item("interval", experiment.interval)?;
+        Ok(dict)
+    }
+
+    /// Simulates it, with values for parameters and start values by their names. What is None is
+    /// taken from the experiment annotation.
+    #[pyo3(signature = (parameters=None, *, start=None, stop=None, intervals=None, interval=None,
+        tolerance=None, method=None, step=None, variables=None, initial=None, initial_time=None))]
+    #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        parameters: Option<IndexMap<String, f64>>,
+        start: Option<f64>,
+        stop: Option<f64>,
+        intervals: Option<usize>,
+        interval: Option<f64>,
+        tolerance: Option<f64>,
+        method: Option<String>,
+        step: Option<f64>,
+        variables: Option<Vec<String>>,
+        initial: Option<PyRef<'_, SimulationResult>>,
+        initial_time: Option<f64>,
+    ) -> PyResult<SimulationResult> {
+        let options = SimulationOptions {
+            start,
+            stop,
+            intervals,
+            interval,
+            tolerance,
+            method,
+            fixed_step: step,
+            only: None,
+            ..SimulationOptions::default()
+        };
+        let wanted = Wanted {
+            options,
+            parameters: parameters.into_iter().flatten().collect(),
+            from: initial.map(|result| (result.table.clone(), initial_time)),
+        };
+        let model = self.translated.clone();
+        let (answer, errors) =
+            self.worker.call_quietly(py, move |engine| simulated(engine, &model, wanted))?;
+        match answer {
+            Ok((mut table, statistics)) => {
+                written(py, "stderr", &errors)?;
+                keep_only(&mut table, variables.as_deref()).map_err(|f| raised_fault(py, f))?;
+                Ok(SimulationResult {
+                    model: self.name().to_owned(),
+                    table: Arc::new(table),
+                    statistics,
+                })
+            }
+            Err(errors) => Err(crate::errors::raised(py, &errors)),
+        }
+    }
+
+    /// Prepares many simulations that differ in the values of `parameters` and answer the values of
+    /// `outputs` at the points `at` of the variable `x`. See `Simulator`.
+    #[pyo3(signature = (parameters, outputs, at, *, x="time", tolerance=None, threads=None))]
+    #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
+    fn simulator(
+        &self,
+        py: Python<'_>,
+        parameters: Vec<String>,
+        outputs: &Bound<'_, PyAny>,
+        at: &Bound<'_, PyAny>,
+        x: &str,
+        tolerance: Option<f64>,
+        threads: Option<usize>,
+    ) -> PyResult<Simulator> {
+        let (outputs, is_single) = match outputs.extract::<String>() {
+            Ok(name) => (vec![name], true),
+            Err(_) => (outputs.extract::<Vec<String>>()?, false),
+        };
+        let points: Vec<f64> = {
+            let numpy = py.import("numpy")?;
+            numpy.call_method1("ravel", (at,))?.call_method1("astype", ("float64",))?.extract()?
+        };
+        let available = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = threads.or(self.threads).unwrap_or(available).max(1);
+        let points = Points { outputs, is_single, x_name: x.to_owned(), x: points };
+        Simulator::new(py, self.compiled.clone(), (parameters, points), tolerance, threads)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<gapilib.Model {}>", self.name())
+    }
+}
+
+/// Simulates on the thread of the session.
+fn simulated(
+    engine: &mut Engine,
+    model: &Arc<Translated>,
+    wanted: Wanted,
+) -> Answer<(ResultTable, Statistics)> {
+    let fault = |fault: Fault| vec![Reported::fault(fault)];
+    // Values that were set before do not count.
+    let model = simulation::translate_anew(engine, &model.problem);
+    let model = checked(engine, model)?;
+    let mut options = wanted.options;
+    if let Some((table, time)) = wanted.from {
+        let time = time.or(table.time.last().copied()).unwrap_or(0.0);
+        simulation::begin_with(engine, &model, &table, time).map_err(fault)?;
+        options.start = options.start.or(Some(time));
+    }
+    for (name, value) in &wanted.parameters {
+        engine.set_parameter(name, *value).map_err(fault)?;
+    }
+    let simulated = simulation::simulate(engine, &model, &options);
+    let simulated = checked(engine, simulated.map_err(|error| vec![error]))?;
+    Ok((simulated.table, simulated.statistics))
+}
+
+/// Leaves out what is not wanted.
+fn keep_only(table: &mut ResultTable, wanted: Option<&[String]>) -> Result<(), Fault> {
+    let Some(wanted) = wanted else { return Ok(()) };
+    let mut kept = ResultTable { series: Vec::new(), ..ResultTable::new(table.time.clone()) };
+    for name in wanted.iter().filter(|name| *name != "time") {
+        let values = Values::Trajectory(table.column(name)?);
+        let of = table.series.iter().find(|series| &series.name == name);
+        let (unit, description) =
+            of.map_or_else(Default::default, |of| (of.unit.clone(), of.description.clone()));
+        kept.series.push(results::Series { name: name.clone(), unit, description, values });
+    }
+    *table = kept;
+    Ok(())
+}
+
+/// The trajectories of a simulation. At an event there are two points of one time: the values before
+/// and after it.
+#[pyclass(frozen, module = "gapilib")]
+pub(crate) struct SimulationResult {
+    model: String,
+    table: Arc<ResultTable>,
+    statistics: Statistics,
+}
+
+#[pymethods]
+impl SimulationResult {
+    /// The points in time, seconds.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.table.time)
+    }
+
+    /// The names of the variables.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.table.series.iter().map(|series| series.name.clone()).collect()
+    }
+
+    /// The units of the variables that have one.
+    #[getter]
+    fn units(&self) -> IndexMap<String, String> {
+        let with_unit = self.table.series.iter().filter(|series| !series.unit.is_empty());
+        with_unit.map(|series| (series.name.clone(), series.unit.clone())).collect()
+    }
+
+    /// The descriptions of the variables that have one.
+    #[getter]
+    fn descriptions(&self) -> IndexMap<String, String> {
+        let described = self.table.series.iter().filter(|series| !series.description.is_empty());
+        described.map(|series| (series.name.clone(), series.description.clone())).collect()
+    }
+
+    /// What the simulation cost: steps, evaluations of right-hand sides and Jacobians, events.
+    #[getter]
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let s = &self.statistics;
+        let dict = PyDict::new(py);
+        dict.set_item("steps", s.steps)?;
+        dict.set_item("error_failures", s.error_failures)?;
+        dict.set_item("newton_failures", s.newton_failures)?;
+        dict.set_item("rhs_evaluations", s.rhs_evaluations)?;
+        dict.set_item("jacobian_evaluations", s.jacobian_evaluations)?;
+        dict.set_item("factorizations", s.factorizations)?;
+        dict.set_item("state_events", s.state_events)?;
+        dict.set_item("time_events", s.time_events)?;
+        Ok(dict)
+    }
+
+    /// The values of a variable, one per point in time.
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.table.column(name).map_err(|fault| raised_fault(py, fault))?;
+        Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// The values at these times, between two points by a straight line.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        times: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let numpy = py.import("numpy")?;
+        let times: Vec<f64> = numpy.call_method1("atleast_1d", (times,))?.extract()?;
+        let values = self.table.interpolate(name, &times);
+        Ok(PyArray1::from_vec(py, values.map_err(|fault| raised_fault(py, fault))?))
+    }
+
+    fn __contains__(&self, name: &str) -> bool {
+        self.table.column(name).is_ok()
+    }
+
+    fn __len__(&self) -> usize {
+        self.table.time.len()
+    }
+
+    /// A data frame of pandas with time as index: all variables, or those of `names`.
+    #[pyo3(signature = (names=None))]
+    fn to_pandas<'py>(
+        &self,
+        py: Python<'py>,
+        names: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let columns = PyDict::new(py);
+        for name in names.unwrap_or_else(|| self.names()) {
+            columns.set_item(&name, self.__getitem__(py, &name)?)?;
+        }
+        let pandas = py.import("pandas")?;
+        let index = PyDict::new(py);
+        index.set_item("name", "time")?;
+        let index = pandas.getattr("Index")?.call((self.time(py),), Some(&index))?;
+        let arguments = PyDict::new(py);
+        arguments.set_item("index", index)?;
+        arguments.set_item("copy", false)?;
+        pandas.getattr("DataFrame")?.call((columns,), Some(&arguments))
+    }
+
+    /// Writes all variables into a file; its extension, .mat or .csv, selects the format.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let format = results::format_of_file(&path.to_string_lossy());
+        let format = format.map_err(|fault| raised_fault(py, fault))?;
+        let bytes = format.write(&self.table).map_err(|fault| raised_fault(py, fault))?;
+        Ok(py.detach(|| std::fs::write(path, bytes))?)
+    }
+
+    fn __repr__(&self) -> String {
+        let (first, last) = (self.table.time.first(), self.table.time.last());
+        format!(
+            "<gapilib.SimulationResult of {}: {} variables, {} points from {} s to {} s>",
+            self.model,
+            self.table.series.len(),
+            self.table.time.len(),
+            first.unwrap_or(&f64::NAN),
+            last.unwrap_or(&f64::NAN)
+        )
+    }
+}

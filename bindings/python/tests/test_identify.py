@@ -1,0 +1,116 @@
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import gapilib
+
+MODEL = """
+model Decay
+  parameter Real k = 1;
+  parameter Real a = 1;
+  Real x(start = a, fixed = true);
+equation
+  der(x) = -k*x;
+  annotation(experiment(StopTime = 2));
+end Decay;
+"""
+
+
+@pytest.fixture
+def problem(tmp_path):
+    times = np.linspace(0.1, 2, 20)
+    noise = 1e-3 * np.sin(37 * np.arange(20))
+    rows = np.column_stack([times, 1.3 * np.exp(-2.1 * times) + noise])
+    np.savetxt(tmp_path / "data.csv", rows, delimiter=",", header="t,x", comments="")
+    (tmp_path / "Decay.mo").write_text(MODEL)
+    return {
+        "model": "Decay",
+        "files": ["Decay.mo"],
+        "seed": [1, 2, 3, 4, 5, 6],
+        "parameters": {"k": {"min": 0.1, "max": 10.0}, "a": {"min": 0.1, "max": 5}},
+        "experiment": [
+            {
+                "data": "data.csv",
+                "x": {"variable": "time", "column": "t"},
+                "outputs": {"x": "x"},
+            }
+        ],
+    }
+
+
+def test_a_problem_as_a_dict(problem, capsys):
+    solution = gapilib.identify(problem, progress=False)
+    np.testing.assert_allclose([solution.parameters["k"], solution.parameters["a"]], [2.1, 1.3], rtol=5e-3)
+    assert solution.verdicts == {"k": "identifiable", "a": "identifiable"}
+    covariance = solution.covariance
+    deviations = [p["deviation"] for p in solution.data["parameters"]]
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), deviations, rtol=1e-9)
+    # The same as by linearised least squares at the solution.
+    times = np.linspace(0.1, 2, 20)
+    k, a = solution.parameters["k"], solution.parameters["a"]
+    jacobian = np.column_stack([-a * times * np.exp(-k * times), np.exp(-k * times)])
+    variance = solution.fitness / 18
+    np.testing.assert_allclose(covariance, variance * np.linalg.inv(jacobian.T @ jacobian), rtol=1e-3)
+    assert "<html" in solution.html and "iframe" in solution._repr_html_()
+    assert solution.text in capsys.readouterr().out
+    pandas = pytest.importorskip("pandas")
+    table = solution.table()
+    assert isinstance(table, pandas.DataFrame) and table.loc["k", "low"] < k < table.loc["k", "high"]
+
+
+def test_a_problem_in_a_file_gives_the_same(problem, tmp_path):
+    from gapilib import _toml
+
+    file = tmp_path / "problem.toml"
+    file.write_text(_toml.dumps(problem))
+    one = gapilib.identify(file, out=str(tmp_path / "one"), progress=False, threads=1)
+    two = gapilib.identify(problem, progress=False, threads=2)
+    assert one.parameters == two.parameters and one.data["evaluations"] == two.data["evaluations"]
+    saved = json.loads((tmp_path / "one" / "result.json").read_text())
+    assert saved["parameters"] == one.data["parameters"]
+    assert not list(tmp_path.glob("problem-*.toml"))
+
+
+def test_all_that_is_wrong_is_said(problem, tmp_path):
+    problem["parameters"]["kk"] = {"min": 0, "max": 1}
+    with pytest.raises(gapilib.GapilibError, match="kk"):
+        gapilib.identify(problem, progress=False)
+    with pytest.raises(gapilib.GapilibError):
+        gapilib.identify("missing.toml", progress=False)
+    with pytest.raises(TypeError, match="complex"):
+        gapilib.identify({**problem, "seed": 1j}, progress=False)
+
+
+def test_the_progress_is_called(problem):
+    calls = []
+    gapilib.identify(problem, progress=lambda *call: calls.append(call))
+    label, done, total, best = calls[-1]
+    assert isinstance(label, str) and done >= 0 and (best is None or best >= 0)
+
+
+def test_scripts_run_unchanged(tmp_path, capsys):
+    (tmp_path / "s.mos").write_text('a = {1, 2, 3};\nprint("hello");\nb = sum(a);\n')
+    variables = gapilib.run(tmp_path / "s.mos")
+    assert variables["b"] == 6 and list(variables["a"]) == [1, 2, 3]
+    assert "hello" in capsys.readouterr().out
+    (tmp_path / "bad.mos").write_text("a = 1;\nb = nothing(a);\n")
+    with pytest.raises(gapilib.GapilibError) as caught:
+        gapilib.run(tmp_path / "bad.mos")
+    assert caught.value.diagnostics[0]["line"] == 2
+    with pytest.raises(gapilib.GapilibError):
+        gapilib.run(tmp_path / "missing.mos")
+
+
+def test_the_command_comes_with_the_package(tmp_path):
+    def gapi(*arguments):
+        return subprocess.run([sys.executable, "-m", "gapilib", *arguments], capture_output=True, text=True)
+
+    assert gapi("--version").stdout == f"gapi {gapilib.__version__}\n"
+    assert gapi("run", "missing.mos").returncode == 1
+    assert gapi("--nonsense").returncode == 2
+    (tmp_path / "s.mos").write_text("print(\"hi\");\nexit(7);\n")
+    ended = gapi("run", "s.mos")
+    assert (ended.returncode, ended.stdout) == (7, "hi\n")
