@@ -97,7 +97,7 @@ function showPopulation(step) {
   const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (40 + rows * height + 4), role: "group", "aria-label": "population of generation " + number(step.g) });
   image.append(label(44, 14, generation.unit.toLowerCase() + " " + number(step.g) + (isSorted && generation.fitness.length ? ", best first" : "")));
   image.append(...heads(44, width / generation.n, 30, { class: "remark" }));
-  at("heads").textContent = key(width / generation.n);
+  at("heads").textContent = key(width / generation.n) + (isByFate(generation) ? " Blue genes stay, orange ones have mutated." : "");
   const top = new Map();
   list.forEach(({ place, left }, line) => {
     const y = 36 + line * height;
@@ -146,7 +146,7 @@ function present(step, generation, k) {
   const rated = known(step, "fitness") && generation.fitness.length && !known(step, "elite");
   return {
     number: k, values: genome(generation.genes, generation.n, k), text: describe(generation, k, step), failed,
-    crown: origin.elite !== undefined, changed: origin.mutated || [],
+    crown: origin.elite !== undefined, changed: origin.mutated || [], isByFate: isByFate(generation),
     fitness: rated ? (failed ? "failed" : short(generation.fitness[k])) : "",
   };
 }
@@ -185,7 +185,7 @@ function child(generation, row, mutated) {
   const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
   const origin = crown ? { elite: from[0] } : alone ? { was: from[0], mutated: changed } : { of: from, mutated: changed };
   const genes = values.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
-  return { number: row, values, from, crown, changed, text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
+  return { number: row, values, from, crown, changed, isByFate: isByFate(generation), text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
 }
 // Whether a step is about the individual at this row of the next generation.
 function concerns(step, generation, row) {
@@ -196,6 +196,9 @@ function concerns(step, generation, row) {
 }
 const mate = (rank, parents) => rank % 2 ? rank - 1 : rank + 1 < parents ? rank + 1 : 0;
 
+// A call of Mutation alone is about which genes mutate: they have the colours of its drawing. The values are
+// those that the script has chosen, often all the same.
+const isByFate = generation => generation.call && Boolean(generation.u) && !generation.points;
 // The names of the genes above their columns; their numbers where a name is wider than its column: a name
 // that is cut can be taken for another. The key says then which number is which gene.
 const HEAD = 11;
@@ -211,12 +214,12 @@ function key(cell) {
 }
 
 // One row: a box for each gene, its number, marks, and the fitness where it is known.
-function individual({ number, values, text, failed, crown, changed, fitness }, x, y, width, height) {
+function individual({ number, values, text, failed, crown, changed, fitness, isByFate }, x, y, width, height) {
   const cell = width / values.length;
   const group = svg("g", { class: "row", tabindex: -1, role: "img", "aria-label": text });
   group.append(svg("title", {}, text));
   values.forEach((value, j) => {
-    group.append(svg("rect", { x: x + j * cell, y, width: cell - 1, height: height - 1, fill: colour(part(value, j)) }));
+    group.append(svg("rect", { x: x + j * cell, y, width: cell - 1, height: height - 1, fill: isByFate ? (changed.includes(j) ? "var(--second)" : "var(--first)") : colour(part(value, j)) }));
     if (changed.includes(j)) {
       group.append(svg("rect", { class: "changed", x: x + j * cell + 1, y: y + 1, width: cell - 3, height: height - 3, fill: "none", stroke: "var(--orange)", "stroke-width": 2 }));
       group.append(svg("circle", { cx: x + (j + 0.5) * cell, cy: y + height / 2, r: Math.min(4, height / 3), fill: "#fff", stroke: "#000" }));

@@ -15,7 +15,7 @@ function beginWhatIf() {
   }
   // The page around this one says why there is nothing to compare.
   window.addEventListener("message", ({ source, data }) => {
-    if (source === window.parent && data && data.whatIfFailed) refuse("No comparison: " + data.whatIfFailed + (WHAT_IF ? " Below is the comparison before, with " + WHAT_IF.statement + "." : ""));
+    if (source === window.parent && data && data.whatIfFailed) refuse("No comparison: " + data.whatIfFailed.replace(/\.?$/, ".") + (WHAT_IF ? " Below is the comparison before, with " + WHAT_IF.statement + "." : ""));
   });
 }
 // Values that differ from the present ones.
