@@ -331,7 +331,7 @@ for (const { name, path, options } of BROWSERS) {
       assert.equal(await shown("changed-to"), "0.9");
       const both = await shown("both");
       assert.match(both, /F_Mut := 0.9/);
-      for (const [value, says] of [["7", /^No comparison: .*F_Mut is 7.*Below is the comparison before, with F_Mut := 0.9/], ["", /^Enter a value for F_Mut/]]) {
+      for (const [value, says] of [["7", /^No comparison: .*F_Mut is 7.*[^.]\. Below is the comparison before, with F_Mut := 0.9/], ["", /^Enter a value for F_Mut/]]) {
         await asked(value);
         await frame.waitForFunction((says) => new RegExp(says).test(document.getElementById("what-if-said").textContent), { timeout: 60000 }, says.source);
         assert.equal(await shown("changed-to"), value);
@@ -365,6 +365,7 @@ for (const { name, path, options } of BROWSERS) {
       assert.match(second, /^refused: Not changed by F_mut := 0.5: .*did you mean `F_Mut`/);
       assert.match(third, /^done: N_Elitism := 2 from generation \d+ on/);
       assert.deepEqual(more, []);
+      assert.ok(await page.$eval("#change-said", (list) => list.scrollHeight <= list.clientHeight + 1), "none is out of sight");
       assert.equal(await page.$eval("#statement", (input) => input.value), "F_mut := 0.5", "what was refused can be put right");
       await click(page, "stop");
       await ended(page);
@@ -423,10 +424,13 @@ for (const { name, path, options } of BROWSERS) {
       // Lesson 6: what mutates and what stays have their colours.
       frame = await stepsOfLesson(page, 6);
       const colours = () => frame.$$eval("#drawing circle", (all) => all.map((one) => one.getAttribute("class") + " " + one.getAttribute("fill")).filter((one) => /^hit|^missed/.test(one)));
+      const cells = () => frame.$$eval("#population .row rect[fill^=var]", (all) => all.map((one) => one.getAttribute("fill")));
       assert.deepEqual(await colours(), Array(4).fill("missed var(--blue)"));
+      assert.ok((await cells()).length > 32 && (await cells()).every((fill) => fill === "var(--first)"));
       await frame.evaluate(() => document.getElementById("last").click());
       assert.deepEqual(await colours(), Array(4).fill("hit var(--orange)"));
       assert.equal(await frame.$$eval("#population .changed", (all) => all.length), 32);
+      assert.equal((await cells()).filter((fill) => fill === "var(--second)").length, 32);
       await closed(page);
     });
 
