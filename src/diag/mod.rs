@@ -157,6 +157,12 @@ impl Diagnostic {
         self
     }
 
+    /// The same with this place where it has none.
+    #[must_use]
+    pub fn or_at(self, span: Span) -> Diagnostic {
+        self.with_spans(|known| if known.is_known() { known } else { span })
+    }
+
     /// Adds an action.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {

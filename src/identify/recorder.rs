@@ -64,6 +64,9 @@ pub struct Recorder {
     pub causes: IndexMap<String, u64>,
     /// What the user changed while the run went on, and from which generation on.
     pub changes: Vec<(usize, String)>,
+    /// Whether operators of the genetic algorithm make one generation of the other; a script without
+    /// them evaluates individuals that it chooses in another way.
+    pub evolves: bool,
     measurements: Vec<Measurement>,
     seeds: Seeds,
     keep_every: u64,
@@ -139,8 +142,22 @@ impl Recorder {
         self.pending.rate(rows, measured);
     }
 
+    /// What is counted: generations, or evaluations where nothing evolves. Which of them it is shows
+    /// in the first generation only.
+    pub fn counted(&self) -> &'static str {
+        let is_known = !self.history.generations.is_empty();
+        if is_known && !self.evolves { "evaluation" } else { "generation" }
+    }
+
+    /// The cause of most failures, and of how many.
+    pub fn main_cause(&self) -> Option<(&str, u64)> {
+        let most = self.causes.iter().rev().max_by_key(|(_, count)| **count);
+        most.map(|(cause, count)| (cause.as_str(), *count))
+    }
+
     /// `Fit_Order` got a population with its fitness: a generation ends.
     pub fn ordered(&mut self, population: &Genomes, fitness: &[f64]) {
+        self.evolves = true;
         if !std::mem::replace(&mut self.sorted_by_fit_order, true) {
             self.take_back(population);
         }

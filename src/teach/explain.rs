@@ -3,6 +3,7 @@
 
 use super::generation::{Generation, mate};
 use super::operation_text;
+use super::scaling::{Scaling, scaling};
 use super::step::Step;
 use super::walk::Walk;
 use super::words::counted;
@@ -39,35 +40,73 @@ fn draw(walk: &Walk) -> String {
     format!(
         "{who}: Ram_Gen_ARENA returned {} between 0 and 1. {}",
         counted(numbers, "random number"),
-        placed(walk),
+        used(walk, numbers),
     )
 }
 
-/// How the script has made genes of the random numbers, as far as the numbers show it.
-fn placed(walk: &Walk) -> &'static str {
+/// What the script has done with the numbers, as far as they show it.
+fn used(walk: &Walk, count: usize) -> String {
     let generation = walk.generation();
-    let Some(numbers) = generation.numbers_of_genes() else {
-        return "The script makes the genes of them.";
+    let Some(formula) = placed(walk) else {
+        return "The script makes the genes of them.".to_owned();
     };
-    if numbers == generation.genes {
-        return "The script takes each number as it is as a gene.";
-    }
-    let later = walk.trace().generations[walk.number()..].iter();
-    let ranges = later.filter_map(|generation| generation.mutated.as_ref()).next();
-    let fits = ranges.is_some_and(|mutated| {
-        let n = generation.n_genes;
-        let is_there = |(k, (u, gene)): (usize, (&f64, &f64))| {
-            let (low, high) = (mutated.minima[k % n], mutated.maxima[k % n]);
-            (low + (high - low) * u - gene).abs() <= 1e-9 * (high - low).abs()
-        };
-        mutated.minima.len() == n && numbers.iter().zip(&generation.genes).enumerate().all(is_there)
-    });
-    match fits {
-        true => {
-            "Each number u sets one gene within its range, to Param_Min + (Param_Max - Param_Min) u."
+    let (own, others) = (generation.genes.len(), count - generation.genes.len());
+    let each = match (own, others) {
+        (1, 0) => "It sets the gene".to_owned(),
+        (_, 0) => "Each number u sets one gene".to_owned(),
+        _ => format!("Each of the other {own} numbers u sets one gene"),
+    };
+    let first = match (others, crossing_points(walk, others)) {
+        (0, _) => String::new(),
+        (1, Some(points)) => {
+            format!("The first one gives the crossing point (Cross_Point = {points}). ")
         }
-        false => "The script makes the genes of them.",
+        (_, Some(points)) => {
+            format!("The first {others} give the crossing points (Cross_Point = {points}). ")
+        }
+        (1, None) => "The first one sets no gene. ".to_owned(),
+        (_, None) => format!("The first {others} set no genes. "),
+    };
+    format!("{first}{each}{formula}")
+}
+
+/// The formula for a gene, as the end of a sentence; `None` where no known one gives all genes.
+fn placed(walk: &Walk) -> Option<String> {
+    let generation = walk.generation();
+    let numbers = generation.numbers_of_genes()?;
+    if numbers == generation.genes {
+        return Some(", as it is.".to_owned());
     }
+    let Scaling { low, high } = scaling(&walk.trace().generations)?;
+    let mut mutations = walk.trace().generations[walk.number()..].iter();
+    let near = |a: &[f64], b: &[f64]| {
+        a.len() == b.len()
+            && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-6 * (a.abs() + b.abs()))
+    };
+    let is_searched = mutations
+        .find_map(|generation| generation.mutated.as_ref())
+        .is_some_and(|mutated| near(&mutated.minima, &low) && near(&mutated.maxima, &high));
+    if is_searched {
+        return Some(" within its range, to Param_Min + (Param_Max - Param_Min) u.".to_owned());
+    }
+    let names = &walk.trace().subject.parameters;
+    let ends = low.iter().zip(&high).enumerate().map(|(j, (low, high))| {
+        let name = names.get(j).map_or_else(|| format!("gene {}", j + 1), Clone::clone);
+        format!("{name} from {} (u = 0) to {} (u = 1)", short(*low), short(*high))
+    });
+    Some(format!(": {}.", ends.collect::<Vec<_>>().join(", ")))
+}
+
+/// The crossing points of the run, where the first numbers give them by the formula of the paper.
+fn crossing_points(walk: &Walk, count: usize) -> Option<String> {
+    let drawn = &walk.generation().drawn;
+    let numbers = drawn.iter().flat_map(|drawn| &drawn.numbers).take(count);
+    let last = walk.generation().n_genes.checked_sub(1)? as f64;
+    let expected: Vec<usize> = numbers.map(|u| 1 + (last * u).floor() as usize).collect();
+    let mut later = walk.trace().generations[walk.number()..].iter();
+    let crossed = later.find_map(|generation| generation.crossed.as_ref())?;
+    let names: Vec<String> = expected.iter().map(usize::to_string).collect();
+    (crossed.points == expected).then(|| names.join(", "))
 }
 
 fn simulate(walk: &Walk) -> String {

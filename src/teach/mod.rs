@@ -30,6 +30,7 @@ mod produced;
 pub mod quiz;
 #[cfg(test)]
 mod sample;
+mod scaling;
 #[cfg(feature = "cli")]
 pub mod screen;
 mod step;

@@ -13,6 +13,7 @@ use super::kept::{Kept, MOST_ROWS, kept};
 use super::operation_table::{self, Row};
 use super::plain::{title, unit};
 use super::quiz;
+use super::scaling::{Scaling, scaling};
 use super::step::Step;
 use super::trace::Trace;
 use super::walk::Walk;
@@ -112,6 +113,7 @@ fn population_panel() -> Markup {
         section id="population-panel" {
             h3 { "The population" }
             div id="population" {}
+            p.note id="heads" {}
             p id="unfolding" { label { input id="unfold" type="checkbox"; " show all individuals" } }
             p id="individual" aria-live="polite" { "\u{a0}" }
             p.legend id="legend" { (LEGEND) }
@@ -191,7 +193,7 @@ fn what_if_panel() -> Markup {
 fn curve_panel() -> Markup {
     html! {
         section id="curve-panel" {
-            h3 { "Best fitness over the generations" }
+            h3 id="curve-heading" { "Best fitness over the generations" }
             p { label { input id="future" type="checkbox"; " show how it continues" } }
             div id="curve" {}
         }
@@ -480,16 +482,25 @@ fn origin(origin: &Origin) -> Value {
     }
 }
 
-/// The search ranges of the first mutation that names some; else what the first population spans.
+/// The search ranges of the first mutation that names some; else those in which the genes were drawn at
+/// random; else what all individuals span.
 fn ranges(generations: &[Generation]) -> (Vec<f64>, Vec<f64>) {
     if let Some(mutated) = generations.iter().find_map(|generation| generation.mutated.as_ref()) {
         return (mutated.minima.clone(), mutated.maxima.clone());
     }
+    if let Some(Scaling { low, high }) = scaling(generations) {
+        let ends = low.iter().zip(&high).map(|(low, high)| (low.min(*high), low.max(*high)));
+        return ends.unzip();
+    }
     let Some(first) = generations.first() else { return (Vec::new(), Vec::new()) };
-    let rows = || first.genes.chunks_exact(first.n_genes.max(1));
+    let n = first.n_genes;
+    let rows = || {
+        let alike = generations.iter().filter(move |generation| generation.n_genes == n);
+        alike.flat_map(move |generation| generation.genes.chunks_exact(n.max(1)))
+    };
     let extreme = |start: f64, extreme: fn(f64, f64) -> f64| -> Vec<f64> {
         let over = |j: usize| rows().map(|row| row[j]).fold(start, extreme);
-        (0..first.n_genes).map(over).collect()
+        (0..n).map(over).collect()
     };
     (extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max))
 }

@@ -75,7 +75,7 @@ pub fn question(walk: &Walk) -> Option<Question> {
     match walk.step() {
         Step::Sort => selection(walk),
         Step::Cross(0) if is_even => pair(generation),
-        Step::Cross(0) => heritage(generation),
+        Step::Cross(0) => heritage(generation, 0),
         Step::Cross(2) if is_even => cut(generation),
         Step::Mutate(row) if generation.mutated.as_ref()?.elites == row => mutation(walk, row),
         _ => None,
@@ -177,7 +177,7 @@ fn pair(generation: &Generation) -> Option<Question> {
     let order = generation.order();
     let (a, b) = (*order.first()?, *order.get(mate(0, crossed.parents))?);
     if crossed.parents < 3 {
-        return heritage(generation);
+        return heritage(generation, 0);
     }
     let text = format!(
         "Individual {} has rank 1. Parents of neighbouring ranks mate. Enter the number of the \
@@ -193,6 +193,10 @@ fn cut(generation: &Generation) -> Option<Question> {
     let order = generation.order();
     let (a, b) = (*order.get(2)?, *order.get(mate(2, crossed.parents))?);
     let n = generation.n_genes;
+    // Two genes can be cut at one place only.
+    if n < 3 {
+        return heritage(generation, 2);
+    }
     let child = crossed.rows.chunks_exact(n).nth(crossed.elites + 2)?;
     let (a, b) = (generation.genome(a), generation.genome(b));
     let [point] = crossed.points[..] else { return None };
@@ -214,20 +218,24 @@ fn row(genes: &[f64]) -> String {
     genes.iter().map(|gene| short(*gene)).collect::<Vec<_>>().join("  ")
 }
 
-fn heritage(generation: &Generation) -> Option<Question> {
+/// Which genes the first child of the parent of this rank has from whom.
+fn heritage(generation: &Generation, rank: usize) -> Option<Question> {
     let crossed = generation.crossed.as_ref()?;
     let order = generation.order();
-    let (a, b) = (*order.first()?, *order.get(mate(0, crossed.parents))?);
+    let other = mate(rank, crossed.parents);
+    let (a, b) = (*order.get(rank)?, *order.get(other)?);
     let letter = |j: usize| {
         let swaps = crossed.points.iter().filter(|&&point| point <= j).count();
         if swaps % 2 == 0 { 'a' } else { 'b' }
     };
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
     let text = format!(
-        "Parent a, rank 1, has the genes  {}\nParent b, rank 2, has the genes  {}\nThey exchange \
+        "Parent a, rank {}, has the genes  {}\nParent b, rank {}, has the genes  {}\nThey exchange \
          the genes after gene {}. From which parent is each gene of the first child? One letter \
          per gene, such as {}:",
+        rank + 1,
         row(generation.genome(a)),
+        other + 1,
         row(generation.genome(b)),
         points.join(" and after gene "),
         "ab".repeat(generation.n_genes.div_ceil(2))[..generation.n_genes].to_owned()
@@ -279,16 +287,16 @@ mod tests {
 
     #[test]
     fn right_answers_count() {
-        let (replies, score) = answered(0, &["6 3 4, 5", "3", "1", "no"]);
+        let (replies, score) = answered(0, &["6 3 4, 5", "3", "a b", "no"]);
         assert_eq!(score, Score { asked: 4, right: 4 }, "{replies:?}");
         assert_eq!(score.to_string(), "4 of 4 answers were correct.");
-        assert!(replies[1].contains("mates with") && replies[2].contains("were they cut"));
+        assert!(replies[1].contains("mates with") && replies[2].contains("Parent a, rank 3"));
         assert_eq!(answered(1, &["1 2 3 4", " A b", "y"]).1.asked, 3);
     }
 
     #[test]
     fn wrong_answers_are_put_right() {
-        let (replies, score) = answered(0, &["1 2 3 4", "2", "1", "yes"]);
+        let (replies, score) = answered(0, &["1 2 3 4", "2", "ab", "yes"]);
         assert_eq!(score, Score { asked: 4, right: 1 });
         assert!(replies[0].ends_with("No: the answer is 3 4 5 6."), "{}", replies[0]);
         assert!(replies[3].ends_with("No: the answer is no."), "{}", replies[3]);
@@ -303,11 +311,35 @@ mod tests {
             [
                 "Enter 4 different numbers from 1 to 6.",
                 "Enter one number from 1 to 6.",
-                "Enter one number from 1 to 1.",
+                "Enter 2 letters, each of them a or b.",
                 "Enter y for yes or n for no.",
             ]
         );
         assert_eq!(answered(1, &["1 2 3 9", "abc", "nonsense"]).1, Score::default());
+    }
+
+    /// Two genes can be cut at one place only: where it is would be no question.
+    #[test]
+    fn where_parents_were_cut_is_asked_of_three_genes() {
+        let crossed = |n: usize| super::super::generation::Crossed {
+            place: crate::teach::Place::default(),
+            parents: 4,
+            elites: 0,
+            points: vec![n - 1],
+            rows: vec![0.5; 4 * n],
+        };
+        let generation = |n: usize| Generation {
+            n_genes: n,
+            genes: (0..4 * n).map(|k| k as f64).collect(),
+            fitness: vec![1.0, 2.0, 3.0, 4.0],
+            crossed: Some(crossed(n)),
+            ..Generation::default()
+        };
+        let question = cut(&generation(3)).expect("a question");
+        assert_eq!(question.answer, Answer::Number { right: 2, of: 2 });
+        let question = cut(&generation(2)).expect("a question");
+        assert!(question.text.starts_with("Parent a, rank 3, has"), "{}", question.text);
+        assert_eq!(question.answer, Answer::Letters { right: "ab".to_owned() });
     }
 
     /// Of many parents one individual is asked about; how many are better would be the answer.

@@ -88,7 +88,10 @@ impl Step {
             Step::Elite | Step::Cross(_) => crossed,
             Step::Mutate(_) => mutated,
             Step::Complete(_) => next.and_then(|next| next.drawn.last()).map(|drawn| drawn.place),
-            Step::Renew | Step::Stop => sorted.or(generation.rated),
+            Step::Renew | Step::Stop => {
+                let simulated = (!generation.is_call).then_some(generation.simulated);
+                sorted.or(generation.rated).or(simulated)
+            }
             Step::Operate { call, .. } => {
                 generation.operations.get(call).map(|called| called.operation.place)
             }

@@ -114,7 +114,11 @@
     check("the verdict of the data is kept for the end", all("tell", "tr").length === 0);
     click("last");
     check("every parameter is judged", !data.result || all("tell", "tr").length === data.parameters.length + 1, all("tell", "tr").length);
-    choose("generation", String(data.of + 50)); check("the box shows a generation that is there", at("generation").value === String(data.of) && at("jump").textContent === "There are 1 to " + data.of + ". Shown is " + data.of + ".", at("jump").textContent);
+    const before = title();
+    for (const entry of [String(data.of + 50), "0", "1.5", ""]) {
+      choose("generation", entry); check("`" + entry + "` is no generation", title() === before && at("generation").value === entry && at("jump").textContent === "Enter a number from 1 to " + data.of + ".", at("jump").textContent);
+    }
+    choose("generation", "2"); check("and then one that is", title().startsWith("Generation 2 ") && at("jump").textContent === "" && !at("generation").hasAttribute("aria-invalid"), title());
   }
   function prediction() {
     click("first");
@@ -151,8 +155,9 @@
     const thick = all("drawing", "rect").filter(r => r.getAttribute("stroke-width") === "3").length;
     const n = data.generations[0].n, of = data.steps[first].of;
     const hits = data.generations[0].u.slice(of * n, (of + 1) * n).filter(u => u < data.generations[0].factor).length;
-    check("genes that mutate have a thick edge", thick === 2 * hits && hits > 0, thick);
-    check("the place of the new gene in its range", all("drawing", "circle").length === hits);
+    check("genes that mutate have a thick edge", thick === hits && hits > 0, thick);
+    check("the number of each gene lies on its scale", all("drawing", "circle.hit").length === hits && all("drawing", "circle.missed").length === n - hits);
+    check("the place of the new gene in its range", all("drawing", "circle").length === n + hits);
     check("the mutated gene is marked in the matrix", all("population", "circle").length >= hits);
   }
   function landscapeAndFamily() {

@@ -150,6 +150,34 @@ print(\"k area h: \" + String(integer(1e3*values[1] + 0.5)) + \" \" + String(int
     assert!(folder.path().join("results/s/report.html").is_file());
 }
 
+/// The text of such a problem is nobody's: what is wrong is shown at the call.
+#[test]
+fn what_is_wrong_with_a_problem_of_a_script_is_shown_at_the_call() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    for (data, output, message) in [
+        ("none.csv", "h", "there is no file `none.csv`"),
+        ("tank.csv", "level", "`tank.csv` has no column `level`"),
+    ] {
+        let script = format!(
+            "problem = GAPILib.Problem(modelName = \"Tank\", files = {{\"tank.mo\"}},\n  \
+             parameters = {{GAPILib.Free(\"k\", min = 0.05, max = 5)}},\n  experiments = \
+             {{GAPILib.Experiment(data = \"{data}\", xColumn = \"t\", outputs = {{\"h\"}}, \
+             columns = {{\"{output}\"}})}});\nidentify(problem);\n"
+        );
+        fs::write(folder.path().join("s.mos"), script).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_gapi"))
+            .args(["run", "s.mos"])
+            .current_dir(folder.path())
+            .env_remove("MODELICAPATH")
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.contains(message) && text.contains("s.mos:4:1"), "{text}");
+        assert!(!text.contains("problem:"), "{text}");
+    }
+}
+
 /// A simulation of this one takes a thirtieth of the time of one of the tank.
 fn cooling(folder: &Path) {
     let model = "model Cooling

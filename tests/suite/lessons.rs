@@ -163,6 +163,26 @@ fn what_is_passed_is_kept_beside_the_copies() {
 }
 
 #[test]
+fn a_lesson_has_a_number_and_names() {
+    let here = folder(&[]);
+    for name in ["4", "04", "selection", "Selection", "04_selection", "04_selection.mos"] {
+        let (code, out, errors) = gapi(&here, &["lesson", name, "--solution"]);
+        assert_eq!(code, 0, "{name}: {errors}");
+        assert!(out.starts_with("A solution of lesson 4: selection\n"), "{name}: {out}");
+    }
+    let (code, out, errors) = gapi(&here, &["lesson", "drei"]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    let numbered = "error: `drei` is not a lesson\n = help: give the number of one of these:\n    \
+        1  find one parameter by hand\n";
+    assert!(errors.starts_with(numbered), "{errors}");
+    assert!(errors.ends_with("   18  your own model and your own data\n"), "{errors}");
+    let (code, _, errors) = gapi(&here, &["lesson", "mutaton"]);
+    let near = "error: `mutaton` is not a lesson\n = help: did you mean 6, \"mutation\"?\n";
+    assert!(code == 2 && errors.starts_with(near), "{errors}");
+    assert!(!here.path().join("lessons").exists(), "a question writes nothing");
+}
+
+#[test]
 fn damaged_progress_is_an_error_and_not_lost() {
     let here = folder(&[]);
     gapi(&here, &["lesson", "1"]);

@@ -210,7 +210,9 @@ fn evaluations_are_no_generations() {
          (R, Seed) := Ram_Gen_ARENA(Seed, Count);\nP := transpose(R);\nF := {eval};\nend for\n"
     );
     let scaled = random.replace("P := transpose(R)", "P := 2*transpose(R)");
-    let here = folder(&[("once.mos", &once), ("random.mos", &random), ("scaled.mos", &scaled)]);
+    let squared = random.replace("P := transpose(R)", "P := {{R[1, k]^2} for k in 1:Count}");
+    let (once, random) = (("once.mos", &*once), ("random.mos", &*random));
+    let here = folder(&[once, random, ("scaled.mos", &scaled), ("squared.mos", &squared)]);
     let shown = |name: &str| {
         let (code, out, errors) = gapi(&here, &["teach", name]);
         assert_eq!(code, 0, "{errors}");
@@ -227,14 +229,18 @@ fn evaluations_are_no_generations() {
     let out = shown("random.mos");
     for part in [
         "Evaluation 1, step 1 of 3: sampling",
-        "1 individual is sampled: Ram_Gen_ARENA returned 1 random number between 0 and\n1. The script takes each number as it is as a gene.",
+        "1 individual is sampled: Ram_Gen_ARENA returned 1 random number between 0 and\n1. It sets the gene, as it is.",
         "Evaluation 3, step 1 of 4: sampling",
-        "9 individuals are sampled",
+        "9 individuals are sampled: Ram_Gen_ARENA returned 9 random numbers between 0\nand 1. Each number u sets one gene, as it is.",
         "The script simulates nothing further: 13 individuals in all. The best is",
     ] {
         assert!(out.contains(part), "`{part}` is missing:\n{out}");
     }
-    assert!(shown("scaled.mos").contains("The script makes the genes of them."));
+    let out = shown("scaled.mos");
+    let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    let range = "Each number u sets one gene: a from 0 (u = 0) to 2.000 (u = 1).";
+    assert!(words.contains(range), "{out}");
+    assert!(shown("squared.mos").contains("The script makes the genes of them."));
 }
 
 /// A page of calls, or of evaluations, names them so, and no model where there is none.

@@ -191,8 +191,33 @@ fn a_view_shows_generations_genes_and_fit() {
     let [low, middle, high] = spreads[0].generation;
     assert!((low, high) == (0.0, 1.0) && (middle - 2.0 / 3.0).abs() < 1e-9, "{middle}");
     assert!((spreads[0].value - 0.8).abs() < 0.1, "{}", spreads[0].value);
+    assert_eq!(progress.label, "evaluation", "no operator makes one of the other");
     assert_eq!(fitted[0].measured, [0.0, 0.4, 0.8]);
     assert!((fitted[0].simulated[2] - spreads[0].value).abs() < 1e-6);
+}
+
+#[test]
+fn a_view_says_what_is_counted_and_why_simulations_fail() {
+    let script = "
+model Root
+  parameter Real a = 1;
+  output Real y = sqrt(a)*time;
+  annotation(experiment(StopTime = 1));
+end Root;
+pop = {{-1.0}, {0.5}, {-2.0}};
+for k in 1:3 loop
+  fit := Fit(Eval(\"\", \"Root\", {0.0, 1.0}, pop, {\"a\"}, \"time\", \"y\"), {0.0, 0.8});
+  (pop, fit) := Fit_Order(pop, fit, 3, 2, 1);
+end for;
+";
+    let views: Views = Arc::new(Mutex::new(Vec::new()));
+    let mut session = Session::new(Box::new(MemoryWorld::new().watched(&views)));
+    assert_eq!(session.run_text("root.mos", script).code, 0);
+    let views = views.lock().expect("no panic");
+    let last = &views.last().expect("a view").progress;
+    assert_eq!((last.label.as_str(), last.done, last.failures), ("generation", 3, 6));
+    let (cause, count) = last.main_cause.as_ref().expect("a cause");
+    assert!(cause.contains("`sqrt` has no value") && *count == 6, "{cause} {count}");
 }
 
 /// Long enough to be killed: a few hundred generations.

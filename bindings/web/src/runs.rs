@@ -123,7 +123,7 @@ fn prepare(session: &mut Session, run: &Run) -> Result<(), String> {
 }
 
 /// Takes the trace out of the world: the page of the steps is made of it when it is asked for. What
-/// a run would have been is no result where it has failed.
+/// a run would have been is no result where it has failed; the comparison before it stays.
 fn keep_steps(session: &mut Session, run: &Run, has_ended: bool) {
     let trace = session.world.read(Path::new(TRACE)).unwrap_or_default();
     let result = session.world.read(&session.world.output_dir().join("result.json")).ok();
@@ -131,7 +131,7 @@ fn keep_steps(session: &mut Session, run: &Run, has_ended: bool) {
     let removed = session.world.remove(Path::new(TRACE));
     debug_assert!(removed.is_ok(), "the trace is the run's own");
     if run.compare && !has_ended {
-        return steps::forget_changed();
+        return;
     }
     steps::keep(trace, result, run.compare.then(|| run.changes.last().cloned()).flatten());
 }

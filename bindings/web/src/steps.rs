@@ -40,11 +40,6 @@ pub(crate) fn keep(trace: Vec<u8>, result: Option<String>, change: Option<Change
     }
 }
 
-/// The run as it would have been has failed: the recorded one is shown alone.
-pub(crate) fn forget_changed() {
-    lock(&KEPT).1 = None;
-}
-
 /// Makes the page.
 pub(crate) fn answered(_: &Steps) -> Result<Page, String> {
     let kept = lock(&KEPT);

@@ -16,6 +16,8 @@ export class Lessons {
     this.#engine = engine;
     this.#work = work;
     at("check").addEventListener("click", () => this.#check());
+    at("lesson-more").addEventListener("click", () => this.#unfold(at("lesson-about").classList.contains("folded")));
+    new ResizeObserver(() => Lessons.#offerMore()).observe(at("lesson-about"));
     at("hint").addEventListener("click", () => this.#hint());
     at("solution").addEventListener("click", () => this.#solution());
     at("reset").addEventListener("click", () => this.#work.restart({ ...Lessons.#shipped(this.#lesson), lesson: this.#lesson.number }));
@@ -49,17 +51,34 @@ export class Lessons {
     at("lesson").hidden = !lesson;
     if (!lesson) return;
     at("lesson-title").textContent = `Lesson ${lesson.number}: ${lesson.title}`;
-    // The task is the last paragraph of the comment that the script begins with.
+    // The task is the last paragraph of the comment that the script begins with; it is always in sight.
     const paragraphs = lesson.introduction.trim().split(/\n\s*\n/);
     const task = paragraphs.findIndex((part) => part.startsWith("Your task"));
-    const about = paragraphs.slice(1, task).concat(paragraphs.slice(task));
-    at("lesson-about").replaceChildren(...about.map((part) => {
+    const joined = (part) => part.replace(/\n(?!\d\.)/g, " ");
+    at("lesson-about").replaceChildren(...paragraphs.slice(1, task).map((part) => {
       const element = document.createElement("p");
-      element.textContent = part.replace(/\n(?!\d\.)/g, " ");
+      element.textContent = joined(part);
       return element;
     }));
-    at("lesson-task").open = true;
+    at("lesson-do").textContent = paragraphs.slice(task).map(joined).join("\n");
+    at("lesson-task").hidden = task < 2;
+    this.#unfold(false);
     this.#say("");
+  }
+
+  /** Shows all of what the lesson is about, or its beginning with a button for the rest. */
+  #unfold(isWhole) {
+    at("lesson-task").open = true;
+    at("lesson-about").classList.toggle("folded", !isWhole);
+    at("lesson-more").textContent = isWhole ? "Less" : "Read on";
+    at("lesson-more").setAttribute("aria-expanded", isWhole);
+    Lessons.#offerMore();
+  }
+
+  /** The button for the rest is there where there is a rest; a part that is not shown has no size yet. */
+  static #offerMore() {
+    const about = at("lesson-about");
+    at("lesson-more").hidden = about.classList.contains("folded") && about.scrollHeight <= about.clientHeight + 1;
   }
 
   /** Keeps what the learner has written. */
@@ -110,8 +129,9 @@ export class Lessons {
 
   #say(text, passed = false) {
     at("lesson-said").replaceChildren();
-    // What is said has the place of the task, which opens again.
+    // What is said has the place of the explanation, which opens again; who has passed has no task.
     if (text) at("lesson-task").open = false;
+    at("lesson-do").hidden = passed;
     if (text) this.#work.linked(at("lesson-said"), text);
     if (text) at("lesson-said").scrollIntoView({ block: "nearest" });
     at("lesson-said").className = passed ? "passed" : "";

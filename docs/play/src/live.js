@@ -6,6 +6,9 @@ const WIDE = window.innerWidth < 800 ? 370 : 560;
 /** Pictures kept: some megabytes; of longer runs every second one is forgotten, again and again. */
 const MOST = 2000;
 
+/** What stands there before a run. */
+const BEFORE = "Press Run: the generations are drawn here while they are computed. The data stay in this browser; nothing is sent anywhere.";
+
 function svg(tag, attributes, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
@@ -61,6 +64,7 @@ function frame(xs, ys, [xTitle, yTitle], text, logarithmic = false) {
 export class Live {
   #views = [];
   #follows = true;
+  #unit = "generation";
 
   constructor() {
     at("moment").addEventListener("input", () => this.#go(Number(at("moment").value)));
@@ -69,6 +73,8 @@ export class Live {
   }
 
   clear() {
+    this.#unit = "generation";
+    at("nothing").textContent = BEFORE;
     this.#views = [];
     this.#follows = true;
     at("watch").hidden = true;
@@ -78,6 +84,8 @@ export class Live {
   /** One more picture of the run. */
   add(view) {
     const { best, ...kept } = view;
+    // It shows in the second one: what it is holds for all of them.
+    this.#unit = view.progress.label === "evaluation" ? "evaluation" : "generation";
     this.#views.push(kept);
     this.best = best;
     if (this.#views.length > MOST) this.#views = this.#views.filter((_, k) => k % 2 === 0 || k === this.#views.length - 1);
@@ -85,6 +93,16 @@ export class Live {
     at("nothing").hidden = true;
     at("moment").max = this.#views.length - 1;
     if (this.#follows) this.#go(this.#views.length - 1);
+  }
+
+  /** What is counted: generations, or evaluations of a script in which nothing evolves. */
+  unit() {
+    return this.#unit;
+  }
+
+  /** The run has ended. */
+  ended() {
+    if (!this.#views.length) at("nothing").textContent = "This script compares no simulation with measurements, so there are no generations to draw. What it prints is in Output; calls of operators can be walked through in Step by step.";
   }
 
   /** The best fitness that was reported last, and the generation. */
@@ -103,12 +121,25 @@ export class Live {
 
   #draw({ title, progress, spreads, fitted }) {
     const of = progress.total ? ` of ${progress.total}` : "";
-    at("moment").setAttribute("aria-valuetext", `generation ${progress.done}`);
-    at("headline").textContent = `${title}: generation ${progress.done}${of}, best fitness ${short(progress.best)}, ${progress.failures} simulations failed`;
+    const unit = this.#unit;
+    at("moment").setAttribute("aria-label", unit[0].toUpperCase() + unit.slice(1));
+    at("moment").setAttribute("aria-valuetext", `${unit} ${progress.done}`);
+    at("headline").textContent = `${title}: ${unit} ${progress.done}${of}, best fitness ${short(progress.best)}, ${progress.failures} simulations failed`;
+    at("failures").textContent = whyFailed(progress, spreads.length);
+    at("failures").hidden = !progress.failures || !progress.main_cause;
+    at("curve-title").textContent = `Best fitness over the ${unit}s`;
     at("fit").replaceChildren(...fitted.map(fitOf));
-    at("curve").replaceChildren(curveOf(this.best, progress.done));
-    at("spreads").replaceChildren(spreadsOf(spreads));
+    at("curve").replaceChildren(curveOf(this.best, progress.done, unit));
+    at("spreads").replaceChildren(spreadsOf(spreads, unit));
   }
+}
+
+/** Why simulations fail, and where that is to be seen. */
+function whyFailed({ failures, main_cause }, parameters) {
+  if (!main_cause) return "";
+  const [cause, count] = main_cause;
+  const where = parameters > 1 ? " Where in the ranges they fail: Step by step, \u201cThe landscape of the fitness\u201d." : "";
+  return `Why they failed: ${cause}${count < failures ? ` (${count} of ${failures})` : ""}. They get the worst fitness, and the search continues.${where}`;
 }
 
 function fitOf({ x_name, y_name, x, measured, simulated }) {
@@ -121,22 +152,22 @@ function fitOf({ x_name, y_name, x, measured, simulated }) {
   return f.image;
 }
 
-function curveOf(best, now) {
+function curveOf(best, now, unit) {
   const points = best.map((v, k) => [k + 1, v]).filter(([, v]) => v > 0 && v < 1e59);
   const text = document.createElement("p");
   if (points.length < 2) {
-    text.textContent = "The curve begins with the second generation.";
+    text.textContent = `The curve begins with the second ${unit}.`;
     return text;
   }
   const every = Math.ceil(points.length / 600), thin = points.filter((_, k) => k % every === 0 || k === points.length - 1);
-  const f = frame(thin.map((p) => p[0]), thin.map((p) => p[1]), ["generation", "best fitness (logarithmic)"], "best fitness over the generations", true);
+  const f = frame(thin.map((p) => p[0]), thin.map((p) => p[1]), [unit, "best fitness (logarithmic)"], `best fitness over the ${unit}s`, true);
   f.image.append(svg("path", { d: f.line(thin.map((p) => p[0]), thin.map((p) => p[1])), fill: "none", stroke: "var(--blue)", "stroke-width": 2 }));
   const x = f.x(Math.min(Math.max(now, thin[0][0]), thin.at(-1)[0]));
   f.image.append(svg("line", { x1: x, x2: x, y1: 24, y2: 200, stroke: "var(--orange)", "stroke-width": 2, "stroke-dasharray": "4 3" }));
   return f.image;
 }
 
-function spreadsOf(spreads) {
+function spreadsOf(spreads, unit) {
   const height = 34, left = WIDE < 500 ? 70 : 120, width = WIDE - left - (WIDE < 500 ? 90 : 130);
   const image = svg("svg", { viewBox: `0 0 ${WIDE} ${spreads.length * height + 22}`, role: "img",
     "aria-label": spreads.map(({ name, value, unit }) => `${name} = ${short(value)} ${unit}`).join(", ") });
@@ -149,6 +180,6 @@ function spreadsOf(spreads) {
       svg("circle", { cx: left + best * width, cy: y, r: 5, fill: "var(--orange)", stroke: "var(--ink)" }),
       label(left + width + 10, y + 4, `${short(value)} ${unit === "1" ? "" : unit}`));
   });
-  image.append(label(0, spreads.length * height + 12, "box: smallest to largest of the generation, dot: best so far"));
+  image.append(label(0, spreads.length * height + 12, `box: smallest to largest of the ${unit}, dot: best so far`));
   return image;
 }

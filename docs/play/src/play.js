@@ -87,6 +87,7 @@ const isChanged = () => work.main !== "" && digest(work.files) !== work.opened;
 const titleOf = ({ title, lesson, main }) => title ?? (lesson ? `Lesson ${lesson}` : base(main));
 function save() {
   if (work.lesson) trainer.keep(Object.fromEntries(Object.entries(work.files).filter(([, content]) => typeof content === "string")));
+  showDownload();
   const isKept = keepWork(work);
   if (!isKept && !save.said) say("This browser does not keep your work when the page is closed: use Download.");
   save.said ||= !isKept;
@@ -174,15 +175,28 @@ function busy(is) {
   at("pause").disabled = !is || !engine.suspends;
   at("pause").textContent = "Pause";
   at("change").hidden = !is;
-  if (is) changeSaid("");
+  if (is) forgetChanges();
   if (is && (focused === at("run") || focused === at("run-here"))) at("stop").focus();
   if (!is && [at("stop"), at("pause"), document.body].includes(focused)) at("run").focus();
 }
-/** What became of a change, beside its field. */
-function changeSaid(text, isRefused = false) {
-  at("change-said").textContent = text;
-  at("change-said").className = isRefused ? "refused" : "";
-  at("statement").setAttribute("aria-invalid", isRefused);
+/** What became of the changes of a run, below their field: a line for each, the latest first. A statement
+ * that waits has its line already; what is said of the field itself belongs to no statement. */
+function changeSaid(text, kind, statement = null) {
+  const all = [...at("change-said").children];
+  all.filter((line) => line.statement === null).forEach((line) => line.remove());
+  const waits = kind !== "waiting" && all.findLast((line) => line.className === "waiting" && line.statement === statement);
+  const line = waits || document.createElement("p");
+  line.statement = statement;
+  line.className = kind;
+  line.textContent = text;
+  if (!waits) at("change-said").prepend(line);
+  at("change-said").tabIndex = 0;
+  at("statement").setAttribute("aria-invalid", kind === "refused");
+}
+function forgetChanges() {
+  at("change-said").replaceChildren();
+  at("change-said").removeAttribute("tabindex");
+  at("statement").setAttribute("aria-invalid", false);
 }
 
 /** Paths as the page shows them: the files of a run are in memory. */
@@ -193,17 +207,20 @@ const LISTENERS = {
   view(picture) {
     live.add(picture);
     const { done, total, best } = picture.progress;
-    status(`Generation ${done}${total ? " of " + total : ""}, best ${short(best)}`);
+    const unit = live.unit();
+    status(`${unit[0].toUpperCase()}${unit.slice(1)} ${done}${total ? " of " + total : ""}, best ${short(best)}`);
   },
   typed({ generation, statement, refused }) {
     const known = typed.findIndex((change) => change.generation === generation && change.statement === statement);
     if (refused !== null) {
       if (known >= 0) typed.splice(known, 1);
-      return changeSaid(`Not changed: ${refused.replace(/[.?]$/, "")}. The run continues.`, true);
+      // To be put right, where nothing else has been begun.
+      if (!at("statement").value) at("statement").value = statement;
+      return changeSaid(`Not changed by ${statement}: ${refused.replace(/[.?]$/, "")}. The run continues.`, "refused", statement);
     }
     if (known < 0) typed.push({ generation, statement });
     if (at("statement").value.trim() === statement) at("statement").value = "";
-    changeSaid(`${statement} from generation ${generation} on.`);
+    changeSaid(`${statement} from generation ${generation} on.`, "done", statement);
   },
   paused: () => status("Paused. Statements that you apply take effect from this generation on."),
 };
@@ -251,10 +268,11 @@ async function run(options = {}) {
 function finished(answer, seconds) {
   const failed = answer.exit_code !== 0 && answer.exit_code !== 130;
   const time = `${seconds.toFixed(1)} s`;
-  status(answer.stopped ? `Stopped in generation ${live.now()?.done ?? 0}, after ${time}.` : failed ? "The script ended with an error." : `Done in ${time}.`);
+  status(answer.stopped ? `Stopped in ${live.unit()} ${live.now()?.done ?? 0}, after ${time}.` : failed ? "The script ended with an error." : `Done in ${time}.`);
   results(answer.files);
   markErrors(answer.errors);
   if (failed || !live.now()?.done) select(at("tab-output"));
+  live.ended();
 }
 
 /** The page of the steps, if something was recorded. */
@@ -276,13 +294,15 @@ async function showSteps(isQuiet) {
 }
 /** The page of the steps asks what would have been. */
 async function whatIf({ generation, statement }) {
+  const failed = (reason) => at("steps").querySelector("iframe")?.contentWindow.postMessage({ whatIfFailed: reason }, "*");
+  if (running) return failed("a run is being computed; try again when it has ended.");
   status(`Running again with ${statement} from generation ${generation} on ...`);
   const answer = await run({ compare: true, changes: [...typed, { generation, statement }] });
   if (!answer) return;
   select(at("tab-steps"));
   if (answer.exit_code !== 0 && !answer.stopped) {
     const reason = /^error(?:\[[\w-]+\])?: (.*)/m.exec(answer.errors)?.[1] ?? "the changed run ended with an error";
-    at("steps").querySelector("iframe")?.contentWindow.postMessage({ whatIfFailed: reason }, "*");
+    failed(reason);
     return status(`No comparison: ${reason}`);
   }
   await showSteps(false);
@@ -298,7 +318,11 @@ async function stop() {
   await run({ last: done, typed });
 }
 async function change(statement) {
-  changeSaid(at("pause").textContent === "Resume" ? `${statement} is checked when the run resumes.` : "");
+  const isPaused = at("pause").textContent === "Resume";
+  if (isPaused) {
+    changeSaid(`${statement} is checked when the run resumes.`, "waiting", statement);
+    at("statement").value = "";
+  }
   if (engine.suspends) return engine.send("line", statement);
   const generation = (live.now()?.done ?? 0) + 1;
   engine.end();
@@ -421,13 +445,19 @@ async function share() {
   }
 }
 function save_files() {
-  const script = oneScript(work.files, work.main);
+  const script = oneScript(work.files, work.main), count = Object.keys(work.files).length;
   if (script !== null) {
     download(base(work.main), script);
-    return say(`Run it with: gapi run ${base(work.main)}`);
+    const what = count > 1 ? `${base(work.main)} holds all ${count} files. ` : "";
+    return say(`${what}Run it with: gapi run ${base(work.main)}`);
   }
   download("problem.zip", archive(work.files));
-  say(`Unpack it, then: gapi run ${work.main}`);
+  say(`problem.zip holds ${count} files. Unpack it, then: gapi run ${work.main}`);
+}
+/** Beside the button: what it gives. */
+function showDownload() {
+  const count = Object.keys(work.files).length;
+  at("download-as").textContent = oneScript(work.files, work.main) === null ? `${count} files in an archive` : count > 1 ? `${count} files as one script` : "";
 }
 
 // ---- The beginning -----------------------------------------------------------------------------
@@ -501,7 +531,7 @@ async function begin() {
     event.preventDefault();
     const statement = at("statement").value.trim();
     if (statement) change(statement);
-    else changeSaid("Write a statement, such as F_Mut := 0.5.", true);
+    else changeSaid("Write a statement, such as F_Mut := 0.5.", "refused");
   });
   const licences = document.getElementById("licences");
   if (licences) at("to-licences").href = URL.createObjectURL(new Blob([licences.textContent], { type: "text/plain" }));
@@ -512,7 +542,7 @@ async function begin() {
   });
   addEventListener("message", ({ data, source }) => {
     const isOwn = source === at("steps").querySelector("iframe")?.contentWindow;
-    if (isOwn && data?.whatIf && !running) whatIf(data.whatIf);
+    if (isOwn && data?.whatIf) whatIf(data.whatIf);
   });
   addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("dropping"); });
   addEventListener("dragleave", () => document.body.classList.remove("dropping"));

@@ -24,6 +24,20 @@ export async function unpacked(text) {
   }
 }
 
+/** Statements that write a table where it does not exist yet: the script runs any number of times, and does
+ * not replace a file that the user has put there. */
+function tableOnce(path, content, name) {
+  return [
+    `// The data of ${path}: written beside the script, unless there is a file of this name.`,
+    `${name} := ${content};`,
+    `if not Modelica.Utilities.Files.exist("${path}") then`,
+    `  Is_Written := writeFile("${path}", ${name});`,
+    `elseif OpenModelica.Scripting.readFile("${path}") <> ${name} then`,
+    `  print("${path} is used as it is: it differs from the table in this script");`,
+    "end if",
+  ].join("\n");
+}
+
 /**
  * The problem as one script for `gapi run`: the scripts that the main one runs are put in their
  * places, the model in front of them, and tables are written before they are read. `null` where this
@@ -52,7 +66,8 @@ export function oneScript(files, main) {
     script = script.replace(named, '$1""');
   }
   const text = (content) => JSON.stringify(content);
-  const written = tables.filter((path) => script.includes(`"${path}"`)).map((path) => `writeFile("${path}", ${text(files[path])});`);
+  const used = tables.filter((path) => script.includes(`"${path}"`));
+  const written = used.map((path, k) => tableOnce(path, text(files[path]), `Table_${k + 1}`));
   if (!whole || tables.some((path) => /[^\x20-\x7e\r\n\t]/.test(files[path]))) return null;
   return [...models.map((path) => files[path].trimEnd()), ...written, script].join("\n\n");
 }

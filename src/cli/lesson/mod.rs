@@ -8,6 +8,7 @@ use super::output::{Output, RESULTS};
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use crate::diag::suggest;
 use crate::lessons::{self, Lesson, Verdict};
 use crate::script::world::Environment as _;
 use crate::script::{Echo, Options, Reporting, Strictness};
@@ -35,9 +36,9 @@ Each lesson is a script of about one page with a gap; its comments say what to d
 
 Exit code: 0 if the lesson is passed, 1 if not, 2 for an invalid command line, 130 if interrupted.")]
 pub(super) struct LessonArgs {
-    /// The number of the lesson; if omitted, all lessons are listed
+    /// The number of the lesson, or its name; if omitted, all lessons are listed
     #[arg(value_name = "N")]
-    pub number: Option<usize>,
+    pub number: Option<String>,
     /// Show one more hint
     #[arg(long, requires = "number", group = "instead")]
     pub hint: bool,
@@ -58,15 +59,12 @@ pub(super) struct LessonArgs {
 /// Lists the lessons, or does with one of them what was asked.
 pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
     let copies = Copies { folder: &arguments.folder };
-    let done = match arguments.number {
+    let done = match &arguments.number {
         None => list(&copies),
-        Some(number) => match number.checked_sub(1).and_then(|k| lessons::all().get(k)) {
-            Some(lesson) => work_on(lesson, arguments, &copies, global),
-            None => {
-                let last = lessons::all().len();
-                terminal::eprint(&format!(
-                    "error: there is no lesson {number}, only 1 to {last}\n"
-                ));
+        Some(wanted) => match chosen(wanted) {
+            Ok(lesson) => work_on(lesson, arguments, &copies, global),
+            Err(message) => {
+                terminal::eprint(&format!("error: {message}\n"));
                 return ExitCode::from(2);
             }
         },
@@ -75,6 +73,40 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
         terminal::eprint(&format!("error: {message}\n"));
         ExitCode::FAILURE
     })
+}
+
+/// The lesson of this number, title or file.
+fn chosen(wanted: &str) -> Result<&'static Lesson, String> {
+    let all = lessons::all();
+    if let Ok(number) = wanted.parse::<usize>() {
+        let found = number.checked_sub(1).and_then(|k| all.get(k));
+        return found
+            .ok_or_else(|| format!("there is no lesson {number}, only 1 to {}", all.len()));
+    }
+    let names = all.iter().flat_map(|lesson| names(lesson).map(|name| (name, lesson)));
+    let names: Vec<(&str, &Lesson)> = names.collect();
+    let named = |name: &str| names.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
+    if let Some((_, lesson)) = named(wanted) {
+        return Ok(lesson);
+    }
+    let near = suggest::nearest(wanted, names.iter().map(|(name, _)| *name)).and_then(named);
+    let near = near.map_or_else(String::new, |(_, lesson)| {
+        format!(" = help: did you mean {}, \"{}\"?\n", lesson.number, lesson.title())
+    });
+    let numbers = all.iter().map(|lesson| format!("{:>5}  {}\n", lesson.number, lesson.title()));
+    let numbers = numbers.collect::<String>();
+    Err(format!(
+        "`{wanted}` is not a lesson\n{near} = help: give the number of one of these:\n{}",
+        numbers.trim_end()
+    ))
+}
+
+/// What a lesson can be called beside its number: its title, and its file with and without number and
+/// ending.
+fn names(lesson: &Lesson) -> [&str; 4] {
+    let stem = lesson.file.trim_end_matches(".mos");
+    let bare = stem.split_once('_').map_or(stem, |(_, name)| name);
+    [lesson.title(), &lesson.file, stem, bare]
 }
 
 fn work_on(

@@ -203,6 +203,7 @@ mod tests {
                 total: 1000,
                 best: Some(2.4e-6),
                 failures: 3,
+                main_cause: None,
             },
             best: (1..60).map(|k| 1.0 / f64::from(k * k)).collect(),
             spreads: vec![spread("A", 0.5, [0.4, 0.5, 0.7]), spread("B", 0.0, [0.0, 0.2, 1.0])],

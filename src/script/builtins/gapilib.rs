@@ -276,6 +276,7 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     };
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
     let pairs = (parents as usize, elites as usize);
+    session.identification().recorder.evolves = true;
     session.traced(|tracer, place| {
         tracer.crossed(place, (old.values(), n_genes), pairs, &points);
     })?;
@@ -315,6 +316,7 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let minima = minima.unwrap_or_else(|| extremes(&genomes, f64::min));
     let maxima = maxima.unwrap_or_else(|| extremes(&genomes, f64::max));
     let genes = genes(&minima, &maxima, genomes.n_genes())?;
+    session.identification().recorder.evolves = true;
     if searched {
         session.identification().recorder.searched(&minima, &maxima);
     }

@@ -58,6 +58,7 @@ impl Operator {
         let Some(kind) = operators::kind(kind) else {
             unreachable!("the commands of this file are named after the kinds")
         };
+        session.identification().recorder.evolves |= kind.name != "sampling";
         let mut function = None;
         if !kind.has(&choice.name)
             && let Some(found) = own_function::function(session, &choice.name)?

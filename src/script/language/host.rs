@@ -59,7 +59,9 @@ impl Host for Session {
             Err(Failure::Here(fault)) => Err(fault.at(span)),
             Err(Failure::Elsewhere(mut diagnostics)) => {
                 let last = diagnostics.pop();
-                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+                // What has no place of its own was found by this call.
+                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic.or_at(span)));
+                let last = last.map(|diagnostic| diagnostic.or_at(span));
                 Err(last.unwrap_or_else(|| {
                     Fault::new(crate::script::errors::SCRIPT_ERROR, "failed").at(span)
                 }))

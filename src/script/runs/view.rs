@@ -13,6 +13,8 @@ pub struct Progress {
     pub best: Option<f64>,
     /// What failed so far.
     pub failures: u64,
+    /// Why most of them failed, and how many for this reason; where it is known.
+    pub main_cause: Option<(String, u64)>,
 }
 
 /// What there is to see of a run.

@@ -24,14 +24,7 @@ impl Session {
             Some((_, Some(iterations))) => iterations as u64,
             _ => 0,
         };
-        let recorder = &self.identification().recorder;
-        let progress = Progress {
-            label: "generation".to_owned(),
-            done: recorder.history.generations.len() as u64,
-            total: iterations,
-            best: recorder.best.as_ref().map(|best| best.fitness),
-            failures: recorder.failures,
-        };
+        let progress = progress(&self.identification().recorder, iterations);
         self.world.progress(&progress);
         if self.world.wants_view() {
             let view = view(&self.identification().recorder, study, genomes, progress);
@@ -44,14 +37,7 @@ impl Session {
     /// generation is rated.
     pub(super) fn show_end(&mut self, recorder: &Recorder) {
         let Some((study, genomes, total)) = self.identification().shown.take() else { return };
-        let progress = Progress {
-            label: "generation".to_owned(),
-            done: recorder.history.generations.len() as u64,
-            total,
-            best: recorder.best.as_ref().map(|best| best.fitness),
-            failures: recorder.failures,
-        };
-        let view = view(recorder, &study, &genomes, progress);
+        let view = view(recorder, &study, &genomes, progress(recorder, total));
         self.world.show_view(&view);
     }
 
@@ -95,6 +81,18 @@ impl Session {
         let generation = recorder.history.generations.len() + 1;
         recorder.changes.push((generation, line.trim().to_owned()));
         Ok(())
+    }
+}
+
+/// How far a run is, of so many generations.
+fn progress(recorder: &Recorder, total: u64) -> Progress {
+    Progress {
+        label: recorder.counted().to_owned(),
+        done: recorder.history.generations.len() as u64,
+        total,
+        best: recorder.best.as_ref().map(|best| best.fitness),
+        failures: recorder.failures,
+        main_cause: recorder.main_cause().map(|(cause, count)| (cause.to_owned(), count)),
     }
 }
 

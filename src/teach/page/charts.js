@@ -57,9 +57,11 @@ function showFit(step) {
   while (g > 0 && !DATA.generations[g].best.length) g -= 1;
   once("fit", g, () => drawFit(g));
 }
+// Measurements are known here from calls of Fit.
+const NOT_COMPARED = "No call of Fit compares this simulation with measurements, so there is nothing to draw. What the script prints of its own comparison is in its output.";
 function drawFit(g) {
   const best = g >= 0 ? DATA.generations[g].best : [];
-  if (!DATA.x.length) return note("fit", "The script has read no measured data with Exp_Adq_SISO.");
+  if (!DATA.x.length) return note("fit", NOT_COMPARED);
   const drawn = best.length === DATA.x.length ? best : [];
   const f = frame(DATA.x, DATA.y.concat(drawn), DATA.x_name, DATA.y_name);
   if (drawn.length) {
@@ -68,7 +70,7 @@ function drawFit(g) {
   }
   DATA.x.forEach((x, k) => f.image.append(svg("circle", { cx: f.px(x), cy: f.py(DATA.y[k]), r: 3.5, fill: "var(--blue)" })));
   const sum = drawn.reduce((total, y, k) => total + (y - DATA.y[k]) ** 2, 0);
-  const text = drawn.length ? "Dots: measured; line: the best of generation " + number(g) + "; sum of the squared distances (red): " + short(sum) : "Dots: measured. Nothing has been compared with them yet.";
+  const text = drawn.length ? "Dots: measured; line: the best of " + counted(g) + " " + number(g) + "; sum of the squared distances (red): " + short(sum) : "Dots: measured. Nothing has been compared with them yet.";
   f.image.setAttribute("aria-label", text);
   note("fit", text);
   at("fit").prepend(f.image);
@@ -83,14 +85,14 @@ function showCurve(step) {
 function drawCurve(step, last) {
   const future = at("future").checked;
   const points = DATA.curve.filter(point => !failed(point[1]) && point[1] > 0 && (future || point[0] <= last));
-  if (points.length < 2) return note("curve", "The curve begins with the second generation.");
-  const f = frame(points.map(p => p[0]), points.map(p => p[1]), "generation", "best fitness (logarithmic)", false, true);
+  if (points.length < 2) return note("curve", "The curve begins with the second " + counted(step.g) + ".");
+  const f = frame(points.map(p => p[0]), points.map(p => p[1]), counted(step.g), "best fitness (logarithmic)", false, true);
   const line = (part, stroke) => part.length && f.image.append(svg("path", { d: path(part.map(p => p[0]), part.map(p => p[1]), f), fill: "none", stroke, "stroke-width": 2 }));
   if (future) line(points.filter(p => p[0] >= last), "var(--line)");
   line(points.filter(p => p[0] <= last), "var(--blue)");
   const x = f.px(Math.min(number(step.g), points[points.length - 1][0]));
   f.image.append(svg("line", { x1: x, y1: 24, x2: x, y2: 260, stroke: "var(--orange)", "stroke-width": 2, "stroke-dasharray": "4 3" }));
-  f.image.setAttribute("aria-label", "best fitness over the generations, generation " + number(step.g) + " is marked");
+  f.image.setAttribute("aria-label", "best fitness over the " + counted(step.g) + "s, number " + number(step.g) + " is marked");
   at("curve").replaceChildren(f.image);
 }
 
@@ -131,7 +133,7 @@ function drawLandscape(a, b, last) {
     else f.image.append(svg("circle", { cx: x, cy: y, r: 4, fill: colour(shade(fitness)), stroke: "var(--ink)" }));
   });
   const text = last < 0 ? "Nothing has been simulated yet." :
-    "Each field: the best that was simulated there so far" + (DATA.of > DATA.generations.length ? " (in the generations on this page)" : "") + ", the lighter, the fitter; empty fields have not been tried or all failed there. Dots: generation " + number(last) + "; crosses failed. The other parameters differ from dot to dot.";
+    "Each field: the best that was simulated there so far" + (DATA.of > DATA.generations.length ? " (in the generations on this page)" : "") + ", the lighter, the fitter; empty fields have not been tried or all failed there. Dots: " + counted(last) + " " + number(last) + "; crosses failed. The other parameters differ from dot to dot.";
   f.image.setAttribute("aria-label", text);
   note("landscape", text);
   at("landscape").prepend(f.image);

@@ -6,8 +6,20 @@ function hideRun() {
   for (const id of OF_RUNS) at(id + "-panel").hidden = true;
   at("subject").textContent = DATA.parameters.join(", ");
 }
-function showRun() {
-  for (const id of OF_RUNS) at(id + "-panel").hidden = false;
+// Calls on individuals of the script have a population, and nothing of a run; an evaluation alone has no
+// forebears, and one gene no plane.
+const EVOLVES = DATA.generations.some(generation => !generation.call && generation.after);
+const IS_OF = {
+  population: () => true,
+  landscape: isCall => !isCall && DATA.parameters.length > 1,
+  curve: isCall => !isCall && DATA.curve.length > 1,
+  tell: isCall => !isCall && (EVOLVES || Boolean(DATA.result && Array.isArray(DATA.result.parameters))),
+  family: isCall => !isCall && DATA.families.some(family => family.length > 1),
+  "what-if": isCall => !isCall && EVOLVES,
+};
+function showRun(step) {
+  const isCall = DATA.generations[step.g].call;
+  for (const id of OF_RUNS) at(id + "-panel").hidden = IS_OF[id] ? !IS_OF[id](isCall) : isCall;
 }
 function showOperation(step) {
   const { columns, rows, left, legend } = step.table;

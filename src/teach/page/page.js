@@ -57,10 +57,15 @@ const number = g => DATA.generations[g].number;
 const follows = g => g + 1 < DATA.generations.length && number(g + 1) === number(g) + 1 ? DATA.generations[g + 1] : null;
 // The last generation on the page that is not behind the one of this number.
 const upTo = wanted => DATA.generations.reduce((found, generation, g) => generation.number <= wanted ? g : found, 0);
+// What is counted: generations, evaluations or calls.
+const counted = g => DATA.generations[g].unit.toLowerCase();
 const stepsOf = g => (g + 1 < STARTS.length ? STARTS[g + 1] : DATA.steps.length) - STARTS[g];
 
 function go(step, keepLink) {
+  const before = current;
   current = Math.min(Math.max(step, 0), DATA.steps.length - 1);
+  // An answer belongs to its question.
+  if (current !== before) at("answer").value = "";
   show();
   if (!keepLink && !EMBEDDED) history.replaceState(null, "", "#step=" + (current + 1));
 }
@@ -158,13 +163,15 @@ function show() {
   at("step").textContent = (place + 1) + " of " + stepsOf(step.g);
   at("generation").value = number(step.g);
   at("generations").value = step.g + 1;
-  at("generations").setAttribute("aria-valuetext", DATA.generations[step.g].unit.toLowerCase() + " " + number(step.g));
-  const counted = DATA.generations[step.g].unit;
-  at("unit").textContent = counted;
-  at("generations").setAttribute("aria-label", counted);
-  at("generation").setAttribute("aria-label", "Number of the " + counted.toLowerCase());
+  at("generations").setAttribute("aria-valuetext", counted(step.g) + " " + number(step.g));
+  const { unit } = DATA.generations[step.g];
+  at("unit").textContent = unit;
+  at("generations").setAttribute("aria-label", unit);
+  at("generation").setAttribute("aria-label", "Number of the " + counted(step.g));
+  at("curve-heading").textContent = "Best fitness over the " + counted(step.g) + "s";
   at("jump").textContent = "";
-  at("title").textContent = counted + " " + number(step.g) + " of " + DATA.of + ": " + step.title;
+  at("generation").removeAttribute("aria-invalid");
+  at("title").textContent = unit + " " + number(step.g) + " of " + DATA.of + ": " + step.title;
   at("text").textContent = step.text;
   at("link").href = "#step=" + (current + 1);
   at("first").disabled = at("back").disabled = current === 0;
@@ -176,7 +183,7 @@ function show() {
   showScript(step);
   if (step.table) showOperation(step);
   if (DATA.generations[step.g].call && step.table) return hideRun();
-  showRun();
+  showRun(step);
   showPopulation(drawn);
   if (!drawn.table) showDrawing(drawn);
   showFit(drawn);
@@ -194,13 +201,19 @@ function whatIsKept() {
     : "of the " + of + " in which the best improves, the " + improvements + " with the largest gains";
   return "A long run: this page has " + DATA.generations.length + " of its " + DATA.of + " generations: the first " + first + ", " + gains + ", each with the one before it, and the last.";
 }
-// To the generation of this number, or to the last one before it that is on the page.
-function jump(wanted) {
+// To the generation of this number, or to the last one before it that is on the page. What is no number of
+// a generation stays in the box, and the page where it is.
+function jump(entry) {
+  const wanted = Number(entry);
+  if (!entry || !Number.isInteger(wanted) || wanted < 1 || wanted > DATA.of) {
+    at("jump").textContent = DATA.of === 1 ? "There is only number 1." : "Enter a number from 1 to " + DATA.of + ".";
+    at("generation").setAttribute("aria-invalid", "true");
+    return;
+  }
   const g = upTo(wanted);
   goGeneration(g);
   if (number(g) === wanted) return;
-  const why = wanted > DATA.of || wanted < 1 ? "There are 1 to " + DATA.of + "." : "Generation " + wanted + " is not on this page.";
-  at("jump").textContent = why + " Shown is " + number(g) + ".";
+  at("jump").textContent = DATA.generations[g].unit + " " + wanted + " is not on this page. Shown is " + number(g) + ".";
 }
 function previousGeneration() {
   const { g } = DATA.steps[current];
@@ -232,7 +245,9 @@ function begin() {
   at("generations").max = DATA.generations.length;
   at("generation").max = DATA.of;
   at("generations").addEventListener("input", event => goGeneration(Number(event.target.value) - 1));
-  at("generation").addEventListener("change", event => jump(Number(event.target.value)));
+  at("generation").addEventListener("change", event => jump(event.target.value.trim()));
+  // Not every entry is one that the browser reports as a change: letters in a box for numbers.
+  at("generation").addEventListener("keydown", event => { if (event.key === "Enter") jump(event.target.value.trim()); });
   for (const id of ["across", "up"]) {
     DATA.parameters.forEach((_, j) => at(id).append(new Option(name(j), j)));
     at(id).addEventListener("change", () => showLandscape(DATA.steps[current]));
@@ -244,6 +259,7 @@ function begin() {
   at("kept").textContent = whatIsKept();
   at("kept").hidden = DATA.generations.length === DATA.of;
   at("prediction").addEventListener("submit", predict);
+  at("predicting").closest("label").hidden = !DATA.steps.some(step => step.question);
   at("predicting").addEventListener("change", () => show());
   at("unfold").addEventListener("change", () => show());
   at("future").addEventListener("change", () => showCurve(DATA.steps[current]));

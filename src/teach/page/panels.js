@@ -81,8 +81,11 @@ function focusOf(step, generation, order, made) {
 function showPopulation(step) {
   const generation = DATA.generations[step.g];
   const count = generation.genes.length / generation.n;
-  const order = known(step, "selection") ? generation.order : [...Array(count).keys()];
-  const made = known(step, "elite") ? offspring(step, generation) : null;
+  // Where nothing was compared there is no order.
+  const isSorted = known(step, "selection") && generation.order.length > 0;
+  const order = isSorted ? generation.order : [...Array(count).keys()];
+  const next = known(step, "elite") ? offspring(step, generation) : [];
+  const made = next.length ? next : null;
   const [left, rightRows] = focusOf(step, generation, order, made);
   const list = folded(count, left), born = made ? folded(made.length, rightRows) : [];
   at("unfolding").hidden = Math.max(count, made ? made.length : 0) <= ROOM;
@@ -92,13 +95,9 @@ function showPopulation(step) {
   const right = WIDE - width - 20;
   const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
   const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (40 + rows * height + 4), role: "group", "aria-label": "population of generation " + number(step.g) });
-  image.append(label(44, 14, generation.unit.toLowerCase() + " " + number(step.g) + (known(step, "selection") ? ", best first" : "")));
-  // The names of the genes above their columns, where there is room for them.
-  const cell = width / generation.n;
-  for (let j = 0; j < generation.n; j++) {
-    const text = name(j).length * 6.5 > cell ? name(j).slice(-Math.max(1, Math.floor(cell / 6.5))) : name(j);
-    image.append(label(44 + (j + 0.5) * cell, 30, text, { "text-anchor": "middle", "font-size": 11, class: "remark" }));
-  }
+  image.append(label(44, 14, generation.unit.toLowerCase() + " " + number(step.g) + (isSorted && generation.fitness.length ? ", best first" : "")));
+  image.append(...heads(44, width / generation.n, 30, { class: "remark" }));
+  at("heads").textContent = key(width / generation.n) + (isByFate(generation) ? " Blue genes stay, orange ones have mutated." : "");
   const top = new Map();
   list.forEach(({ place, left }, line) => {
     const y = 36 + line * height;
@@ -110,6 +109,7 @@ function showPopulation(step) {
       image.append(svg("line", { class: "cut", x1: 20, y1: cut, x2: 44 + width + 90, y2: cut, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
     }
   });
+  if (made) image.append(...heads(right, width / generation.n, 30, { class: "remark" }));
   // The children of the last generation are not simulated any more.
   if (made) image.append(fitted(right, 14, generation.call ? "after the operators" : number(step.g) < DATA.of ? "generation " + (number(step.g) + 1) : "children, not simulated"));
   born.forEach(({ place, left }, line) => {
@@ -146,7 +146,7 @@ function present(step, generation, k) {
   const rated = known(step, "fitness") && generation.fitness.length && !known(step, "elite");
   return {
     number: k, values: genome(generation.genes, generation.n, k), text: describe(generation, k, step), failed,
-    crown: origin.elite !== undefined, changed: origin.mutated || [],
+    crown: origin.elite !== undefined, changed: origin.mutated || [], isByFate: isByFate(generation),
     fitness: rated ? (failed ? "failed" : short(generation.fitness[k])) : "",
   };
 }
@@ -185,7 +185,7 @@ function child(generation, row, mutated) {
   const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
   const origin = crown ? { elite: from[0] } : alone ? { was: from[0], mutated: changed } : { of: from, mutated: changed };
   const genes = values.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
-  return { number: row, values, from, crown, changed, text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
+  return { number: row, values, from, crown, changed, isByFate: isByFate(generation), text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
 }
 // Whether a step is about the individual at this row of the next generation.
 function concerns(step, generation, row) {
@@ -196,20 +196,39 @@ function concerns(step, generation, row) {
 }
 const mate = (rank, parents) => rank % 2 ? rank - 1 : rank + 1 < parents ? rank + 1 : 0;
 
+// A call of Mutation alone is about which genes mutate: they have the colours of its drawing. The values are
+// those that the script has chosen, often all the same.
+const isByFate = generation => generation.call && Boolean(generation.u) && !generation.points;
+// The names of the genes above their columns; their numbers where a name is wider than its column: a name
+// that is cut can be taken for another. The key says then which number is which gene.
+const HEAD = 11;
+const areNumbered = cell => DATA.parameters.some((_, j) => name(j).length * HEAD * 0.6 > cell - 4);
+function heads(x, cell, y, more) {
+  const text = j => areNumbered(cell) ? String(j + 1) : name(j);
+  return DATA.parameters.map((_, j) => label(x + (j + 0.5) * cell, y, text(j), Object.assign({ "text-anchor": "middle", "font-size": HEAD }, more)));
+}
+function key(cell) {
+  if (!areNumbered(cell)) return "";
+  return DATA.parameters.every((_, j) => name(j) === "gene " + (j + 1)) ? "The columns are the genes 1 to " + DATA.parameters.length + "."
+    : "Columns: " + DATA.parameters.map((_, j) => (j + 1) + " " + name(j)).join(", ") + ".";
+}
+
 // One row: a box for each gene, its number, marks, and the fitness where it is known.
-function individual({ number, values, text, failed, crown, changed, fitness }, x, y, width, height) {
+function individual({ number, values, text, failed, crown, changed, fitness, isByFate }, x, y, width, height) {
   const cell = width / values.length;
   const group = svg("g", { class: "row", tabindex: -1, role: "img", "aria-label": text });
   group.append(svg("title", {}, text));
   values.forEach((value, j) => {
-    group.append(svg("rect", { x: x + j * cell, y, width: cell - 1, height: height - 1, fill: colour(part(value, j)) }));
+    group.append(svg("rect", { x: x + j * cell, y, width: cell - 1, height: height - 1, fill: isByFate ? (changed.includes(j) ? "var(--second)" : "var(--first)") : colour(part(value, j)) }));
     if (changed.includes(j)) {
+      group.append(svg("rect", { class: "changed", x: x + j * cell + 1, y: y + 1, width: cell - 3, height: height - 3, fill: "none", stroke: "var(--orange)", "stroke-width": 2 }));
       group.append(svg("circle", { cx: x + (j + 0.5) * cell, cy: y + height / 2, r: Math.min(4, height / 3), fill: "#fff", stroke: "#000" }));
     }
   });
   group.append(svg("rect", { class: "box", x, y: y - 0.5, width: width - 1, height: height - 0.5, fill: "none",
     stroke: failed ? "var(--red)" : "none", "stroke-width": Math.min(2.5, height / 8) }));
-  const size = Math.min(12, height);
+  // Smaller than the row: labels of neighbours do not touch.
+  const size = Math.min(12, height * 0.8);
   const mark = failed ? "\u2715" : crown ? "\u265B" : "";
   const colours = failed ? { class: "failed" } : {};
   group.append(label(x - 6, y + height * 0.75, mark + " " + (number + 1), Object.assign({ "text-anchor": "end", "font-size": size }, colours)));
@@ -243,8 +262,8 @@ function showDrawing(step) {
   const parts = DRAWINGS[step.title] ? DRAWINGS[step.title](step, generation) : chart ? chart(step, generation) : null;
   if (!parts) return note("drawing", "Nothing is known that could be drawn.");
   const cell = (WIDE - 90) / generation.n;
-  const heads = chart ? [] : DATA.parameters.map((_, j) => label(90 + (j + 0.5) * cell, 14, name(j), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
-  at("drawing").replaceChildren(svg("svg", { viewBox: "0 0 " + WIDE + " " + parts.height, role: "img", "aria-label": step.text }, ...heads, ...parts.rows));
+  const above = chart ? [] : heads(90, cell, 14);
+  at("drawing").replaceChildren(svg("svg", { viewBox: "0 0 " + WIDE + " " + parts.height, role: "img", "aria-label": step.text }, ...above, ...parts.rows));
 }
 // A simulation: the model with the genes of an individual, and which of all have failed.
 function simulated(step, generation) {
@@ -301,7 +320,7 @@ function composition(step, generation) {
 function ending(step, generation) {
   if (!generation.n || !generation.genes.length) return null;
   const best = generation.order.length ? generation.order[0] : 0;
-  return inRanges(generation, best, generation.order.length ? "the best, individual " + (best + 1) + "; grey, the others of the last generation" : "individual " + (best + 1), true);
+  return inRanges(generation, best, generation.order.length ? "the best, individual " + (best + 1) + "; grey, the others of the last " + counted(step.g) : "individual " + (best + 1), true);
 }
 // A draw: each gene of an individual in its range; grey, those of the others.
 function drawn(step, generation) {
@@ -317,6 +336,8 @@ function inRanges(next, k, title, withOthers) {
   for (let j = 0; j < n; j++) {
     const y = 40 + j * high, value = next.genes[k * n + j];
     const named = titled(j).length > 14 ? titled(j).slice(0, 13) + "\u2026" : titled(j);
+    // One value has no range.
+    if (!(DATA.maxima[j] > DATA.minima[j])) { rows.push(label(0, y + 4, named), label(left, y + 4, "= " + short(value) + unit(j))); continue; }
     rows.push(label(0, y + 4, named), svg("line", { x1: left, y1: y, x2: left + width, y2: y, stroke: "var(--soft)", "stroke-width": 2 }));
     rows.push(label(left, y + 18, short(DATA.minima[j]), { "font-size": 11, class: "remark" }), label(left + width, y + 18, short(DATA.maxima[j]), { "text-anchor": "end", "font-size": 11, class: "remark" }));
     const place = v => left + Math.min(1, Math.max(0, part(v, j))) * width;
@@ -343,12 +364,14 @@ function ranking(step, generation) {
     const fill = isSorted ? (place < (generation.elites || 0) ? "var(--orange)" : place < generation.parents ? "var(--blue)" : "var(--line)") : k === best ? "var(--orange)" : "var(--blue)";
     rows.push(svg("rect", { class: "bar", x, y: floor - length(v), width: Math.max(1, wide - 1), height: length(v), fill }, svg("title", {}, "individual " + (k + 1) + ": " + short(v))));
   });
-  if (order.length <= 30) order.forEach((k, place) => rows.push(label(left + (place + 0.5) * wide, floor + 14, String(k + 1), { "text-anchor": "middle", "font-size": 11 })));
+  // As many numbers as there is room for.
+  const every = Math.ceil(18 / wide);
+  order.forEach((k, place) => place % every === 0 && rows.push(label(left + (place + 0.5) * wide, floor + 14, String(k + 1), { "text-anchor": "middle", "font-size": 11 })));
   let text = "orange: the best; \u2715 failed; logarithmic scale";
   if (isSorted) {
     const x = left + generation.parents * wide - 0.5;
     rows.push(svg("line", { class: "border", x1: x, x2: x, y1: 24, y2: floor + 4, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
-    text = "orange: elite; blue: parents, up to the dashed line; grey: no children";
+    text = "orange: elite; blue: parents; grey: no children";
   }
   rows.push(fitted(0, floor + 34, text, { class: "remark" }));
   return { rows, height: floor + 42 };
@@ -374,25 +397,32 @@ function crossover(step, generation) {
   rows.push(label(90, 107, "exchanged behind a dashed line", { class: "remark" }));
   return { rows, height: pair ? 192 : 156 };
 }
+// What the random numbers decide: each lies on a scale from 0 to 1, of which the part below F_Mut is
+// orange. Genes that stay are blue, those that mutate orange.
 function mutation(step, generation) {
-  const n = generation.n;
+  const n = generation.n, factor = generation.factor;
   const u = genome(generation.u, n, step.of);
-  const hit = j => u[j] < generation.factor;
-  const fill = j => hit(j) ? "var(--second)" : "var(--plain)";
+  const hit = j => u[j] < factor;
+  const fill = j => hit(j) ? "var(--second)" : "var(--first)";
   const rows = [
-    genes(genome(generation.children, n, step.of), 24, "before", () => "var(--plain)", () => false),
-    genes(u, 70, "u", fill, hit),
-    genes(genome(generation.after, n, step.of), 116, "after", fill, hit),
-    label(0, 166, "place"),
-    fitted(0, 190, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge);"),
-    fitted(0, 206, "u/F_Mut is its new place from Param_Min to Param_Max"),
+    genes(genome(generation.children, n, step.of), 24, "before", () => "var(--first)", () => false),
+    label(0, 76, "u, 0 to 1"),
+    genes(genome(generation.after, n, step.of), 100, "after", fill, hit),
+    label(0, 150, "place"),
+    fitted(0, 176, "u in the orange part: u < F_Mut = " + factor + ", the gene mutates,"),
+    fitted(0, 192, "and u/F_Mut is its place in its range; blue genes stay"),
   ];
   const cell = (WIDE - 90) / n;
   u.forEach((value, j) => {
+    const [x, wide] = [90 + j * cell, cell - 6];
+    const border = x + wide * Math.min(1, factor);
+    rows.push(svg("line", { x1: x, y1: 72, x2: border, y2: 72, stroke: "var(--orange)", "stroke-width": 5 }));
+    rows.push(svg("line", { x1: border, y1: 72, x2: x + wide, y2: 72, stroke: "var(--blue)", "stroke-width": 2 }));
+    rows.push(svg("circle", { class: hit(j) ? "hit" : "missed", cx: x + wide * value, cy: 72, r: 5, fill: hit(j) ? "var(--orange)" : "var(--blue)", stroke: "var(--ink)" }));
+    rows.push(label(x + wide / 2, 92, short(value), { "text-anchor": "middle", "font-size": Math.min(11, cell / 5) }));
     if (!hit(j)) return;
-    const [x, wide] = [90 + j * cell, cell - 2];
-    rows.push(svg("line", { x1: x, y1: 162, x2: x + wide, y2: 162, stroke: "var(--soft)", "stroke-width": 2 }));
-    rows.push(svg("circle", { cx: x + wide * value / generation.factor, cy: 162, r: 5, fill: "var(--orange)", stroke: "var(--ink)" }));
+    rows.push(svg("line", { x1: x, y1: 146, x2: x + wide, y2: 146, stroke: "var(--soft)", "stroke-width": 2 }));
+    rows.push(svg("circle", { cx: x + wide * value / factor, cy: 146, r: 5, fill: "var(--orange)", stroke: "var(--ink)" }));
   });
-  return { rows, height: 214 };
+  return { rows, height: 200 };
 }

@@ -7,24 +7,38 @@ function beginWhatIf() {
   at("what-if").addEventListener("submit", askWhatIf);
   at("changed").addEventListener("change", proposeValue);
   proposeValue();
+  // What has been compared stays where it was entered.
+  const [, name, value] = /^(\w+) := ([^]*)$/.exec(WHAT_IF ? WHAT_IF.statement : "") || [];
+  if ([...at("changed").options].some(option => option.value === name)) {
+    at("changed").value = name;
+    at("changed-to").value = value;
+  }
   // The page around this one says why there is nothing to compare.
   window.addEventListener("message", ({ source, data }) => {
-    if (source === window.parent && data && data.whatIfFailed) at("what-if-said").textContent = "No comparison: " + data.whatIfFailed;
+    if (source === window.parent && data && data.whatIfFailed) refuse("No comparison: " + data.whatIfFailed.replace(/\.?$/, ".") + (WHAT_IF ? " Below is the comparison before, with " + WHAT_IF.statement + "." : ""));
   });
 }
-// A value that differs from the present one.
-function proposeValue() {
+// Values that differ from the present ones.
+function proposed() {
   const { factor, parents, elites } = DATA.generations[DATA.steps[current].g];
-  const proposed = {
+  return {
     F_Mut: String(factor ? Math.min(1, 2 * factor) : 0.5), N_Parents: String(Math.max(2, Math.floor((parents || 4) / 2))),
     N_Elitism: elites ? "0" : "1", Seed: "{1, 2, 3, 4, 5, 6}",
   };
-  at("changed-to").value = proposed[at("changed").value];
+}
+function proposeValue() {
+  at("changed-to").value = proposed()[at("changed").value];
+}
+// Why there is nothing to compare; what was entered stays, to be put right.
+function refuse(text) {
+  at("what-if-said").textContent = text;
+  at("changed-to").setAttribute("aria-invalid", "true");
 }
 function askWhatIf(event) {
   event.preventDefault();
   const value = at("changed-to").value.trim();
-  if (!value) return;
+  if (!value) return refuse("Enter a value for " + at("changed").value + ", such as " + proposed()[at("changed").value] + ".");
+  at("changed-to").removeAttribute("aria-invalid");
   const generation = number(DATA.steps[current].g), statement = at("changed").value + " := " + value;
   if (canRun) {
     at("what-if-said").textContent = "Running again with " + statement + " from generation " + generation + " on ...";

@@ -118,9 +118,10 @@ fn experiments(
     let mut all = Experiments { noise: NOISE_OF_FORMULAS, ..Experiments::default() };
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
-        let bytes = session.read_bytes(&data).map_err(one)?;
+        let there = |fault: Fault| vec![fault.at(entry.places.data)];
+        let bytes = session.read_bytes(&data).map_err(there)?;
         origins.add(format!("`{}`", entry.data.display()), &bytes);
-        let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
+        let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(there)?;
         let source = experiment::Source { file, entry, number, table: &table, free };
         let built = source.build(session, notes)?;
         if built.has_states {

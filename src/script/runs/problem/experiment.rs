@@ -87,7 +87,8 @@ impl Source<'_> {
         notes: &mut Notes,
     ) -> Result<Built, Vec<Diagnostic>> {
         let name = label(self.entry, self.number);
-        let abscissa = self.abscissa(notes).map_err(one)?;
+        let abscissa = self.abscissa(notes);
+        let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.x)])?;
         let class = self.class(session, &name, &abscissa, notes)?;
         let translated = simulation::translated(session, &class.name)?;
         let program = translated.program.clone();
@@ -113,7 +114,8 @@ impl Source<'_> {
         comparison.x = x.map_err(one)?.values;
         let settings = self.settings(session, &program, &abscissa.name, &comparison.x);
         let settings = settings.map_err(one)?;
-        let (observations, series) = comparison.outputs(&class.observed, notes).map_err(one)?;
+        let (observations, series) =
+            comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
         if observations.is_empty() {
             return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
         }
@@ -321,7 +323,7 @@ fn follow(
     };
     let unit = |name: &str| flat.as_ref().map_or_else(String::new, |flat| unit_in(flat, name));
     let followed = inputs::inputs(entry, table, x, &unit, enclosing, notes);
-    followed.map_err(|fault| vec![fault.at(Span::NONE)])
+    followed.map_err(|wrong| vec![wrong])
 }
 
 /// The unit of a variable; empty where it has none.

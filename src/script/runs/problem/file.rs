@@ -1,15 +1,15 @@
 //! The file that a problem is written in: TOML.
 
+use super::places::{self, ExperimentPlaces, Places};
 use crate::bail;
 use crate::diag::Diagnostic;
 use crate::registry::BAD_OPTION;
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{IgnoredAny, MapAccess, Visitor};
+use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
-use toml::Spanned;
 
 /// A problem as the file says it.
 #[derive(Debug, Deserialize)]
@@ -43,9 +43,9 @@ pub(super) struct ProblemFile {
     pub bootstrap: Option<BootstrapEntry>,
     /// Markov chains.
     pub posterior: Option<PosteriorEntry>,
-    /// Where the operators of the method are written.
+    /// Where its entries are written.
     #[serde(skip)]
-    pub operator_places: IndexMap<&'static str, Span>,
+    pub places: Places,
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -106,6 +106,9 @@ pub(super) struct ExperimentEntry {
     pub max_steps: Option<u64>,
     /// Seconds on the clock after which a simulation is given up.
     pub max_seconds: Option<f64>,
+    /// Where its entries are written.
+    #[serde(skip)]
+    pub places: ExperimentPlaces,
 }
 
 /// A column of the data: its name, or its name with more.
@@ -229,23 +232,6 @@ impl<'de> Visitor<'de> for OperatorVisitor {
     }
 }
 
-/// Where the operators of the method are written. Apart from the entries, because what is collected
-/// by `flatten` has lost its places.
-#[derive(Debug, Default, Deserialize)]
-struct Places {
-    #[serde(default)]
-    method: MethodPlaces,
-}
-
-#[derive(Debug, Default, Deserialize)]
-struct MethodPlaces {
-    sampling: Option<Spanned<IgnoredAny>>,
-    selection: Option<Spanned<IgnoredAny>>,
-    crossover: Option<Spanned<IgnoredAny>>,
-    mutation: Option<Spanned<IgnoredAny>>,
-    survival: Option<Spanned<IgnoredAny>>,
-}
-
 impl MethodEntry {
     /// The operators that were chosen, with their kinds, in the order of a generation.
     pub(super) fn operators(&self) -> impl Iterator<Item = (&'static str, &OperatorEntry)> {
@@ -343,20 +329,9 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
         crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.')).at(span)
     })?;
-    // What could be read once can be read again.
-    let Places { method } = toml::from_str(text).unwrap_or_default();
-    let all = [
-        ("sampling", method.sampling),
-        ("selection", method.selection),
-        ("crossover", method.crossover),
-        ("mutation", method.mutation),
-        ("survival", method.survival),
-    ];
-    for (kind, place) in all {
-        if let Some(range) = place.map(|place| place.span()) {
-            let span = Span { source, start: range.start as u32, end: range.end as u32 };
-            file.operator_places.insert(kind, span);
-        }
+    file.places = places::places(source, text);
+    for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
+        entry.places = places.clone();
     }
     Ok(file)
 }

@@ -9,7 +9,7 @@ use super::data::{self, Notes};
 use super::enclosing_class::EnclosingClass;
 use super::file::{ColumnEntry, ExperimentEntry};
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{At as _, Diagnostic, Fault};
 use crate::mat::MatFile;
 use crate::registry::BAD_OPTION;
 use std::fmt::Write;
@@ -41,46 +41,66 @@ pub(super) fn inputs(
     unit: UnitOf<'_>,
     enclosing: &mut EnclosingClass,
     notes: &mut Notes,
-) -> Result<(), Fault> {
+) -> Result<(), Diagnostic> {
     if entry.inputs.is_empty() {
         return Ok(());
     }
-    let (time_name, time) = match &entry.input_time {
-        Some(name) => {
-            let named = ColumnEntry::named(Some(name.clone()));
-            let column = data::column(table, &named, name, notes)?;
-            let time = data::in_unit(&column, "time", "s", &named, (table, notes))?;
-            (name.as_str(), time.values)
-        }
+    let times = match &entry.input_time {
+        Some(name) => own_times(name, table, notes).at(entry.places.data)?,
         None => (x.0, x.1.to_vec()),
     };
     for (number, (name, wanted)) in entry.inputs.iter().enumerate() {
-        let wanted = wanted.entry();
-        let column = data::column(table, &wanted, name, notes)?;
-        notes.about(table, column.missing.clone());
-        data::same_length([time_name, name], [time.len(), column.values.len()])?;
-        let values = data::in_unit(&column, name, &unit(name), &wanted, (table, notes))?.values;
-        let pairs: Vec<(f64, f64)> = time
-            .iter()
-            .copied()
-            .zip(values)
-            .filter(|(time, value)| time.is_finite() && value.is_finite())
-            .collect();
-        if pairs.is_empty() {
-            bail!(BAD_OPTION, "the input `{name}` has no points");
-        }
-        if let Some(row) = pairs.windows(2).position(|pair| pair[1].0 < pair[0].0) {
-            bail!(
-                BAD_OPTION,
-                "the time values of the input `{name}` decrease from {} to {} at {}",
-                pairs[row].0, pairs[row + 1].0, column.place(row + 1);
-                help: "sort the rows, or write consecutive runs to separate files"
-            );
-        }
-        let between = between(name, &wanted, &pairs, notes)?;
+        let input = (name.as_str(), &wanted.entry());
+        let (pairs, between) = followed(input, table, (times.0, &times.1), unit, notes)
+            .at(entry.places.column(name))?;
         declare(number, name, &pairs, between, enclosing);
     }
     Ok(())
+}
+
+/// The column of time of the inputs, in seconds.
+fn own_times<'a>(
+    name: &'a str,
+    table: &MatFile,
+    notes: &mut Notes,
+) -> Result<(&'a str, Vec<f64>), Fault> {
+    let named = ColumnEntry::named(Some(name.to_owned()));
+    let column = data::column(table, &named, name, notes)?;
+    let time = data::in_unit(&column, "time", "s", &named, (table, notes))?;
+    Ok((name, time.values))
+}
+
+/// The samples of an input, times and values, and how it goes on between them.
+fn followed(
+    (name, wanted): (&str, &ColumnEntry),
+    table: &MatFile,
+    (time_name, time): (&str, &[f64]),
+    unit: UnitOf<'_>,
+    notes: &mut Notes,
+) -> Result<(Vec<(f64, f64)>, Between), Fault> {
+    let column = data::column(table, wanted, name, notes)?;
+    notes.about(table, column.missing.clone());
+    data::same_length([time_name, name], [time.len(), column.values.len()])?;
+    let values = data::in_unit(&column, name, &unit(name), wanted, (table, notes))?.values;
+    let pairs: Vec<(f64, f64)> = time
+        .iter()
+        .copied()
+        .zip(values)
+        .filter(|(time, value)| time.is_finite() && value.is_finite())
+        .collect();
+    if pairs.is_empty() {
+        bail!(BAD_OPTION, "the input `{name}` has no points");
+    }
+    if let Some(row) = pairs.windows(2).position(|pair| pair[1].0 < pair[0].0) {
+        bail!(
+            BAD_OPTION,
+            "the time values of the input `{name}` decrease from {} to {} at {}",
+            pairs[row].0, pairs[row + 1].0, column.place(row + 1);
+            help: "sort the rows, or write consecutive runs to separate files"
+        );
+    }
+    let between = between(name, wanted, &pairs, notes)?;
+    Ok((pairs, between))
 }
 
 fn declare(

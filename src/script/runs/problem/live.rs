@@ -82,6 +82,7 @@ fn progress(run: &Run) -> Progress {
         total,
         best: run.best.as_ref().map(|best| best.fitness),
         failures: run.failed.iter().sum(),
+        main_cause: None,
     }
 }
 

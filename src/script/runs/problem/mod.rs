@@ -20,6 +20,7 @@ mod live;
 pub(in crate::script) mod operators;
 mod own_fitness;
 pub(in crate::script) mod own_function;
+mod places;
 mod record;
 mod search;
 mod series;
@@ -34,7 +35,7 @@ use crate::identify::problem::{
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::source::Span;
+use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, draft};
@@ -106,7 +107,8 @@ pub fn solve(
     let bytes = session.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
-    solve_text(session, path, text, options)
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    solve_text(session, path, (source, text), options)
 }
 
 /// Solves the problem that a record `GAPILib.Problem` of a script holds.
@@ -120,17 +122,20 @@ pub(in crate::script) fn solve_record(
     options: &RunOptions,
 ) -> Result<Solution, Vec<Diagnostic>> {
     let text = record::text(record).map_err(|fault| vec![fault.at(Span::NONE)])?;
-    solve_text(session, Path::new("problem"), text, options)
+    let source = session.sources.add("problem".to_owned(), text.as_str());
+    // Nobody has written this text: its places lead nowhere.
+    let hidden = |span: Span| if span.source == source { Span::NONE } else { span };
+    let solution = solve_text(session, Path::new("problem"), (source, text), options);
+    solution.map_err(|errors| errors.into_iter().map(|error| error.with_spans(hidden)).collect())
 }
 
 fn solve_text(
     session: &mut Session,
     path: &Path,
-    text: String,
+    (source, text): (SourceId, String),
     options: &RunOptions,
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let source = session.sources.add(path.display().to_string(), text.as_str());
     let mut file = file::read(source, &text).map_err(|error| vec![error])?;
     let mut built = build::build(session, &mut file, path, &text)?;
     for note in &built.notes {

@@ -35,7 +35,7 @@ pub(super) fn method(
     file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
     let mut chosen = Vec::new();
     for (kind, entry) in file.method.operators() {
-        let place = file.operator_places.get(kind).copied().unwrap_or(Span::NONE);
+        let place = file.places.operators.get(kind).copied().unwrap_or(Span::NONE);
         match entry {
             OperatorEntry::Frequency(value)
                 if operators::kind(kind).is_some_and(|kind| kind.frequency.is_some()) =>

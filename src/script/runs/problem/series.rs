@@ -5,7 +5,7 @@ use super::data::{self, Measured, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::sigma;
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
 use crate::identify::problem::{Observation, Series, Sigma};
 use crate::mat::MatFile;
@@ -42,10 +42,11 @@ impl Comparison<'_> {
         &self,
         observed: &[String],
         notes: &mut Notes,
-    ) -> Result<(Vec<Observation>, Vec<Series>), Fault> {
+    ) -> Result<(Vec<Observation>, Vec<Series>), Diagnostic> {
         let (mut observations, mut series) = (Vec::new(), Vec::new());
         for ((y_name, wanted), observed) in self.entry.outputs.iter().zip(observed) {
-            let one = self.output(y_name, &wanted.entry(), notes)?;
+            let one = self.output(y_name, &wanted.entry(), notes);
+            let one = one.at(self.entry.places.column(y_name))?;
             observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
             series.push(one);
         }
