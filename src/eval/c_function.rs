@@ -24,7 +24,11 @@ pub fn external_name(function: &Function, clause: &External) -> Ident {
 /// The function in Rust that a clause means, if there is one.
 pub fn in_rust(function: &Function, clause: &External) -> Option<&'static Entry> {
     let include = string(clause, "Include").unwrap_or_default();
-    external::find_declared(external_name(function, clause).as_str(), &include)
+    let entry = external::find_declared(external_name(function, clause).as_str(), &include)?;
+    // A function of another library may have the same name.
+    let is_other =
+        brings_code(clause) && !entry.takes(clause.arguments.len(), clause.output.is_some());
+    (!is_other).then_some(entry)
 }
 
 /// Whether a function is in C that a library brings along.

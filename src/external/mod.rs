@@ -193,6 +193,15 @@ impl Entry {
         letters.filter(move |(_, letter)| *letter == wanted).map(|(at, _)| at)
     }
 
+    /// Whether it has so many arguments, and a result or none.
+    pub fn takes(&self, arguments: usize, has_result: bool) -> bool {
+        let (wanted, result) = match self.signature.split_once("->") {
+            Some((wanted, result)) => (wanted, !result.is_empty()),
+            None => (self.signature, false),
+        };
+        wanted.len() == arguments && result == has_result
+    }
+
     /// Whether the arguments and the result are of the kinds that the function wants.
     pub fn check(&self, arguments: &[Slot], result: Option<&Slot>) -> Result<(), Fault> {
         let (wanted, wanted_result) = match self.signature.split_once("->") {
@@ -251,7 +260,8 @@ const FAMILIES: &[&[Entry]] = &[
 
 /// The function of this external name, declared with an annotation `Include`.
 pub fn find_declared(name: &str, include: &str) -> Option<&'static Entry> {
-    find(name).filter(|entry| include.contains(entry.stands_for))
+    // Text that names the function itself defines it.
+    find(name).filter(|entry| include.contains(entry.stands_for) && !include.contains(name))
 }
 
 /// The function of this external name.

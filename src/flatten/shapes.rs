@@ -5,7 +5,6 @@ use super::balance::path;
 use super::lookup::modification::Bound;
 use crate::diag::Diagnostic;
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::picked;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::functions::{self, ArgumentShapes};
@@ -38,7 +37,7 @@ impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
     pub fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
-        let value = picked(value.clone(), &bound.indices);
+        let value = self.part_of(value, bound)?;
         // Whether it may call impure functions is looked at with the value.
         let local = Local { impure: true, ..Local::default() };
         let resolved = self.resolve(&value, bound.context, &local)?;

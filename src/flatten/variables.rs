@@ -142,29 +142,56 @@ impl Instantiation<'_> {
     fn bound(&mut self, bound: &Bound, impure: bool) -> Result<Option<Expression>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         self.check_elements(value, bound)?;
-        let value = picked(value.clone(), &bound.indices);
+        let value = self.part_of(value, bound)?;
         self.resolve(&value, bound.context, &Local { impure, ..Local::default() }).map(Some)
     }
 }
 
 impl Instantiation<'_> {
+    /// The part of a value that belongs to one element of an array of components. One value for all of
+    /// them without `each` is that of every element: libraries forget the word.
+    pub fn part_of(&mut self, value: &Expression, bound: &Bound) -> Result<Expression, Diagnostic> {
+        let is_one = !bound.indices.is_empty()
+            && !self.classes.library.is_strict()
+            && !matches!(value.kind, ExpressionKind::Array(_))
+            && self.rank_of_bound(value, bound)? == Some(0);
+        Ok(if is_one { value.clone() } else { picked(value.clone(), &bound.indices) })
+    }
+
+    /// The number of dimensions of a value before a part of it is taken.
+    fn rank_of_bound(
+        &mut self,
+        value: &Expression,
+        bound: &Bound,
+    ) -> Result<Option<usize>, Diagnostic> {
+        let local = Local { impure: true, ..Local::default() };
+        let whole = self.resolve(value, bound.context, &local)?;
+        Ok(self.types().rank_of(&whole))
+    }
+
     /// A value for the elements of an array of components must be an array (MLS §7.2.5).
     fn check_elements(&mut self, value: &Expression, bound: &Bound) -> Result<(), Diagnostic> {
-        if bound.indices.is_empty() {
+        let wanted = bound.indices.len();
+        if wanted == 0 {
             return Ok(());
         }
-        let whole =
-            self.resolve(value, bound.context, &Local { impure: true, ..Local::default() })?;
-        let wanted = bound.indices.len();
-        match self.types().rank_of(&whole) {
-            Some(found) if found < wanted => Err(fault!(
-                SIZE_MISMATCH,
-                "a modifier of an array of components needs a value with at least {wanted} \
-                 dimensions, not {found}";
-                help: "write `each` before the modifier to give every element the same value")
-            .at(value.span)),
-            _ => Ok(()),
+        let Some(found) = self.rank_of_bound(value, bound)?.filter(|found| *found < wanted) else {
+            return Ok(());
+        };
+        let error = fault!(
+            SIZE_MISMATCH,
+            "a modifier of an array of components needs a value with at least {wanted} \
+             dimensions, not {found}";
+            help: "write `each` before the modifier to give every element the same value")
+        .at(value.span);
+        if found > 0 || self.classes.library.is_strict() {
+            return Err(error);
         }
+        let is_known = |one: &Diagnostic| one.code == SIZE_MISMATCH && one.span() == value.span;
+        if !self.warnings.iter().any(is_known) {
+            self.warnings.push(error.warning());
+        }
+        Ok(())
     }
 }
 

@@ -563,7 +563,7 @@ impl<'a> Builder<'a> {
         lowering.live = true;
         let condition = lowering.scalar(condition)?;
         let level = match find(2, "level") {
-            Some(level) if lowering.known(level)? == 1.0 => Level::Warning,
+            Some(level) if lowering.shaping(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
         // What ends a simulation is told with what was known when compiling.

@@ -296,7 +296,7 @@ impl Call<'_, '_> {
             return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
         };
         let level = match find(2, "level") {
-            Some(level) if self.lowering(loops).known(level)? == 1.0 => Level::Warning,
+            Some(level) if self.lowering(loops).shaping(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
         let condition = self.lowering(loops).scalar(condition)?;

@@ -338,3 +338,171 @@ fn a_sum_with_iterators_has_the_sizes_of_what_is_added() {
     let scalar = "model M Real x = sum({i, 2*i} for i in 1:3); end M;";
     assert!(causalize(&flattened(scalar).model).is_err(), "a vector is not a scalar");
 }
+
+/// MLS §9.4.1: a type keeps the function of the one that it is made of.
+#[test]
+fn types_made_of_overdetermined_ones_are_overdetermined() {
+    let parts = "type Angle extends Real; function equalityConstraint input Angle a[:]; \
+        input Angle b[:]; output Real r[0]; algorithm end equalityConstraint; end Angle; \
+        package S type A = Angle; end S; type Further = S.A; \
+        connector C Further phi[2]; Real v; flow Real i; end C; \
+        model Source parameter Real v = 1; C c; equation c.v = v; \
+        Connections.potentialRoot(c.phi); \
+        if Connections.isRoot(c.phi) then c.phi = {time, 2}; end if; end Source; \
+        model Line C a; C b; equation a.i + b.i = 0; a.v - b.v = a.i; \
+        Connections.branch(a.phi, b.phi); b.phi = a.phi; end Line; ";
+    let model = "model M Source s; Source t(v = 3); Line l; \
+        Real x = l.b.phi[1] + 10*l.b.phi[2] + 100*l.b.i; \
+        equation connect(s.c, l.a); connect(l.b, t.c); end M;";
+    assert_eq!(at_end(&format!("{parts}{model}")), 1.0 + 20.0 + 200.0);
+}
+
+#[test]
+fn the_level_of_an_assertion_may_be_a_parameter() {
+    let text = "model M parameter AssertionLevel level = AssertionLevel.warning; Real x = time; \
+        equation assert(x < 0.5, \"x is large\", level); end M;";
+    assert_eq!(at_end(text), 1.0);
+}
+
+#[test]
+fn parameters_may_be_called_inputs() {
+    let text = "block B parameter input Integer n = 1; output Real y = n*time; end B; \
+        model M B b(n = 3); Real x = b.y; end M;";
+    assert_eq!(at_end(text), 3.0);
+    assert!(warnings(text).contains(&"illegal-prefix"));
+}
+
+/// MLS §7.2.5: `each` says that all elements have the value; libraries forget it.
+#[test]
+fn one_value_without_each_is_that_of_all_elements() {
+    let part = "model Part parameter Boolean on = false; parameter Real k = 1; \
+        Real y = if on then k*time else 0; end Part; ";
+    let model = "model M parameter Real k = 2; Part p[2](on = true, k = 3*k); \
+        Real x = p[1].y + p[2].y; end M;";
+    let text = format!("{part}{model}");
+    assert_eq!(at_end(&text), 12.0);
+    assert!(warnings(&text).contains(&"size-mismatch"));
+}
+
+#[test]
+fn modifiers_of_a_class_are_those_of_each_element_of_an_array_of_it() {
+    let text = "record R parameter Real c[2] = {0, 0}; parameter Real k = 0; end R; \
+        record Data = R(c = {1, 2}, k = 3); \
+        model Base parameter Real a = 1; Real y; end Base; \
+        model Element extends Base; parameter Real f = 1; equation y = a*f*time; end Element; \
+        model Holder parameter Integer n = 2; \
+        replaceable model El = Element constrainedby Base(final a = 10/n); El el[n]; end Holder; \
+        model M parameter Data d[2]; Holder h(redeclare model El = Element(f = 100)); \
+        Real x = d[2].c[2] + 10*d[1].k + h.el[2].y; end M;";
+    assert_eq!(at_end(text), 2.0 + 30.0 + 500.0);
+    assert!(!warnings(text).contains(&"size-mismatch"));
+}
+
+#[test]
+fn each_element_of_an_array_of_records_has_the_arrays_of_one_value() {
+    let text = "record Mat parameter Real k; end Mat; \
+        record Layers parameter Integer n; parameter Mat mat[n]; end Layers; \
+        record Par parameter Real a = 0; parameter Layers layers; end Par; \
+        model M parameter Layers dummy(n = 2, mat = {Mat(k = 1), Mat(k = 5)}); \
+        parameter Par p[2](each a = 4, each layers = dummy); \
+        Real x = p[2].layers.mat[2].k + 10*p[1].a; end M;";
+    assert_eq!(at_end(text), 45.0);
+}
+
+/// MLS §7.3.2: they hold for the class that the clause stands behind as well.
+#[test]
+fn constraining_modifiers_of_a_redeclaration_hold_for_its_own_class() {
+    let records = "record Data parameter Real k = 1; parameter Real l = 1; end Data; \
+        record Other extends Data; end Other; \
+        model Part replaceable parameter Data d constrainedby Data(l = 2); \
+        Real y = d.k + 10*d.l; end Part; \
+        model Base extends Part(redeclare replaceable parameter Other d \
+        constrainedby Data(k = 7)); end Base; ";
+    let model = |text: &str| at_end(&format!("{records} model M {text} Real x = p.y; end M;"));
+    assert_eq!(model("Base p;"), 27.0);
+    assert_eq!(model("Base p(redeclare Other d);"), 27.0);
+    assert_eq!(model("Base p(redeclare Other d(k = 3));"), 23.0);
+    let classes = "model A parameter Real k = 1; Real y = k*time; end A; \
+        model B extends A; end B; \
+        model Part replaceable model T = A; T t; end Part; \
+        model Base extends Part(redeclare replaceable model T = B constrainedby A(k = 7)); \
+        end Base; model C extends A; end C; ";
+    let model = |text: &str| at_end(&format!("{classes} model M {text} Real x = p.t.y; end M;"));
+    assert_eq!(model("Base p;"), 7.0);
+    assert_eq!(model("Base p(redeclare model T = C);"), 7.0);
+    assert_eq!(model("Base p(redeclare model T = C(k = 2));"), 2.0);
+}
+
+#[test]
+fn what_is_not_replaceable_is_redeclared_with_a_warning() {
+    let text = "model A Real y = 1; end A; model B Real y = 2; end B; \
+        model Part A a; Real y = a.y; end Part; \
+        model M Part p(redeclare B a); Real x = p.y; end M;";
+    assert_eq!(at_end(text), 2.0);
+    assert!(warnings(text).contains(&"illegal-redeclaration"));
+}
+
+#[test]
+fn arrays_inherited_twice_are_one() {
+    let text = "partial model A parameter Integer n = 2; Real u[n] \"one\"; end A; \
+        partial model B parameter Integer n = 2; Real u[n] \"another\"; end B; \
+        model M extends A; extends B; Real x = u[2]; equation u = {1, 2}; end M;";
+    assert_eq!(at_end(text), 2.0);
+    let other = text.replacen("Real u[n] \"another\"", "Real u[3]", 1);
+    assert!(attempted(&other).is_err(), "two sizes");
+}
+
+#[test]
+fn a_slice_of_components_gives_each_element_its_record() {
+    let text = "record R Real a; Real b; end R; model Pin R v; equation v = R(time, 2*time); \
+        end Pin; model M Pin pin[3]; R all[3] = pin[:].v; Real x = all[2].a + 10*all[3].b; end M;";
+    assert_eq!(at_end(text), 21.0);
+}
+
+#[test]
+fn overloaded_constructors_are_found_by_enumerations() {
+    let text = "type E = enumeration(a, b); operator record D Real m; E e; \
+        encapsulated operator 'constructor' import P.D; import P.E; \
+        function both input Real m; input E e; output D d(m = m, e = e); algorithm end both; \
+        function named input Real a = 1; input E kind = E.a; output D d(m = 10*a, e = kind); \
+        algorithm end named; end 'constructor'; end D; \
+        model M parameter D d = D(a = 2, kind = E.b); Real x = d.m + (if d.e == E.b then 1 else 0); \
+        end M;";
+    assert_eq!(at_end(text), 21.0);
+}
+
+/// MLS §4.4.5: the connection goes with the component.
+#[test]
+fn connections_with_what_does_not_exist_need_no_element() {
+    let text = "connector C Real p; flow Real f; end C; \
+        model Part C c[1]; equation c.p = {time}; end Part; \
+        model M parameter Boolean on = false; parameter Integer at[2] = {1, 0}; Part s; \
+        C a; C b if on; Real x = a.p; equation connect(s.c[at[1]], a); \
+        connect(s.c[at[2]], b); end M;";
+    assert_eq!(at_end(text), 1.0);
+    assert!(attempted(&text.replacen("on = false", "on = true", 1)).is_err(), "no such element");
+}
+
+#[test]
+fn extremes_of_no_elements_are_those_of_the_type() {
+    let text = "model M parameter Integer n = 0; Real u[n] = {time for i in 1:n}; \
+        Real x = min(min(u), 3) + max(max(u), 4); end M;";
+    assert_eq!(at_end(text), 7.0);
+}
+
+#[test]
+fn icons_of_packages_may_be_classes() {
+    let text = "partial package Icon end Icon; partial class Own extends Icon; end Own; \
+        package Q extends Own; constant Real k = 2; end Q; model M Real x = Q.k; end M;";
+    assert_eq!(at_end(text), 2.0);
+}
+
+#[test]
+fn protected_variables_and_conditional_components_are_read_with_a_warning() {
+    let text = "model A protected Real q = 2*time; end A; \
+        model M parameter Boolean on = true; A a; Real u if on; Real x = a.q + u; \
+        equation if on then u = 1; end if; end M;";
+    assert_eq!(at_end(text), 3.0);
+    let codes = warnings(text);
+    assert!(codes.contains(&"protected-access") && codes.contains(&"conditional-component"));
+}

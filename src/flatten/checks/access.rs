@@ -75,7 +75,8 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
                 fault!(ILLEGAL_ACCESS, "`{name}` accesses an element of `{}`, which is \
                     partial", inside.name();
                     help: "extend it and access the class that extends it")
-                .at(span),
+                .at(span)
+                .warning(),
             );
         }
         prefix = prefix.child(*part);

@@ -288,6 +288,8 @@ fn not_replaceable(
         fault!(ILLEGAL_REDECLARATION, "`{name}` is not replaceable in `{holder}`";
             help: "declare it `replaceable` there, or modify it without redeclaring it")
         .at(span)
+        // Libraries do it, where the tools that they were written with allow it.
+        .warning()
     })
 }
 

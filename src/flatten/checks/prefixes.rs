@@ -42,7 +42,9 @@ fn wrong_use(class: Scope<'_>, component: &Component<'_>) -> Option<Diagnostic> 
         return Some(
             fault!(ILLEGAL_PREFIX, "`{name}` has both prefixes `input` and `{variability}`";
                 help: "remove one of the prefixes")
-            .at(span),
+            .at(span)
+            // Libraries do it; it is the parameter that counts.
+            .warning(),
         );
     }
     let is_connector =

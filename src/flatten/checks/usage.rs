@@ -207,7 +207,9 @@ impl Visit for Walk<'_, '_> {
                 fault!(CONDITIONAL_COMPONENT, "`{name}` is a conditional component: it can only \
                     be connected or modified";
                     help: "declare an unconditional variable and connect it to `{name}`")
-                .at(reference.span),
+                .at(reference.span)
+                // Where its condition is false it does not exist, which is an error there.
+                .warning(),
             );
         }
     }

@@ -176,6 +176,13 @@ impl Collector<'_, '_> {
         {
             return Ok(());
         }
+        if let (Ok(None), Err(error)) | (Err(error), Ok(None)) = (&left_ends, &right_ends)
+            && error.code == SIZE_MISMATCH
+        {
+            // The connection goes with the component that does not exist (MLS §4.4.5): which element
+            // it would have gone to is of no account.
+            return Ok(());
+        }
         let (left_ends, right_ends) = (left_ends?, right_ends?);
         // Connections with a component whose condition is false are removed (MLS §4.4.5).
         let (Some(left_ends), Some(right_ends)) = (left_ends, right_ends) else { return Ok(()) };

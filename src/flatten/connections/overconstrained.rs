@@ -19,7 +19,9 @@ use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
-use crate::syntax::ast::{Equation, EquationKind, Expression, ExpressionKind, Subscript};
+use crate::syntax::ast::{
+    ClassSpecifier, Equation, EquationKind, Expression, ExpressionKind, Subscript,
+};
 
 /// The function that makes a record redundant.
 const EQUALITY_CONSTRAINT: &str = "equalityConstraint";
@@ -45,19 +47,42 @@ impl Classes<'_> {
 
     /// Whether the class of a component declares itself redundant.
     pub fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
-        let Some(class) = self.redundant_class(node) else { return Ok(false) };
-        Ok(self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?.is_some())
+        Ok(self.redundant_class(node)?.is_some())
     }
 
-    /// The class of a record or of a variable, which may be redundant.
-    fn redundant_class(&self, node: NodeId) -> Option<ScopeId> {
-        match &self.tree.nodes[node.0].kind {
+    /// The class of a record or of a variable that declares itself redundant: that of the component, or
+    /// one that it is made of.
+    fn redundant_class(&mut self, node: NodeId) -> Result<Option<ScopeId>, Diagnostic> {
+        let mut class = match &self.tree.nodes[node.0].kind {
             NodeKind::Composite(composite) => {
                 let class = composite.class;
                 (!composite.connector && self.is_record(class)).then_some(class)
             }
             NodeKind::Variable(leaf) => leaf.class.filter(|_| !leaf.connector),
+        };
+        while let Some(found) = class {
+            if self.find_class(found, Ident::new(EQUALITY_CONSTRAINT))?.is_some() {
+                return Ok(Some(found));
+            }
+            class = self.made_of(found)?;
         }
+        Ok(None)
+    }
+
+    /// The class that a type is made of, if it is not a predefined one: such a type inherits no
+    /// elements, so that these are looked for there.
+    fn made_of(&mut self, class: ScopeId) -> Result<Option<ScopeId>, Diagnostic> {
+        let text = self.text(class).clone();
+        let parent = self.scope(class).parent.unwrap_or(ScopeId::TOP);
+        let base = match &text.definition.specifier {
+            ClassSpecifier::Short(short) => Some(self.lookup_type(parent, &short.target)?),
+            ClassSpecifier::Long(_) => self.predefined_base(class, &text)?.map(|(base, _)| base),
+            ClassSpecifier::Enumeration(_) | ClassSpecifier::Derivative(_) => None,
+        };
+        Ok(match base {
+            Some(Type::Class(base)) if base != class => Some(base),
+            _ => None,
+        })
     }
 }
 
@@ -86,7 +111,7 @@ impl Instantiation<'_> {
 
     fn constraint_equation(&mut self, edge: &Edge) -> Result<Equation, Diagnostic> {
         let span = edge.span;
-        let class = self.classes.redundant_class(edge.nodes.0).unwrap_or(ScopeId::TOP);
+        let class = self.classes.redundant_class(edge.nodes.0)?.unwrap_or(ScopeId::TOP);
         let invalid = || {
             fault!(INVALID_CONNECTION, "`{EQUALITY_CONSTRAINT}` of this record is not a function")
                 .at(span)

@@ -8,7 +8,6 @@ use crate::external::Outside;
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::picked;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::NodeKind;
@@ -114,7 +113,7 @@ impl Instantiation<'_> {
                 .at(span),
             );
         };
-        let value = picked(value, &bound.indices);
+        let value = self.part_of(&value, &bound)?;
         // Parameters may be read from files (MLS §12.3).
         let local = Local { values: true, impure: true, ..Local::default() };
         let resolved = self.resolve(&value, bound.context, &local)?;

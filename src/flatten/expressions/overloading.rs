@@ -262,6 +262,10 @@ impl Types<'_> {
             (ValueType::Record(wanted, _), Some(ValueType::Record(found, _))) => *wanted == found,
             (ValueType::Record(..), _) | (_, Some(ValueType::Record(..))) => false,
             (ValueType::Real, Some(ValueType::Real | ValueType::Integer)) => true,
+            // A literal of an enumeration is its ordinal here.
+            (ValueType::Enumeration(_), Some(ValueType::Integer)) => {
+                matches!(argument.kind, ExpressionKind::Integer(_))
+            }
             (wanted, Some(found)) => *wanted == found,
             // What the text does not tell is a number in practice.
             (wanted, None) => matches!(wanted, ValueType::Real | ValueType::Integer),

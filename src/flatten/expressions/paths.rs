@@ -43,7 +43,8 @@ impl Instantiation<'_> {
             self.classes.check_outer_element(node, part.name, next.name, whole.span)?;
         }
         if !local.flat {
-            self.classes.check_access(node, parts, whole)?;
+            let access = self.classes.check_access(node, parts, whole);
+            self.tolerate_protected(access)?;
         }
         let name = part.name;
         match state.seen() {
@@ -66,6 +67,20 @@ impl Instantiation<'_> {
                 name
             )
             .at(whole.span)),
+        }
+    }
+
+    /// A protected variable that is read is a warning: libraries do it.
+    fn tolerate_protected(&mut self, access: Result<(), Diagnostic>) -> Result<(), Diagnostic> {
+        match access {
+            Err(error) if error.code == PROTECTED_ACCESS && !self.classes.library.is_strict() => {
+                let is_known = |one: &Diagnostic| one.span() == error.span();
+                if !self.warnings.iter().any(is_known) {
+                    self.warnings.push(error.warning());
+                }
+                Ok(())
+            }
+            access => access,
         }
     }
 
@@ -348,6 +363,12 @@ impl Instantiation<'_> {
             let wanted = if is_last { usize::MAX } else { rank.unwrap_or(0) };
             if part.subscripts.is_empty() {
                 part.subscripts = given.by_ref().take(wanted).collect();
+                continue;
+            }
+            // A dimension that stays: `a[:].b` has the elements `a[i].b`.
+            let stay = part.subscripts.iter_mut().filter(|s| matches!(s, Subscript::All(_)));
+            for (subscript, index) in stay.zip(given.by_ref()) {
+                *subscript = index;
             }
         }
         Ok(given.next().is_none().then_some(found))

@@ -7,7 +7,6 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH};
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::picked;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::Expanded;
@@ -161,15 +160,15 @@ impl Instantiation<'_> {
         let of_array = |b: &&Bound| !b.each && b.value.is_some();
         let of_attributes = attributes.filter_map(|one| one.binding.as_ref()).find(of_array);
         let bound = expanded.modifier.binding.as_ref().or(of_attributes);
-        let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
+        let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b.clone())) else {
             return Err(fault!(NOT_CONSTANT, "the size of `{}` is unknown", declared.name;
                 help: "declare its size, or give it a value")
             .at(span));
         };
-        if let Some(dims) = self.bound_shape(&bound.clone())? {
+        if let Some(dims) = self.bound_shape(&bound)? {
             return Ok(dims);
         }
-        let value = picked(value, &bound.indices);
+        let value = self.part_of(&value, &bound)?;
         match self.structural_value(&value, bound.context)? {
             Value::Array(array) => Ok(array.dims),
             _ => Ok(Vec::new()),

@@ -195,8 +195,11 @@ impl Classes<'_> {
             declaration.modifier.binding = Some(Bound {
                 value: Some(component_of(&picked, *name)),
                 context: binding.context,
-                each: binding.each,
+                // The value was that of every element of an array of records; of one record each
+                // component has its own.
+                each: false,
                 indices: Vec::new(),
+                of_class: false,
             });
             member.declaration = Arc::new(declaration);
         }
@@ -222,7 +225,8 @@ impl Classes<'_> {
         let inherited = self.tree.inherited_by(node, declared, &expanded);
         let path = self.tree.path_of(node, declared.name);
         if dims.is_empty() {
-            let built = self.composite(class, path, Some(node), expanded.modifier, inherited)?;
+            let modifier = expanded.modifier.at_element(&[]);
+            let built = self.composite(class, path, Some(node), modifier, inherited)?;
             self.tree.mark_connector(built, expanded.connector);
             return Ok(MemberState::Single(built));
         }

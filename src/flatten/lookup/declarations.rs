@@ -14,7 +14,9 @@ use crate::flatten::lookup::scope::Text;
 use crate::source::Span;
 use crate::syntax::ast::{
     self, ClassSpecifier, ComponentClause, ComponentDeclaration, Deselection, Element, Restriction,
+    Subscript,
 };
+use crate::syntax::print;
 use std::sync::Arc;
 
 impl Classes<'_> {
@@ -138,6 +140,7 @@ impl Classes<'_> {
             (R::Connector, R::Connector | R::ExpandableConnector) => true,
             // Libraries do it; the table of the specification does not have it.
             (R::Connector, R::Model | R::Block | R::Class) => !self.library.is_strict(),
+            (R::Package, R::Model | R::Block | R::Class) => !self.library.is_strict(),
             (R::ExpandableConnector, R::ExpandableConnector) => true,
             (one, other) => one == other,
         };
@@ -206,7 +209,10 @@ impl Classes<'_> {
         let defaults = constraining(clause, redeclaration.as_ref(), context)?;
         let mut own = match (&redeclaration, &clause.constraint) {
             (Some(_), Some(_)) => defaults,
-            _ => {
+            // Without a constraining clause the declaration's own modifiers are that of one.
+            (Some(_), None) => Modifier::new(component.modification.as_ref(), false, context)?
+                .overridden_by(defaults, name)?,
+            (None, _) => {
                 let own = Modifier::new(component.modification.as_ref(), false, context)?;
                 defaults.overridden_by(own, name)?
             }
@@ -250,17 +256,24 @@ impl Classes<'_> {
 impl Declaration {
     /// Whether both declare the same, their types aside, as two base classes may (MLS §7.1).
     fn is_same(&self, other: &Declaration) -> bool {
-        let plain = |one: &Declaration| one.dims.is_empty() && one.condition.is_none();
+        let size = |(size, _): &(Subscript, ScopeId)| match size {
+            Subscript::All(_) => ":".to_owned(),
+            Subscript::Index(size) => print::expression(size),
+        };
+        let sizes = |one: &Declaration| one.dims.iter().map(size).collect::<Vec<String>>();
+        let condition = |one: &Declaration| {
+            one.condition.as_ref().map(|(condition, _)| print::expression(condition))
+        };
         self.prefixes == other.prefixes
             && self.type_prefixes == other.type_prefixes
             && self.modifier.is_same(&other.modifier)
-            && plain(self)
-            && plain(other)
+            && sizes(self) == sizes(other)
+            && condition(self) == condition(other)
     }
 }
 
-/// The modifiers of the constraining clauses: of the declaration, and of redeclarations that stand
-/// under the last one (MLS §7.3.2).
+/// The modifiers of the constraining clauses: of the declaration, and of the redeclarations one over
+/// the other, the last one included: they hold for its own class as well (MLS §7.3.2).
 fn constraining(
     clause: &ComponentClause,
     redeclaration: Option<&Redeclaration>,
@@ -270,13 +283,9 @@ fn constraining(
         Some(constraint) => Modifier::of_arguments(&constraint.modification, context)?,
         None => Modifier::default(),
     };
-    let mut under = Vec::new();
-    let mut next = redeclaration.and_then(|redeclaration| redeclaration.over.as_deref());
-    while let Some(one) = next {
-        under.push(one);
-        next = one.over.as_deref();
-    }
-    for one in under.into_iter().rev() {
+    let chain = std::iter::successors(redeclaration, |one| one.over.as_deref());
+    let chain: Vec<&Redeclaration> = chain.collect();
+    for one in chain.into_iter().rev() {
         let Replacement::Component(clause) = &one.replacement else { continue };
         let Some(constraint) = &clause.constraint else { continue };
         let more = Modifier::of_arguments(&constraint.modification, one.context)?;

@@ -66,6 +66,9 @@ pub struct Bound {
     /// For modifiers of arrays of components: the element of the value that is meant, one index a
     /// dimension, from 1.
     pub indices: Vec<usize>,
+    /// Whether it is part of the class of a component, as in `model B = A(p = 1)`: all elements of an
+    /// array of components of the class have it, without `each`.
+    pub of_class: bool,
 }
 
 impl Modifier {
@@ -82,7 +85,7 @@ impl Modifier {
                 Binding::Expression(value) => Some(value.clone()),
                 Binding::Break(_) => None,
             };
-            Bound { value, context, each, indices: Vec::new() }
+            Bound { value, context, each, indices: Vec::new(), of_class: false }
         });
         Ok(modifier)
     }
@@ -260,12 +263,26 @@ impl Modifier {
         Ok(self)
     }
 
+    /// The same as a part of the class that it modifies.
+    #[must_use]
+    pub fn of_class(mut self) -> Modifier {
+        self.mark_of_class();
+        self
+    }
+
+    fn mark_of_class(&mut self) {
+        if let Some(bound) = &mut self.binding {
+            bound.of_class = true;
+        }
+        self.elements.values_mut().for_each(Modifier::mark_of_class);
+    }
+
     /// The modifier of one element of an array of components: values written without `each` are
     /// arrays, and the element is picked from them.
     pub fn at_element(&self, indices: &[usize]) -> Modifier {
         let picked = |bound: &Bound| {
             let mut bound = bound.clone();
-            if !bound.each {
+            if !bound.each && !std::mem::take(&mut bound.of_class) {
                 bound.indices.extend(indices);
             }
             bound

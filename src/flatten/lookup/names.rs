@@ -210,8 +210,26 @@ impl Classes<'_> {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared")
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
-        let defaults = self.constraining(&original, constraint.as_ref())?;
+        let mut defaults = self.constraining(&original, constraint.as_ref())?;
+        let chain = std::iter::successors(Some(&redeclaration), |one| one.over.as_deref());
+        let chain: Vec<&Redeclaration> = chain.collect();
+        for one in chain.into_iter().rev() {
+            if let Some(constraint) = self.constraint_of(one) {
+                let more = Modifier::of_arguments(&constraint.modification, one.context)?;
+                defaults = defaults.overridden_by(more, name)?;
+            }
+        }
         self.replaced(original, &redeclaration, &defaults)
+    }
+
+    /// The constraining clause of a redeclaration: its modifiers hold for its own class and for those
+    /// that replace it (MLS §7.3.2).
+    fn constraint_of<'r>(&'r self, redeclaration: &'r Redeclaration) -> Option<&'r Constraint> {
+        match &redeclaration.replacement {
+            Replacement::Class(element) => element.constraint.as_ref(),
+            Replacement::Element(class) => self.library.class(*class).constraint(),
+            Replacement::Component(_) => None,
+        }
     }
 
     /// The modifiers that hold for whatever replaces a class (MLS §7.3.2).

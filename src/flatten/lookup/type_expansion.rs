@@ -152,6 +152,9 @@ impl Classes<'_> {
         let name = self.simple_name(id);
         let outer = std::mem::take(&mut expanded.modifier);
         let own = own.overridden_by(self.scope(id).modifier.clone(), name)?;
+        let is_array = matches!(&self.text(id).definition.specifier,
+            ClassSpecifier::Short(short) if !short.subscripts.is_empty());
+        let own = if is_array { own } else { own.of_class() };
         expanded.modifier = own.overridden_by(outer, name)?;
         Ok(())
     }

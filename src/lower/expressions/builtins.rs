@@ -334,7 +334,9 @@ impl<T: Target> Lowering<'_, T> {
             Reduction::Min | Reduction::Max => {}
         }
         let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
-            return Err(fault!(ARRAY_MISMATCH, "`{name}` of an empty array").at(span));
+            // The greatest and the least value (MLS §10.3.4.1), as the interpreter has them.
+            let none = if reduction == Reduction::Min { f64::MAX } else { f64::MIN };
+            return scalar(self.fold(Binary::Add, none, &[]));
         };
         let mut result = *first;
         for element in rest {
