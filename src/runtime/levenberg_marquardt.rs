@@ -114,7 +114,7 @@ impl LeastSquares {
         self.residual.iter().enumerate().all(|(row, f)| {
             let entries = self.jacobian.iter().skip(row).step_by(self.n);
             let largest = entries.fold(0.0, |a: f64, b| a.max(b.abs()));
-            f.abs() <= SOLVED * if largest > 0.0 { largest.min(1.0) } else { 1.0 }
+            f.abs() <= SOLVED * if largest > 0.0 { largest } else { 1.0 }
         })
     }
 
@@ -175,4 +175,44 @@ fn scale_of(x: f64, nominal: f64) -> f64 {
 
 fn square(f: &[f64]) -> f64 {
     f.iter().map(|f| f * f).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elementary::powi;
+
+    /// Radiation of a small surface that takes up `heat`: `1.2e-23 (T⁴ − 293⁴) = heat`.
+    struct Radiation {
+        heat: f64,
+    }
+
+    impl Equations for Radiation {
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            out[0] = 1.2e-23 * (powi(x[0], 4) - powi(293.0, 4)) - self.heat;
+            Ok(())
+        }
+
+        fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            out[0] = 4.8e-23 * powi(x[0], 3);
+            Ok(())
+        }
+    }
+
+    /// The slope is 10¹⁴ times that of the start: rounding leaves residuals that are large beside the
+    /// latter.
+    #[test]
+    fn a_solution_far_away_is_one() {
+        let mut x = [293.0];
+        let mut equations = Radiation { heat: 12.5 };
+        assert!(LeastSquares::new(1).solve(&mut equations, &mut x, &[1.0]).is_ok());
+        assert!((1.2e-23 * powi(x[0], 4) - 12.5).abs() < 1e-7, "{x:?}");
+    }
+
+    #[test]
+    fn a_residual_that_vanishes_nowhere_is_none() {
+        let mut x = [293.0];
+        let mut equations = Radiation { heat: -12.5 };
+        assert!(LeastSquares::new(1).solve(&mut equations, &mut x, &[1.0]).is_err());
+    }
 }

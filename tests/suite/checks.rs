@@ -229,7 +229,10 @@ fn conditions_are_boolean_and_enumerations_no_numbers() {
 fn redeclarations_fit_what_they_replace() {
     let code = "illegal-redeclaration";
     let classes = "model A Real x = 1; end A; model B Real x = 2; Real y = 3; end B;";
-    refused_if_strict(&format!("{classes} model C A a; end C; model M C c(redeclare B a); end M;"), code);
+    refused_if_strict(
+        &format!("{classes} model C A a; end C; model M C c(redeclare B a); end M;"),
+        code,
+    );
     refused(
         &format!("{classes} model C replaceable B b; end C; model M C c(redeclare A b); end M;"),
         code,
