@@ -6,6 +6,7 @@ use super::lookup::modification::Bound;
 use crate::diag::Diagnostic;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
+use crate::flatten::instantiate::instance::MemberState;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::functions::{self, ArgumentShapes};
 use crate::name::{Ident, Name};
@@ -44,6 +45,38 @@ impl Instantiation<'_> {
         Ok(self.shape_of(&resolved))
     }
 
+    /// The sizes of an array of components that are no variables and have no value.
+    fn component_dims(
+        &mut self,
+        array: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &array.kind else { return Ok(None) };
+        let Some((last, holders)) = reference.parts.split_last() else { return Ok(None) };
+        let first = reference.parts[0].name;
+        let is_plain = reference.parts.iter().all(|part| part.subscripts.is_empty());
+        if !is_plain
+            || reference.global
+            || local.flat
+            || local.get(first).is_some()
+            || !self.classes.has_component(context, first)?
+        {
+            return Ok(None);
+        }
+        let mut node = self.classes.node_of(context);
+        for part in holders {
+            match self.member(node, part.name)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => node = next,
+                _ => return Ok(None),
+            }
+        }
+        Ok(match self.member(node, last.name)?.map(MemberState::seen) {
+            Some(MemberState::Array(dims, _)) => Some(dims),
+            _ => None,
+        })
+    }
+
     /// `size(x, i)` and `size(x)` where only the sizes of `x` are known; `None` for other calls.
     pub fn size_call(
         &mut self,
@@ -53,15 +86,20 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let (Some(array), true) = (arguments.positional.first(), local.values) else {
-            return Ok(None);
-        };
+        let Some(array) = arguments.positional.first() else { return Ok(None) };
         if !["size", "ndims"].contains(&name) || !arguments.named.is_empty() {
             return Ok(None);
         }
-        let plain = Local { values: false, ..local.clone() };
-        let Ok(resolved) = self.resolve(array, context, &plain) else { return Ok(None) };
-        let Some(dims) = self.shape_of(&resolved) else { return Ok(None) };
+        let dims = match self.component_dims(array, context, local)? {
+            Some(dims) => dims,
+            None if !local.values => return Ok(None),
+            None => {
+                let plain = Local { values: false, ..local.clone() };
+                let Ok(resolved) = self.resolve(array, context, &plain) else { return Ok(None) };
+                let Some(dims) = self.shape_of(&resolved) else { return Ok(None) };
+                dims
+            }
+        };
         let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), span);
         let value = match (name, arguments.positional.get(1)) {
             ("ndims", None) => integer(dims.len()),

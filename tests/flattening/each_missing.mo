@@ -1,4 +1,4 @@
-// MLS §7.2.5: a scalar modifier of an array of components needs `each`.
+// MLS §7.2.5: a scalar modifier of an array of components needs `each`; libraries forget it.
 package each_missing
   model Cell
     parameter Real p = 1;

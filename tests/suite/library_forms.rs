@@ -506,3 +506,22 @@ fn protected_variables_and_conditional_components_are_read_with_a_warning() {
     let codes = warnings(text);
     assert!(codes.contains(&"protected-access") && codes.contains(&"conditional-component"));
 }
+
+#[test]
+fn arrays_of_components_have_sizes() {
+    let text = "model Zone Real t = time; end Zone; model Rooms parameter Integer n = 2; \
+        Zone zone[n, 3]; end Rooms; \
+        model M Rooms rooms; Real q[size(rooms.zone, 2)] = rooms.zone[1, :].t; \
+        Real x = sum(q) + 10*size(rooms.zone, 1); equation \
+        assert(size(rooms.zone, 1) == 2, \"two rows\"); end M;";
+    assert_eq!(at_end(text), 23.0);
+}
+
+#[test]
+fn elements_of_arrays_of_components_are_chosen_at_events() {
+    let text = "record R parameter Real k = 1; end R; model S Real y = time; end S; \
+        model M parameter R r[2] = {R(1), R(2)}; S s[2]; \
+        Integer stage = if time < 0.5 then 1 else 2; \
+        Real x = r[stage].k + 10*s[stage].y; end M;";
+    assert_eq!(both_ends(text), [1.0, 12.0]);
+}

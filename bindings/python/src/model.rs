@@ -251,7 +251,7 @@ pub(crate) struct SimulationResult {
 
 #[pymethods]
 impl SimulationResult {
-    /// The points in time, seconds.
+    /// The time points, seconds.
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.table.time)

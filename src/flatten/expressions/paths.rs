@@ -132,7 +132,15 @@ impl Instantiation<'_> {
             let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
             return Ok(subscripted(all, subscripts, whole.span));
         }
-        let chosen = self.choose(dims, &subscripts, part.name, whole.span)?;
+        let chosen = match self.choose(dims, &subscripts, part.name, whole.span) {
+            // The index varies: what the elements have of this name is chosen from.
+            Err(error) if error.code == NOT_CONSTANT && !rest.is_empty() && !local.values => {
+                let all = self.choose(dims, &[], part.name, whole.span)?;
+                let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
+                return Ok(subscripted(all, subscripts, whole.span));
+            }
+            chosen => chosen?,
+        };
         self.walk_array(&chosen, dims, nodes, rest, whole, context, local)
     }
 
