@@ -4,6 +4,7 @@ use super::check::{CheckArgs, FlattenArgs};
 use super::compare::CompareArgs;
 use super::completions::CompletionsArgs;
 use super::explain::ExplainArgs;
+use super::fmt::FmtArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
 use super::lesson::LessonArgs;
@@ -74,6 +75,8 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
+    /// Format Modelica files and scripts
+    Fmt(FmtArgs),
     /// Recreate the report of an identification from its files
     Report(ReportArgs),
     /// Compare results with reference results

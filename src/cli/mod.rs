@@ -13,6 +13,7 @@ mod disk;
 mod effort;
 pub mod embedding;
 mod explain;
+mod fmt;
 mod help;
 mod identify;
 mod lesson;
@@ -95,6 +96,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Man(arguments) => man::man(arguments, Cli::command()),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Fmt(arguments) => fmt::fmt(arguments),
         Command::Report(arguments) => report::report(arguments, &cli.global),
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),
         Command::Verify(arguments) => verify::verify(arguments, &cli.global),

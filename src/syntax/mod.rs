@@ -27,6 +27,7 @@ pub mod visit;
 pub use ast::Sections;
 pub use decode::decode;
 pub use outline::{Outline, OutlinedClass};
+pub use scan::{Lexeme, LexemeKind};
 pub use script_parts::ScriptParts;
 
 use crate::diag::Diagnostic;
@@ -129,6 +130,36 @@ pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> 
     let mut statements = Vec::with_capacity(parts.iter().map(|part| part.statements.len()).sum());
     parts.into_iter().for_each(|part| statements.extend(part.statements));
     Ok(Script { statements, span: Span::new(source, 0, text.len()) })
+}
+
+/// The tokens and comments of a `.mo` file, or of a script, in the order of the text.
+///
+/// ```
+/// use gapilib::{source::SourceId, syntax};
+///
+/// let text = "x = 1 // one\ny.z := 2";
+/// let lexemes = syntax::lexemes(SourceId::NONE, text, true)?;
+/// let words: Vec<&str> = lexemes.iter().map(|one| &text[one.range()]).collect();
+/// assert_eq!(words, ["x", "=", "1", "// one", "y", ".", "z", ":=", "2"]);
+/// assert!(lexemes[4].ends_line);
+/// # Ok::<(), gapilib::diag::Diagnostic>(())
+/// ```
+///
+/// # Errors
+/// A string or comment without end, a bracket or `end` without its partner, a foreign character.
+pub fn lexemes(source: SourceId, text: &str, is_script: bool) -> Result<Vec<Lexeme>, Diagnostic> {
+    let dialect = if is_script { Dialect::Script } else { Dialect::Modelica };
+    scan::lexemes(source, text, dialect)
+}
+
+/// Whether a word is a keyword (MLS §2.3.3).
+///
+/// ```
+/// assert!(gapilib::syntax::is_keyword("elsewhen") && !gapilib::syntax::is_keyword("elsewhere"));
+/// ```
+pub fn is_keyword(word: &str) -> bool {
+    let is_word = word.bytes().all(|byte| byte.is_ascii_lowercase());
+    is_word && !word.is_empty() && grammar::read(Rule::lone_keyword, word).is_ok()
 }
 
 /// Reads an expression.

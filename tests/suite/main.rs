@@ -27,6 +27,7 @@ mod faults;
 mod flat_class;
 mod flattening;
 mod flattening_properties;
+mod formatting;
 mod fuel_cells;
 mod function_inverses;
 mod function_sizes;

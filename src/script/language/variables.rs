@@ -8,7 +8,6 @@ use crate::script::Session;
 use crate::script::builtins::component_names;
 use crate::script::errors::NO_WINDOW;
 use crate::syntax;
-use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::value::Value;
 
 /// Classes whose components are completed.
@@ -31,12 +30,11 @@ impl Session {
     ///
     /// `bad-option` for what is no identifier; those of an assignment to a variable of another type.
     pub fn set_variable(&mut self, name: &str, value: Value) -> Result<(), Fault> {
-        let source = self.sources.add("name", name);
-        let reference = syntax::parse_expression(source, name).ok();
-        let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let names_variable =
-            |expression: &Expression| matches!(expression.kind, ExpressionKind::Reference(_));
-        if !is_plain || !reference.as_ref().is_some_and(names_variable) {
+        let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+        let is_identifier = name.starts_with(is_letter)
+            && name.chars().all(|c| is_letter(c) || c.is_ascii_digit())
+            && !syntax::is_keyword(name);
+        if !is_identifier {
             bail!(BAD_OPTION, "`{name}` cannot be the name of a variable");
         }
         self.workspace.variables.set(Ident::new(name), value)

@@ -8,6 +8,7 @@
 
 mod blocks;
 mod depth;
+mod lexemes;
 mod tokens;
 
 use crate::diag::Diagnostic;
@@ -16,6 +17,7 @@ use crate::source::{SourceId, Span};
 use crate::syntax::errors::{NESTING_TOO_DEEP, NOT_A_SCRIPT, TEXT_TOO_LARGE, UNCLOSED_BRACKET};
 use blocks::Blocks;
 use depth::Depth;
+pub use lexemes::{Lexeme, LexemeKind};
 use std::ops::Range;
 use tokens::{CommandPlace, Token, TokenKind, Tokens};
 
@@ -86,6 +88,24 @@ pub(super) fn scan(source: SourceId, text: &str, dialect: Dialect) -> Result<Sca
     Scanner::new(source, text, dialect).run()
 }
 
+/// The tokens and comments of a text.
+///
+/// # Errors
+/// A string or comment without end, a bracket or `end` without its partner, a foreign character.
+pub(super) fn lexemes(
+    source: SourceId,
+    text: &str,
+    dialect: Dialect,
+) -> Result<Vec<Lexeme>, Diagnostic> {
+    let mut scanner = Scanner::new(source, text, dialect);
+    scanner.kept = Some(Vec::new());
+    scanner.read()?;
+    match scanner.problem {
+        Some(problem) => Err(problem.diagnostic),
+        None => Ok(lexemes::with_comments(text, scanner.kept.unwrap_or_default())),
+    }
+}
+
 /// Refuses table data that carries the ending `.mos`.
 fn refuse_table(source: SourceId, text: &str) -> Result<(), Diagnostic> {
     let start = text.len() - text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).len();
@@ -129,6 +149,8 @@ struct Scanner<'t> {
     previous: Option<Token<'t>>,
     problem: Option<Problem>,
     ends: Vec<usize>,
+    /// The tokens, if they are to be kept.
+    kept: Option<Vec<Lexeme>>,
 }
 
 impl<'t> Scanner<'t> {
@@ -146,17 +168,23 @@ impl<'t> Scanner<'t> {
             previous: None,
             problem: None,
             ends: Vec::new(),
+            kept: None,
         }
     }
 
     fn run(mut self) -> Result<Scanned, Diagnostic> {
+        self.read()?;
+        let text = String::from_utf8(self.out)
+            .unwrap_or_else(|_| unreachable!("only whole characters are replaced, by ASCII"));
+        Ok(Scanned { text, problem: self.problem, ends: self.ends })
+    }
+
+    fn read(&mut self) -> Result<(), Diagnostic> {
         while let Some(token) = self.next_token()? {
             self.step(token)?;
         }
         self.finish();
-        let text = String::from_utf8(self.out)
-            .unwrap_or_else(|_| unreachable!("only whole characters are replaced, by ASCII"));
-        Ok(Scanned { text, problem: self.problem, ends: self.ends })
+        Ok(())
     }
 
     fn next_token(&mut self) -> Result<Option<Token<'t>>, Diagnostic> {
@@ -177,21 +205,27 @@ impl<'t> Scanner<'t> {
     }
 
     fn step(&mut self, token: Token<'t>) -> Result<(), Diagnostic> {
+        let mut ends_line = false;
         if self.brackets.is_empty() {
             self.blocks.name_class(&token);
-            if self.ends_line(&token) {
+            ends_line = self.ends_line(&token);
+            if ends_line {
                 let end = token.line_end.unwrap_or(token.start);
                 self.out[end] = LINE_END;
                 self.end_statement();
                 self.end_piece(end + 1);
             }
         }
+        let mut in_condition = false;
         match token.kind {
             TokenKind::Open => self.open(&token),
             TokenKind::Close => self.close(&token),
             TokenKind::Separator if token.text == ";" => self.semicolon(&token),
-            TokenKind::Word | TokenKind::Quoted => self.word(&token),
+            TokenKind::Word | TokenKind::Quoted => in_condition = self.word(&token),
             _ => self.blocks.leave_start(),
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.push(Lexeme::of(&token, ends_line, in_condition));
         }
         self.previous = Some(token);
         self.check_depth(&token)
@@ -215,17 +249,19 @@ impl<'t> Scanner<'t> {
         self.depth.end_statement();
     }
 
-    fn word(&mut self, token: &Token<'t>) {
+    /// Takes a word into account; whether it belongs to a conditional expression.
+    fn word(&mut self, token: &Token<'t>) -> bool {
         if !self.brackets.is_empty() {
-            return;
+            return true;
         }
         if self.in_condition(token) {
-            return;
+            return true;
         }
         let after_end = self.after_end();
         if let Err(problem) = self.blocks.word(token, after_end) {
             self.report(problem.from, problem.diagnostic);
         }
+        false
     }
 
     /// Whether the word belongs to a conditional expression, which is then followed.

@@ -34,6 +34,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("ga", &["singular_values", "registry", "diag"]),
     ("value", &["name", "diag"]),
     ("syntax", &["source", "name", "diag"]),
+    ("format", &["syntax", "source", "diag"]),
     ("functions", &["value", "symbolic", "diag"]),
     ("eval", &["functions", "external", "syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
@@ -151,9 +152,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "lessons", "syntax", "budget", "external", "script", "identify", "teach", "runtime",
-            "codegen", "results", "plot", "sim", "ga", "models", "registry", "name", "source",
-            "diag",
+            "lessons", "format", "syntax", "budget", "external", "script", "identify", "teach",
+            "runtime", "codegen", "results", "plot", "sim", "ga", "models", "registry", "name",
+            "source", "diag",
         ],
     ),
 ];
