@@ -1,9 +1,9 @@
 //! The layout of Modelica classes and scripts: indentation, blanks, blank lines and line breaks. No
 //! token, string or comment is changed, added or moved.
 //!
-//! The text is worked on, not its tree: [`structure`] finds the lexemes that begin a line, and how
-//! deep they are; [`spacing`] says how many blanks are between two lexemes of a line; [`layout`] puts
-//! the lines together; [`breaking`] divides those that are too long. Breaks that the author made
+//! The text is worked on, not its tree: `structure` finds the lexemes that begin a line, and how
+//! deep they are; `spacing` says how many blanks are between two lexemes of a line; `layout` puts
+//! the lines together; `breaking` divides those that are too long. Breaks that the author made
 //! inside a declaration, an equation or a statement are kept with their relative indentation, so that
 //! a text in the usual style hardly changes. Afterwards the lexemes of both texts are compared.
 
