@@ -51,7 +51,7 @@
 //! - [`elementary`]: elementary functions with the same bits on every machine;
 //! - [`source`], [`name`], [`diag`], [`registry`]: places, names, diagnostics, named choices;
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
-//! - [`format`]: the layout of classes and scripts: indentation, blanks, line breaks;
+//! - [`mod@format`]: the layout of classes and scripts: indentation, blanks, line breaks;
 //! - [`value`], [`symbolic`], [`graph`]: values and their operations; scalar expressions; matching,
 //!   sorting, tearing;
 //! - [`functions`], [`eval`]: the functions and operators of the language; the interpreter;
