@@ -26,8 +26,9 @@ pub fn in_rust(function: &Function, clause: &External) -> Option<&'static Entry>
     let include = string(clause, "Include").unwrap_or_default();
     let entry = external::find_declared(external_name(function, clause).as_str(), &include)?;
     // A function of another library may have the same name.
-    let is_other =
-        brings_code(clause) && !entry.takes(clause.arguments.len(), clause.output.is_some());
+    let is_other = brings_code(clause)
+        && clause.function.is_some()
+        && !entry.takes(clause.arguments.len(), clause.output.is_some());
     (!is_other).then_some(entry)
 }
 

@@ -258,10 +258,26 @@ const FAMILIES: &[&[Entry]] = &[
     buildings::ENTRIES,
 ];
 
-/// The function of this external name, declared with an annotation `Include`.
+/// The function of this external name, declared with an annotation `Include`; `None` where that text
+/// defines another function of the name.
+///
+/// ```
+/// use gapilib::external::find_declared;
+///
+/// let is_ours = |include| find_declared("getTimeSpan", include).is_some();
+/// assert!(is_ours("#include \"getTimeSpan.c\""));
+/// assert!(!is_ours("static void getTimeSpan (const char *name) {}"));
+/// ```
 pub fn find_declared(name: &str, include: &str) -> Option<&'static Entry> {
-    // Text that names the function itself defines it.
-    find(name).filter(|entry| include.contains(entry.stands_for) && !include.contains(name))
+    find(name).filter(|entry| include.contains(entry.stands_for) && !defines(include, name))
+}
+
+/// Whether C code has a function of this name, rather than the name of a file that has it.
+fn defines(code: &str, name: &str) -> bool {
+    code.match_indices(name).any(|(at, _)| {
+        let begins = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        begins && code[at + name.len()..].trim_start().starts_with('(')
+    })
 }
 
 /// The function of this external name.

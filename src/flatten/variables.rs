@@ -141,42 +141,25 @@ impl Instantiation<'_> {
 
     fn bound(&mut self, bound: &Bound, impure: bool) -> Result<Option<Expression>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
-        self.check_elements(value, bound)?;
         let value = self.part_of(value, bound)?;
         self.resolve(&value, bound.context, &Local { impure, ..Local::default() }).map(Some)
     }
 }
 
 impl Instantiation<'_> {
-    /// The part of a value that belongs to one element of an array of components. One value for all of
-    /// them without `each` is that of every element: libraries forget the word.
+    /// The part of a value that belongs to one element of an array of components; without `each` the
+    /// value must be an array (MLS §7.2.5). One value is that of every element, with a warning:
+    /// libraries forget the word.
     pub fn part_of(&mut self, value: &Expression, bound: &Bound) -> Result<Expression, Diagnostic> {
-        let is_one = !bound.indices.is_empty()
-            && !self.classes.library.is_strict()
-            && !matches!(value.kind, ExpressionKind::Array(_))
-            && self.rank_of_bound(value, bound)? == Some(0);
-        Ok(if is_one { value.clone() } else { picked(value.clone(), &bound.indices) })
-    }
-
-    /// The number of dimensions of a value before a part of it is taken.
-    fn rank_of_bound(
-        &mut self,
-        value: &Expression,
-        bound: &Bound,
-    ) -> Result<Option<usize>, Diagnostic> {
+        let wanted = bound.indices.len();
+        let is_array = matches!(value.kind, ExpressionKind::Array(_));
+        if wanted == 0 || is_array && wanted == 1 {
+            return Ok(picked(value.clone(), &bound.indices));
+        }
         let local = Local { impure: true, ..Local::default() };
         let whole = self.resolve(value, bound.context, &local)?;
-        Ok(self.types().rank_of(&whole))
-    }
-
-    /// A value for the elements of an array of components must be an array (MLS §7.2.5).
-    fn check_elements(&mut self, value: &Expression, bound: &Bound) -> Result<(), Diagnostic> {
-        let wanted = bound.indices.len();
-        if wanted == 0 {
-            return Ok(());
-        }
-        let Some(found) = self.rank_of_bound(value, bound)?.filter(|found| *found < wanted) else {
-            return Ok(());
+        let Some(found) = self.types().rank_of(&whole).filter(|found| *found < wanted) else {
+            return Ok(picked(value.clone(), &bound.indices));
         };
         let error = fault!(
             SIZE_MISMATCH,
@@ -187,11 +170,16 @@ impl Instantiation<'_> {
         if found > 0 || self.classes.library.is_strict() {
             return Err(error);
         }
-        let is_known = |one: &Diagnostic| one.code == SIZE_MISMATCH && one.span() == value.span;
+        self.warn_once(error);
+        Ok(value.clone())
+    }
+
+    /// A warning, unless the same was given at the same place.
+    pub fn warn_once(&mut self, error: Diagnostic) {
+        let is_known = |one: &Diagnostic| one.code == error.code && one.span() == error.span();
         if !self.warnings.iter().any(is_known) {
             self.warnings.push(error.warning());
         }
-        Ok(())
     }
 }
 

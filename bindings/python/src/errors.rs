@@ -30,7 +30,7 @@ pub(crate) struct Reported {
 }
 
 impl Reported {
-    /// A diagnostic, with the texts that it points into.
+    /// A diagnostic, with the sources that it points into.
     pub(crate) fn new(diagnostic: &Diagnostic, sources: &SourceMap) -> Reported {
         let span = diagnostic.span();
         let place = sources
@@ -87,8 +87,8 @@ pub(crate) fn reported(diagnostics: &[Diagnostic], sources: &SourceMap) -> Vec<R
 /// The exception for these diagnostics.
 pub(crate) fn raised(py: Python<'_>, reported: &[Reported]) -> PyErr {
     let errors = reported.iter().filter(|one| one.is_error());
-    let texts: Vec<&str> = errors.map(|one| one.text.trim_end()).collect();
-    let error = GapilibError::new_err(texts.join("\n"));
+    let shown: Vec<&str> = errors.map(|one| one.text.trim_end()).collect();
+    let error = GapilibError::new_err(shown.join("\n"));
     // Without its details the exception says all the same what is wrong.
     let _ = detailed(py, &error, reported);
     error

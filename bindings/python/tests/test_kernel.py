@@ -53,11 +53,6 @@ def test_help(notebook):
     assert "stopTime" in text(outputs)
 
 
-def test_cells_are_interrupted(notebook):
-    with pytest.raises(nbclient.exceptions.CellTimeoutError):
-        notebook("while true loop end while;", timeout=3, interrupt_on_timeout=False)
-
-
 def test_completion_and_completeness():
     class Quiet(kernel.GapilibKernel):
         def __init__(self):

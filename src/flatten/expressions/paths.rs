@@ -74,10 +74,7 @@ impl Instantiation<'_> {
     fn tolerate_protected(&mut self, access: Result<(), Diagnostic>) -> Result<(), Diagnostic> {
         match access {
             Err(error) if error.code == PROTECTED_ACCESS && !self.classes.library.is_strict() => {
-                let is_known = |one: &Diagnostic| one.span() == error.span();
-                if !self.warnings.iter().any(is_known) {
-                    self.warnings.push(error.warning());
-                }
+                self.warn_once(error);
                 Ok(())
             }
             access => access,
@@ -126,22 +123,23 @@ impl Instantiation<'_> {
         let (part, rest) = (&parts[0], &parts[1..]);
         let subscripts = self.subscripts(&part.subscripts, context, local)?;
         let is_constant = nodes.first().is_some_and(|node| self.classes.tree.in_package(*node));
-        if is_constant && subscripts.iter().any(|s| local.is_open(s)) {
-            // The index is known where the function is evaluated: it chooses among all.
-            let all = self.choose(dims, &[], part.name, whole.span)?;
-            let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
-            return Ok(subscripted(all, subscripts, whole.span));
-        }
-        let chosen = match self.choose(dims, &subscripts, part.name, whole.span) {
-            // The index varies: what the elements have of this name is chosen from.
-            Err(error) if error.code == NOT_CONSTANT && !rest.is_empty() && !local.values => {
-                let all = self.choose(dims, &[], part.name, whole.span)?;
-                let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
-                return Ok(subscripted(all, subscripts, whole.span));
-            }
-            chosen => chosen?,
+        // The index is known where the function is evaluated.
+        let is_open = is_constant && subscripts.iter().any(|s| local.is_open(s));
+        let chosen = match is_open {
+            true => None,
+            false => match self.choose(dims, &subscripts, part.name, whole.span) {
+                // The index varies.
+                Err(e) if e.code == NOT_CONSTANT && !rest.is_empty() && !local.values => None,
+                chosen => Some(chosen?),
+            },
         };
-        self.walk_array(&chosen, dims, nodes, rest, whole, context, local)
+        if let Some(chosen) = chosen {
+            return self.walk_array(&chosen, dims, nodes, rest, whole, context, local);
+        }
+        // It chooses among what all elements have of this name.
+        let all = self.choose(dims, &[], part.name, whole.span)?;
+        let all = self.walk_array(&all, dims, nodes, rest, whole, context, local)?;
+        Ok(subscripted(all, subscripts, whole.span))
     }
 
     /// The elements of an array of components that subscripts choose: for every dimension the

@@ -283,9 +283,7 @@ fn constraining(
         Some(constraint) => Modifier::of_arguments(&constraint.modification, context)?,
         None => Modifier::default(),
     };
-    let chain = std::iter::successors(redeclaration, |one| one.over.as_deref());
-    let chain: Vec<&Redeclaration> = chain.collect();
-    for one in chain.into_iter().rev() {
+    for one in redeclaration.into_iter().flat_map(Redeclaration::from_innermost) {
         let Replacement::Component(clause) = &one.replacement else { continue };
         let Some(constraint) = &clause.constraint else { continue };
         let more = Modifier::of_arguments(&constraint.modification, one.context)?;

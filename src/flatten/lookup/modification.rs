@@ -302,6 +302,12 @@ impl Modifier {
 }
 
 impl Redeclaration {
+    /// This redeclaration and those that it stands over, the innermost first.
+    pub fn from_innermost(&self) -> impl Iterator<Item = &Redeclaration> {
+        let chain = std::iter::successors(Some(self), |one| one.over.as_deref());
+        chain.collect::<Vec<_>>().into_iter().rev()
+    }
+
     /// A redeclaration of an element that nothing else modifies.
     pub fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
         Redeclaration { replacement, context, over: None, plain: Box::default() }

@@ -211,9 +211,7 @@ impl Classes<'_> {
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
         let mut defaults = self.constraining(&original, constraint.as_ref())?;
-        let chain = std::iter::successors(Some(&redeclaration), |one| one.over.as_deref());
-        let chain: Vec<&Redeclaration> = chain.collect();
-        for one in chain.into_iter().rev() {
+        for one in redeclaration.from_innermost() {
             if let Some(constraint) = self.constraint_of(one) {
                 let more = Modifier::of_arguments(&constraint.modification, one.context)?;
                 defaults = defaults.overridden_by(more, name)?;

@@ -36,14 +36,14 @@ class Line:
 
 
 def _is_watched() -> bool:
-    """Whether somebody looks at standard error: a terminal or a notebook."""
+    """Whether standard error is a terminal or shown in a notebook."""
     if "ipykernel" in sys.modules:
         return True
     return bool(sys.stderr) and sys.stderr.isatty()
 
 
 def shown(progress: Progress):
-    """What is called with the progress, if anything is: `None` decides by whether somebody looks."""
+    """What is called with the progress, if anything is: `None` for a line on a terminal and in a notebook."""
     if progress is None:
         progress = _is_watched()
     if progress is True:

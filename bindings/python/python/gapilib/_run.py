@@ -12,7 +12,7 @@ def run(script: Union[str, "os.PathLike[str]"], *, progress: _progress.Progress 
     Results go into `out`, by default a folder for each script in `results`. Further options: `overwrite`,
     `resume` (go on after an interruption), `libraries`, `threads`, `allow_read`, `allow_write`,
     `allow_system`, `allow_external`, `cache`. `progress` is a function of label, done, total and best;
-    None shows a line where somebody looks.
+    None shows a line on a terminal and in a notebook.
 
     Raises `GapilibError` for errors that the script has not asked for, `KeyboardInterrupt` when
     interrupted: what was computed is saved.
