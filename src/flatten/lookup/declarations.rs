@@ -283,7 +283,7 @@ fn constraining(
         Some(constraint) => Modifier::of_arguments(&constraint.modification, context)?,
         None => Modifier::default(),
     };
-    for one in redeclaration.into_iter().flat_map(Redeclaration::from_innermost) {
+    for one in redeclaration.into_iter().flat_map(Redeclaration::innermost_first) {
         let Replacement::Component(clause) = &one.replacement else { continue };
         let Some(constraint) = &clause.constraint else { continue };
         let more = Modifier::of_arguments(&constraint.modification, one.context)?;

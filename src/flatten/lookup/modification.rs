@@ -303,7 +303,7 @@ impl Modifier {
 
 impl Redeclaration {
     /// This redeclaration and those that it stands over, the innermost first.
-    pub fn from_innermost(&self) -> impl Iterator<Item = &Redeclaration> {
+    pub fn innermost_first(&self) -> impl Iterator<Item = &Redeclaration> {
         let chain = std::iter::successors(Some(self), |one| one.over.as_deref());
         chain.collect::<Vec<_>>().into_iter().rev()
     }

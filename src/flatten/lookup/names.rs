@@ -211,7 +211,7 @@ impl Classes<'_> {
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
         let mut defaults = self.constraining(&original, constraint.as_ref())?;
-        for one in redeclaration.from_innermost() {
+        for one in redeclaration.innermost_first() {
             if let Some(constraint) = self.constraint_of(one) {
                 let more = Modifier::of_arguments(&constraint.modification, one.context)?;
                 defaults = defaults.overridden_by(more, name)?;
