@@ -88,6 +88,11 @@ pub trait Outside {
         Err(refused("to print"))
     }
 
+    /// Takes a line that a function in C writes besides its results.
+    fn log(&mut self, text: &str) -> Result<(), Fault> {
+        self.print(text)
+    }
+
     /// Whether a path is a file (`Some(false)`) or a folder (`Some(true)`), if it exists.
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         Err(refused(&format!("to check whether `{path}` exists")))

@@ -64,6 +64,11 @@ impl Outside for Resources {
         self.provider(path)?.read(path)
     }
 
+    /// Dropped: what is called at translation says it again when the simulation starts.
+    fn log(&mut self, _: &str) -> Result<(), Fault> {
+        Ok(())
+    }
+
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         Ok(self.provider(path)?.is_folder(path))
     }

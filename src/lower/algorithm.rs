@@ -21,10 +21,11 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
-use crate::symbolic::{Expr, VarId};
+use crate::symbolic::{Expr, VarId, substitute};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
+use rustc_hash::FxHashMap;
 
 /// How a sequence of statements ended: whether a loop was left, as a condition.
 type Broken = Expr;
@@ -87,7 +88,7 @@ impl Builder<'_> {
                 help: "assign it in one algorithm or one when-clause")
             .at(equation.span));
         }
-        if !in_when && self.varies(equation.right) {
+        if !in_when && self.varies(equation.right) && self.varies_between_events(equation.right) {
             return Err(fault!(NOT_DISCRETE,
                 "`{name}` is discrete, but its value can change between events";
                 help: "do not use relations inside `noEvent` or inside functions")
@@ -95,6 +96,20 @@ impl Builder<'_> {
         }
         self.dae.events.equations.push(equation);
         Ok(())
+    }
+
+    /// Whether an expression varies even where no when-clause acts: between events `pre(v)` is `v`.
+    fn varies_between_events(&mut self, e: Expr) -> bool {
+        let initial = self.initial_signal();
+        let initial = self.dae.pool.as_variable(initial);
+        let zero = self.dae.pool.constant(0.0);
+        let mut now = FxHashMap::default();
+        for (of, previous) in &self.scalars.previous {
+            now.insert(*previous, self.dae.pool.variable(*of));
+        }
+        now.extend(initial.map(|variable| (variable, zero)));
+        let between = substitute(&mut self.dae.pool, e, &|v| now.get(&v).copied());
+        self.varies(between)
     }
 
     pub(super) fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {

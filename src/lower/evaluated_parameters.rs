@@ -83,7 +83,7 @@ impl Builder<'_> {
     }
 
     /// The flat variable that a scalar is an element of: the last that does not begin behind it.
-    fn flat_position(&self, variable: VarId) -> Option<usize> {
+    pub(super) fn flat_position(&self, variable: VarId) -> Option<usize> {
         self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
     }
 }

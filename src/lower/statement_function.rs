@@ -5,8 +5,8 @@
 use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::execution::Loops;
-use super::expressions::{Lowered, Lowering, Target};
-use super::function::compiled_call;
+use super::expressions::{Array, Lowered, Lowering, Target};
+use super::function::call_of_any_size;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -17,7 +17,9 @@ use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
     StatementKind, Subscript,
 };
-use crate::syntax::visit::{Rewrite, Visit, rewrite_reference, walk_expression, walk_statement};
+use crate::syntax::visit::{
+    Rewrite, Visit, rewrite_expression, rewrite_reference, walk_expression, walk_statement,
+};
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
@@ -53,10 +55,13 @@ impl Builder<'_> {
             inputs.push(component(*name, ValueType::Real, &[], None, s.span));
             arguments.push(Lowered::scalar(*value));
         }
-        for (path, name) in &known {
+        for (Read { path, is_previous }, name) in &known {
             let value_type = self.value_type(path).unwrap_or(ValueType::Real);
             let reference = reference_to(Ident::new(path), s.span);
-            let value = Target::reference(self, path, &reference)?;
+            let mut value = Target::reference(self, path, &reference)?;
+            if *is_previous {
+                value = self.previous_values(path, &reference)?;
+            }
             let Lowered::Array(array) = &value else {
                 return Err(fault!(NOT_SUPPORTED, "`{path}` in this kind of statement").at(s.span));
             };
@@ -73,12 +78,33 @@ impl Builder<'_> {
             arguments.push(value);
         }
         let function = self.function_of(statement, inputs, outputs);
-        let results = compiled_call(self, &function, arguments, s.span)?;
+        let results = call_of_any_size(self, &function, arguments, s.span)?;
         let paths = known.iter().filter(|(_, name)| assigned.contains(*name));
-        for ((path, _), result) in paths.zip(results) {
-            self.assign_results(path, &result);
+        for ((read, _), result) in paths.zip(results) {
+            self.assign_results(&read.path, &result);
         }
         Ok(())
+    }
+
+    /// `pre(v)`, element by element.
+    fn previous_values(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        self.execution.raw += 1;
+        let own = Target::reference(self, path, reference);
+        self.execution.raw -= 1;
+        match own? {
+            Lowered::Array(Array { dims, elements }) => {
+                let before = elements.into_iter().map(|e| self.previous(e, reference.span));
+                Ok(Lowered::Array(Array { dims, elements: before.collect::<Result<_, _>>()? }))
+            }
+            _ => {
+                Err(fault!(NOT_SUPPORTED, "`pre({path})` in this kind of statement")
+                    .at(reference.span))
+            }
+        }
     }
 
     fn function_of(
@@ -126,13 +152,21 @@ struct Naming<'s, 'b> {
     loops: &'s Loops,
     /// Loop variables of the statement.
     own: FxHashSet<Ident>,
-    /// The new names of variables, by their paths.
-    known: IndexMap<String, Ident>,
+    /// The new names of what is read.
+    known: IndexMap<Read, Ident>,
     failure: Option<Diagnostic>,
 }
 
-impl Rewrite for Naming<'_, '_> {
-    fn reference(&mut self, reference: &mut ComponentReference) {
+/// A variable of the model that a statement reads or assigns.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct Read {
+    path: String,
+    /// Whether it is read by `pre`.
+    is_previous: bool,
+}
+
+impl Naming<'_, '_> {
+    fn rename(&mut self, reference: &mut ComponentReference, is_previous: bool) {
         rewrite_reference(self, reference);
         let is_loop = |name: Ident| {
             self.own.contains(&name) || self.loops.iter().any(|(known, _)| *known == name)
@@ -153,9 +187,39 @@ impl Rewrite for Naming<'_, '_> {
             return;
         }
         let number = self.known.len() + 1;
-        let name = *self.known.entry(path).or_insert_with(|| Ident::new(&format!("v {number}")));
+        let read = Read { path, is_previous };
+        let name = *self.known.entry(read).or_insert_with(|| Ident::new(&format!("v {number}")));
         let subscripts = reference.parts.pop().map_or(Vec::new(), |part| part.subscripts);
         reference.parts = vec![ReferencePart { name, subscripts }];
+    }
+}
+
+impl Rewrite for Naming<'_, '_> {
+    fn expression(&mut self, expression: &mut Expression) {
+        match read_by_pre(expression) {
+            Some(mut reference) => {
+                self.rename(&mut reference, true);
+                expression.kind = ExpressionKind::Reference(reference);
+            }
+            None => rewrite_expression(self, expression),
+        }
+    }
+
+    fn reference(&mut self, reference: &mut ComponentReference) {
+        self.rename(reference, false);
+    }
+}
+
+/// What `pre(v)` reads.
+fn read_by_pre(expression: &Expression) -> Option<ComponentReference> {
+    let ExpressionKind::Call { function, arguments } = &expression.kind else { return None };
+    match (function.as_ident(), arguments.positional.as_slice()) {
+        (Some(name), [Expression { kind: ExpressionKind::Reference(reference), .. }])
+            if name == "pre" =>
+        {
+            Some(reference.clone())
+        }
+        _ => None,
     }
 }
 

@@ -198,6 +198,12 @@ impl Target for Builder<'_> {
         Ok(Some(self.scalar_now(self.scalars.first[number].0 + position as u32)))
     }
 
+    fn constructor_of(&self, object: Expr) -> Option<Expression> {
+        let variable = self.dae.pool.as_variable(object)?;
+        let at = self.flat_position(variable)?;
+        self.flat.variables.get_index(at)?.1.binding.clone()
+    }
+
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
         let bare = Name { global: false, parts: name.parts.clone() };
         self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()

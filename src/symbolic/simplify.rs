@@ -188,8 +188,14 @@ impl Pool {
             (Some(_), _) => b,
             (_, Some(_)) => a,
             _ if a == b => a,
+            _ if self.is_not(a, b) || self.is_not(b, a) => self.constant(0.0),
             _ => self.intern_commutative(Node::And, a, b),
         }
+    }
+
+    /// Whether `a` is `not b`.
+    fn is_not(&self, a: Expr, b: Expr) -> bool {
+        matches!(*self.node(a), Node::Not(of) if of == b)
     }
 
     /// `a or b`

@@ -256,3 +256,12 @@ fn the_cache_is_safe_against_damage() {
     assert_eq!(run(), first);
     assert_eq!(std::fs::read(&known[0]).expect("an object").len(), whole.len());
 }
+
+#[test]
+fn strings_of_objects_are_known_at_translation() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let values = last_values("StringsOfObjects", &[]);
+    assert_eq!(value(&values, "y"), 4.0 + 6.0);
+}

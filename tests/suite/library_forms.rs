@@ -525,3 +525,78 @@ fn elements_of_arrays_of_components_are_chosen_at_events() {
         Real x = r[stage].k + 10*s[stage].y; end M;";
     assert_eq!(both_ends(text), [1.0, 12.0]);
 }
+
+#[test]
+fn slices_in_algorithms_have_sizes_of_run_time() {
+    let text = "model M parameter Real p[4] = {1, 2, 4, 8}; \
+        Boolean on[4] = {time > 0.1, time > 0.9, time > 0.3, time > 2}; \
+        Integer list[4](each start = 0, each fixed = true); Integer n(start = 0, fixed = true); \
+        discrete Real s(start = 0, fixed = true); discrete Real part[4](each start = 0, \
+        each fixed = true); Real x = s + 100*sum(part); \
+        algorithm when sample(0.2, 0.3) then n := 0; list := zeros(4); for i in 1:4 loop \
+        if on[i] then n := n + 1; list[n] := i; end if; end for; s := sum(p[list[1:n]]); \
+        part := zeros(4); if n > 1 then part[2:n] := fill(1/n, n - 1); end if; end when; end M;";
+    // At t = 0.8 the first and the third are on.
+    assert_eq!(at_end(text), 1.0 + 4.0 + 100.0 * 0.5);
+}
+
+#[test]
+fn functions_cut_arrays_at_computed_places() {
+    let text = "function without input Real v[:]; input Integer at; \
+        output Real rest[size(v, 1) - 1]; protected Integer n; algorithm n := size(v, 1); \
+        rest[1:at - 1] := v[1:at - 1]; rest[at:n - 1] := v[at + 1:n]; end without; \
+        model M Integer at = integer(2*time) + 1; Real y[3] = without({1, 2, 4, 8}, at); \
+        Real x = y[1] + 10*y[2] + 100*y[3]; end M;";
+    assert_eq!(both_ends(text), [2.0 + 40.0 + 800.0, 1.0 + 20.0 + 800.0]);
+}
+
+#[test]
+fn a_computed_size_that_does_not_fit_is_a_fault() {
+    let text = "function cut input Real v[:]; input Integer n; output Real s; \
+        algorithm s := 0; for i in 1:2 loop s := s + sum(v[1:n + i]); end for; end cut; \
+        model M Integer n = integer(8*time); Real x = cut({1, 2, 4}, n); end M;";
+    let flat = flattened(text).model;
+    let program = Program::compile(causalize(&flat).expect("it can be sorted"));
+    let mut system = program.expect("it compiles").system();
+    let to_one = Settings { stop: 1.0, ..Settings::default() };
+    let failed = simulate(&mut system, &to_one).expect_err("five elements of three");
+    assert!(format!("{failed:?}").contains("Assertion"), "{failed:?}");
+}
+
+#[test]
+fn recursive_functions_count_their_depth() {
+    // The depth is a number in the first call; the sizes depend on another number.
+    let text = "function best input Integer depth; input Integer n; input Real v[:]; \
+        input Boolean used[:]; output Boolean chosen[n]; output Real sum; \
+        protected Boolean other[n]; Real more; algorithm chosen := used; sum := 0; \
+        if depth <= n then (other, more) := best(depth + 1, n, v, used, limit = 0); \
+        chosen := other; chosen[depth] := v[depth] > time_of(v); \
+        sum := more + (if chosen[depth] then v[depth] else 0); end if; end best; \
+        function time_of input Real v[:]; output Real t; algorithm t := v[1]; end time_of; \
+        model M Boolean chosen[3]; Real x; equation \
+        (chosen, x) = best(1, 3, {time, 2*time, 3*time}, {false, false, false}); end M;"
+        .replace(", limit = 0", "");
+    assert_eq!(at_end(&text), 5.0);
+}
+
+#[test]
+fn what_a_when_clause_assigns_is_discrete_behind_it_too() {
+    let text = "function positive input Real u; output Boolean y; algorithm y := u > 0; \
+        end positive; block Choice input Real t; output Boolean done; Boolean inner_; \
+        Boolean tick = time > 0.5; algorithm inner_ := false; when tick then \
+        inner_ := positive(t); end when; done := inner_ and tick; end Choice; \
+        model M Real s(start = 1, fixed = true); Choice c(t = s); \
+        discrete Real x(start = 0, fixed = true); equation der(s) = 1; \
+        when c.done then x = time; end when; end M;";
+    assert!((at_end(text) - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn loops_with_computed_ends_read_previous_values() {
+    let text = "model M Integer n(start = 0, fixed = true); \
+        discrete Real x(start = 1, fixed = true); \
+        algorithm when sample(0.25, 0.25) then n := pre(n) + 1; x := 0; \
+        for i in 1:n loop x := x + i*pre(x); end for; end when; end M;";
+    // 1·1, then 1·(1 + 2), then 3·(1 + 2 + 3), then 18·(1 + 2 + 3 + 4).
+    assert_eq!(at_end(text), 180.0);
+}

@@ -29,7 +29,7 @@ impl CFunction {
         let mut frame = Frame::of(&self.declaration, call)?;
         let done = self.library.invoke(self.number, &mut frame);
         for line in frame.log.lines() {
-            call.outside.print(line)?;
+            call.outside.log(line)?;
         }
         done.map_err(|message| {
             let function = &self.declaration.function;

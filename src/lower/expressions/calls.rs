@@ -68,7 +68,7 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// The values of the inputs: arguments by position, by name, or defaults.
-    fn inputs(
+    pub(super) fn inputs(
         &mut self,
         user: &Function,
         arguments: &Arguments,

@@ -142,6 +142,11 @@ pub(crate) trait Target {
         let _ = (path, position);
         Ok(None)
     }
+    /// What an external object is made by.
+    fn constructor_of(&self, object: Self::Scalar) -> Option<Expression> {
+        let _ = object;
+        None
+    }
     /// A variable of the function being compiled; `None` where no function is.
     fn own_variable(&self, name: Ident) -> Option<&Lowered<Self::Scalar>> {
         let _ = name;

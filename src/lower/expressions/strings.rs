@@ -210,6 +210,9 @@ impl<T: Target> Lowering<'_, T> {
             }
             Lowered::Record(fields) => self.known_record(fields, wanted, settle),
             Lowered::Numbered(_) => None,
+            Lowered::Array(array) if matches!(wanted, ValueType::ExternalObject(_)) => {
+                self.known_object(array)
+            }
             Lowered::Array(array) => {
                 let mut values = Vec::with_capacity(array.elements.len());
                 for element in &array.elements {
@@ -226,6 +229,24 @@ impl<T: Target> Lowering<'_, T> {
                 }
             }
         }
+    }
+
+    /// An external object, made now by the constructor that the variable is bound to.
+    fn known_object(&mut self, array: &Array<T::Scalar>) -> Option<Value> {
+        let ([object], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
+            return None;
+        };
+        let binding = self.target.constructor_of(*object)?;
+        let ExpressionKind::Call { function, arguments } = &binding.kind else { return None };
+        let constructor = self.target.function(&function.name())?;
+        let given = self.inputs(&constructor, arguments, binding.span).ok()?;
+        let mut values = Vec::with_capacity(given.len());
+        for (input, argument) in constructor.inputs.iter().zip(&given) {
+            values.push(self.known_argument(argument, input, true)?);
+        }
+        let mut host = Compiling { target: &*self.target, resources: self.target.resources() };
+        let made = eval::call_function(&constructor, values.into(), binding.span, &mut host);
+        made.ok()?.into_iter().next()
     }
 
     fn known_record(

@@ -11,6 +11,7 @@ use crate::external::{self, Kind, Slot};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::expressions::{Lowered, Lowering};
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::syntax::ast;
 
 impl Body<'_, '_> {
@@ -95,11 +96,22 @@ impl Body<'_, '_> {
             Lowered::Record(_) => {
                 Err(fault!(NOT_SUPPORTED, "a record as argument of an external function").at(span))
             }
-            Lowered::Texts(_) => Err(fault!(
-                NOT_SUPPORTED,
-                "an array of Strings as argument of an external function"
-            )
-            .at(span)),
+            Lowered::Texts(texts) => {
+                if texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "Strings that are not known at translation, as argument of an external \
+                         function"
+                    )
+                    .at(span));
+                }
+                // They stand in a row.
+                let positions: Vec<u32> =
+                    texts.texts.iter().map(|text| self.emitter.text(text.clone())).collect();
+                let first = positions.first().copied().unwrap_or(0);
+                let dims = texts.dims.iter().map(|size| *size as u32).collect();
+                Ok(Slot { kind: Kind::Text, first, dims })
+            }
             Lowered::Numbered(_) => Err(fault!(
                 NOT_SUPPORTED,
                 "a String that changes during the simulation, as argument of an external function"

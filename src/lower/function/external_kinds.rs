@@ -13,10 +13,12 @@ pub(super) fn external_name(function: &Function, clause: &ast::External) -> Stri
 pub(super) fn refusal(function: &Function) -> Option<String> {
     let FunctionBody::External(clause) = &function.body else { return None };
     let name = external_name(function, clause);
-    if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
-        return Some(format!("is the external function `{name}`, which takes arrays of Strings"));
-    }
+    let takes_texts =
+        |i: &FunctionComponent| i.value_type == ValueType::String && !i.dims.is_empty();
     match c_function::in_rust(function, clause) {
+        Some(_) if function.inputs.iter().any(takes_texts) => {
+            Some(format!("is the external function `{name}`, which takes arrays of Strings"))
+        }
         None if c_function::brings_code(clause) => None,
         None => Some(format!(
             "is the external function `{name}`, which this program does not implement"

@@ -15,6 +15,8 @@ use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::text_array::Texts;
 use crate::name::{Ident, Name};
 use crate::source::Span;
+use crate::syntax::ast::{ComponentReference, Subscript};
+use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
 use std::cell::Cell;
@@ -36,6 +38,8 @@ const MAX_FOLDED: u64 = 25;
 struct Signature {
     name: Name,
     arguments: Vec<Argument>,
+    /// Whether computed Integers may decide sizes in statements.
+    at_run_time: bool,
 }
 
 /// What is known of an argument.
@@ -118,6 +122,8 @@ pub(crate) struct Instances {
     instructions: usize,
     /// Whether a statement is at hand that may write.
     pub(crate) may_write: bool,
+    /// Whether statements are compiled size by size where a computed Integer decides.
+    pub(super) sizes_at_run_time: bool,
 }
 
 impl Instances {
@@ -134,18 +140,16 @@ impl Instances {
         arguments: &[Lowered<Option<f64>>],
         span: Span,
     ) -> Result<Instance, Diagnostic> {
-        let general = signature(function, arguments, false, span)?;
-        let found = match self.compiled(flat, function, general, span) {
-            Err(e) if e.code == NO_CONSTANT_VALUE => {
-                let special = signature(function, arguments, true, span)?;
-                if special.arguments.iter().any(Argument::has_known) {
-                    self.compiled(flat, function, special, span)
-                } else {
-                    Err(e)
-                }
-            }
-            result => result,
-        }?;
+        let at_run_time = std::mem::replace(&mut self.sizes_at_run_time, false);
+        let mut found = self.general_or_special(flat, function, arguments, span);
+        self.sizes_at_run_time = at_run_time;
+        if at_run_time
+            && let Err(e) = &found
+            && [NO_CONSTANT_VALUE, NOT_SUPPORTED].contains(&e.code)
+        {
+            found = self.general_or_special(flat, function, arguments, span);
+        }
+        let found = found?;
         if found.writes && !self.may_write && self.depth == 0 {
             return Err(fault!(NOT_SUPPORTED, "the function `{}` writes output, so its value \
                 cannot be used",
@@ -154,6 +158,35 @@ impl Instances {
             .at(span));
         }
         Ok(found)
+    }
+
+    /// A function for any values of its arguments, or else for those that are known.
+    fn general_or_special(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Option<f64>>],
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        let at_run_time = self.sizes_at_run_time;
+        let mut first_error = None;
+        let mut before = None;
+        // The fewer values are built in, the more calls share the code: a recursive function that
+        // counts its depth must not be compiled for each.
+        for known in [ByValue::Nothing, ByValue::DeclaredSizes, ByValue::Everything] {
+            let signature =
+                Signature { at_run_time, ..signature(function, arguments, known, span)? };
+            if before.as_ref() == Some(&signature) {
+                continue;
+            }
+            match self.compiled(flat, function, signature.clone(), span) {
+                Err(e) if e.code == NO_CONSTANT_VALUE => first_error.get_or_insert(e),
+                result => return result,
+            };
+            before = Some(signature);
+        }
+        let unknown = || fault!(NO_CONSTANT_VALUE, "a size is not known").at(span);
+        Err(first_error.unwrap_or_else(unknown))
     }
 
     fn compiled(
@@ -335,13 +368,45 @@ impl Instance {
     }
 }
 
+/// Which known arguments are built into the code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ByValue {
+    Nothing,
+    /// Those that occur in declared sizes.
+    DeclaredSizes,
+    Everything,
+}
+
+/// The names in the sizes of the outputs and local variables of a function.
+fn names_in_sizes(function: &Function) -> FxHashSet<Ident> {
+    struct Names(FxHashSet<Ident>);
+    impl Visit for Names {
+        fn reference(&mut self, reference: &ComponentReference) {
+            self.0.extend(reference.parts.first().map(|part| part.name));
+        }
+    }
+    let mut names = Names(FxHashSet::default());
+    for component in function.outputs.iter().chain(&function.locals) {
+        for dim in &component.dims {
+            if let Subscript::Index(size) = dim {
+                names.expression(size);
+            }
+        }
+    }
+    names.0
+}
+
 fn signature(
     function: &Function,
     arguments: &[Lowered<Option<f64>>],
-    with_values: bool,
+    by_value: ByValue,
     span: Span,
 ) -> Result<Signature, Diagnostic> {
     let mut list = Vec::with_capacity(arguments.len());
+    let sizes = match by_value {
+        ByValue::DeclaredSizes => names_in_sizes(function),
+        ByValue::Nothing | ByValue::Everything => FxHashSet::default(),
+    };
     for (input, argument) in function.inputs.iter().zip(arguments) {
         // Algorithms refuse to decide by it themselves.
         if let Lowered::Text(text) = argument
@@ -356,6 +421,7 @@ fn signature(
             )
             .at(span));
         }
+        let with_values = by_value == ByValue::Everything || sizes.contains(&input.name);
         let known = known_of(&input.value_type, argument, with_values).ok_or_else(|| {
             fault!(
                 NOT_SUPPORTED,
@@ -367,7 +433,7 @@ fn signature(
         })?;
         list.push(known);
     }
-    Ok(Signature { name: function.name.clone(), arguments: list })
+    Ok(Signature { name: function.name.clone(), arguments: list, at_run_time: false })
 }
 
 /// What is known of an argument; `None` if it is or holds a text that changes.

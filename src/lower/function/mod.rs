@@ -19,6 +19,7 @@ mod place;
 mod printing;
 mod repeated;
 mod results;
+mod run_time_sizes;
 mod single_assignment;
 mod statements;
 mod target;
@@ -100,6 +101,9 @@ fn inlined_or_compiled(
     {
         result = dispatched;
     }
+    if matches!(&result, Err(e) if [NO_CONSTANT_VALUE, NOT_SUPPORTED].contains(&e.code)) {
+        result = call_of_any_size(builder, function, arguments.clone(), span);
+    }
     match result {
         // What does not fit may stand in a branch that is never taken.
         Err(_) if error.code == ARRAY_MISMATCH => Err(error),
@@ -149,6 +153,19 @@ fn settle_whole(builder: &mut Builder<'_>, wanted: &ValueType, value: &mut Lower
         any = true;
     }
     any
+}
+
+/// As [`compiled_call`], with sizes in statements that computed Integers decide.
+pub(super) fn call_of_any_size(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let outer = std::mem::replace(&mut builder.calls.functions.sizes_at_run_time, true);
+    let result = compiled_call(builder, function, arguments, span);
+    builder.calls.functions.sizes_at_run_time = outer;
+    result
 }
 
 /// Expressions that call the code of a function.

@@ -32,11 +32,15 @@ pub(super) struct Body<'a, 'f> {
     /// Jumps of if-expressions being written, innermost last.
     pub(super) branches: Vec<usize>,
     /// `break` of every loop being written, innermost last.
-    breaks: Vec<Vec<usize>>,
-    returns: Vec<usize>,
+    pub(super) breaks: Vec<Vec<usize>>,
+    pub(super) returns: Vec<usize>,
     pub(super) n_inputs: u32,
     /// Variables that are assigned once, whatever happens.
-    known_once: Vec<Ident>,
+    pub(super) known_once: Vec<Ident>,
+    /// Integers that have a number in the branch being written.
+    pub(super) bound_integers: usize,
+    /// Whether loop variables may decide sizes in loops that cannot be unrolled.
+    pub(super) loop_sizes: bool,
 }
 
 /// Loop variables, innermost last.
@@ -59,6 +63,8 @@ impl<'a, 'f> Body<'a, 'f> {
             returns: Vec::new(),
             n_inputs: 0,
             known_once: Vec::new(),
+            bound_integers: 0,
+            loop_sizes: false,
         }
     }
 
@@ -138,13 +144,13 @@ impl<'a, 'f> Body<'a, 'f> {
             }
             self.emitter.place(statement.span);
             self.emitter.open();
-            self.statement(statement, loops)?;
+            self.statement_of_any_size(statement, loops)?;
             self.emitter.close();
         }
         Ok(())
     }
 
-    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<(), Diagnostic> {
+    pub(super) fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<(), Diagnostic> {
         match &s.kind {
             StatementKind::Assign { target, value } => {
                 let value = self.lowering(loops).lower(value)?;
@@ -291,7 +297,8 @@ impl<'a, 'f> Body<'a, 'f> {
         }
     }
 
-    /// As a loop; unrolled if the body needs sizes that change from turn to turn.
+    /// As a loop; unrolled if the body needs sizes that change from turn to turn; where that is not
+    /// possible either, the statements with such sizes are written size by size.
     fn for_loop(
         &mut self,
         indices: &[ForIndex],
@@ -301,23 +308,24 @@ impl<'a, 'f> Body<'a, 'f> {
         let Some((index, inner)) = indices.split_first() else {
             return self.statements(body, loops);
         };
-        let before = self.emitter.checkpoint();
-        let jumps = (self.branches.len(), self.breaks.len(), self.returns.len());
-        let outer_breaks: Vec<usize> = self.breaks.iter().map(Vec::len).collect();
-        match self.counted(index, inner, body, loops) {
-            Err(e) if e.code == NO_CONSTANT_VALUE => {
-                self.emitter.rollback(before);
-                self.branches.truncate(jumps.0);
-                self.breaks.truncate(jumps.1);
-                self.returns.truncate(jumps.2);
-                for (breaks, n) in self.breaks.iter_mut().zip(outer_breaks) {
-                    breaks.truncate(n);
-                }
-                self.unrolled(index, inner, body, loops)
-                    .map_err(|again| if again.code == NO_CONSTANT_VALUE { e } else { again })
-            }
-            result => result,
+        let mark = self.mark();
+        let error = match self.counted(index, inner, body, loops) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => e,
+            result => return result,
+        };
+        self.restore(&mark);
+        match self.unrolled(index, inner, body, loops) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => {}
+            result => return result,
         }
+        if !self.instances.sizes_at_run_time || self.loop_sizes {
+            return Err(error);
+        }
+        self.restore(&mark);
+        self.loop_sizes = true;
+        let result = self.counted(index, inner, body, loops);
+        self.loop_sizes = false;
+        result
     }
 
     fn unrolled(

@@ -100,7 +100,12 @@ fn missing(name: &str) -> Fault {
 
 impl Provide for ModelFiles {
     fn path(&self, name: &str) -> Result<String, Fault> {
-        Ok(self.found(name)?.display().to_string())
+        let mut path = self.found(name)?.display().to_string();
+        // Libraries append names of files to a folder that they name with a slash at its end.
+        if name.ends_with('/') && !path.ends_with('/') {
+            path.push('/');
+        }
+        Ok(path)
     }
 
     fn read(&self, name: &str) -> Result<Vec<u8>, Fault> {

@@ -112,6 +112,29 @@ package Foreign "Functions in C beside a library"
         IncludeDirectory = "modelica://Foreign/Resources/C-Sources");
   end next;
 
+  class Names "An object made of Strings"
+    extends ExternalObject;
+
+    function constructor
+      input String all[:];
+      output Names names;
+      external "C" names = names_new(all, size(all, 1))
+        annotation(Include = "#include \"names.c\"");
+    end constructor;
+
+    function destructor
+      input Names names;
+      external "C" names_free(names) annotation(Include = "#include \"names.c\"");
+    end destructor;
+  end Names;
+
+  function name "A String of an object"
+    input Names names;
+    input Integer at;
+    output String text;
+    external "C" text = names_get(names, at) annotation(Include = "#include \"names.c\"");
+  end name;
+
   impure function alive "How many counters were not freed yet"
     output Integer n;
     external "C" n = counters_alive()
@@ -161,6 +184,15 @@ package Foreign "Functions in C beside a library"
         end if;
       end when;
     end Counters;
+
+    model StringsOfObjects
+      parameter String all[2] = {"12.5", "4"};
+      parameter Names names = Names(all);
+      parameter Real second = Modelica.Utilities.Strings.scanReal(name(names, 2));
+      parameter String joined = name(names, 1) + "/" + name(names, 2);
+      parameter Integer n = Modelica.Utilities.Strings.length(joined);
+      Real y = second*time + n;
+    end StringsOfObjects;
 
     model Fails
       Real y = root(0.5 - time);

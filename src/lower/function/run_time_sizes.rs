@@ -1,0 +1,247 @@
+//! Sizes inside a statement of a function that a computed Integer decides: `s := sum(p[1:n])`.
+//!
+//! The statement is compiled for every value that the Integer can have beside the arrays of the
+//! statement, and the values become a chain of branches. Another value is a fault at run time. This
+//! is the last resort: constants, loops that are unrolled and calls compiled for known arguments
+//! come first, as their code is shorter.
+
+use super::emitter::{Checkpoint, Operand};
+use super::statements::{Body, Loops};
+use crate::bytecode::Instruction;
+use crate::diag::Diagnostic;
+use crate::eval::ValueType;
+use crate::lower::errors::NO_CONSTANT_VALUE;
+use crate::lower::expressions::{Lowered, Target as _};
+use crate::name::Ident;
+use crate::symbolic::RelationOperator;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, Statement, StatementKind,
+};
+use crate::syntax::visit::{Visit, walk_expression, walk_reference};
+
+/// The largest dimension of arrays for which a statement is compiled size by size.
+const MOST: usize = 64;
+/// Integers that decide sizes of one statement: `y[i:j] := x[k:k + j - i]` has three.
+const MAX_INTEGERS: usize = 3;
+
+/// A state of a function being compiled to go back to.
+pub(super) struct Mark {
+    emitter: Checkpoint,
+    branches: usize,
+    breaks: Vec<usize>,
+    returns: usize,
+}
+
+impl Body<'_, '_> {
+    /// Where the code is now.
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            emitter: self.emitter.checkpoint(),
+            branches: self.branches.len(),
+            breaks: self.breaks.iter().map(Vec::len).collect(),
+            returns: self.returns.len(),
+        }
+    }
+
+    /// Forgets the code since a mark, and its jumps.
+    pub(super) fn restore(&mut self, mark: &Mark) {
+        self.emitter.rollback(mark.emitter);
+        self.branches.truncate(mark.branches);
+        self.breaks.truncate(mark.breaks.len());
+        self.returns.truncate(mark.returns);
+        for (breaks, n) in self.breaks.iter_mut().zip(&mark.breaks) {
+            breaks.truncate(*n);
+        }
+    }
+
+    /// A statement, some sizes in which may be known only at run time.
+    pub(super) fn statement_of_any_size(
+        &mut self,
+        s: &Statement,
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let mark = self.mark();
+        match self.statement(s, loops) {
+            Err(e) if e.code == NO_CONSTANT_VALUE && self.instances.sizes_at_run_time => {
+                self.restore(&mark);
+                self.size_by_size(s, loops, e)
+            }
+            result => result,
+        }
+    }
+
+    /// The statement for each value of the first Integer that makes its sizes known, perhaps with
+    /// others.
+    fn size_by_size(
+        &mut self,
+        s: &Statement,
+        loops: &mut Loops,
+        error: Diagnostic,
+    ) -> Result<(), Diagnostic> {
+        let is_simple = matches!(
+            s.kind,
+            StatementKind::Assign { .. }
+                | StatementKind::MultiAssign { .. }
+                | StatementKind::Call(_)
+        );
+        if !is_simple || self.bound_integers >= MAX_INTEGERS {
+            return Err(error);
+        }
+        let largest = self.largest_dimension(s);
+        if largest > MOST {
+            return Err(error);
+        }
+        // What is known in one branch is not known behind it.
+        let known_once = std::mem::take(&mut self.known_once);
+        self.bound_integers += 1;
+        let mut result = Err(error);
+        for name in self.deciding_integers(s, loops) {
+            let mark = self.mark();
+            result = self.branch_by_branch(s, loops, name, largest + 1);
+            match &result {
+                Err(e) if e.code == NO_CONSTANT_VALUE => self.restore(&mark),
+                _ => break,
+            }
+        }
+        self.bound_integers -= 1;
+        self.known_once = known_once;
+        result
+    }
+
+    /// `if n == 0 then s(0) elseif n == 1 then s(1) …`, another value being a fault.
+    fn branch_by_branch(
+        &mut self,
+        s: &Statement,
+        loops: &mut Loops,
+        name: Ident,
+        largest: usize,
+    ) -> Result<(), Diagnostic> {
+        let Some(integer) = self.integer(name, loops) else { return Ok(()) };
+        let (mut ends, mut refused, mut n_possible) = (Vec::new(), None, 0);
+        for number in 0..=largest {
+            let mark = self.mark();
+            let value = Operand::Constant(number as f64);
+            let is_it = self.relation(RelationOperator::Equal, integer, value, true, s.span);
+            let skip = self.emitter.jump_unless(is_it);
+            self.bind(name, value, loops);
+            let compiled = self.statement_of_any_size(s, loops);
+            self.bind(name, integer, loops);
+            match compiled {
+                Ok(()) => {
+                    n_possible += 1;
+                    ends.push(self.emitter.jump());
+                    self.emitter.land(skip);
+                }
+                Err(e) if e.code == NO_CONSTANT_VALUE => return Err(e),
+                // With this value the sizes do not fit: it ends in the fault below.
+                Err(e) => {
+                    self.restore(&mark);
+                    refused = Some(e);
+                }
+            }
+        }
+        if let (0, Some(error)) = (n_possible, refused) {
+            return Err(error);
+        }
+        let text = format!("the value of `{name}`, on which sizes depend, does not fit them");
+        let message = self.emitter.message(text.into());
+        let a = self.emitter.register(Operand::Constant(0.0));
+        self.emitter.emit(Instruction::Assert { a, message });
+        ends.into_iter().for_each(|end| self.emitter.land(end));
+        Ok(())
+    }
+
+    /// The register of a scalar Integer of the function or of a loop.
+    fn integer(&self, name: Ident, loops: &Loops) -> Option<Operand> {
+        if let Some((_, operand)) = loops.iter().rev().find(|(own, _)| *own == name) {
+            let is_free = self.loop_sizes && matches!(operand, Operand::Register(_));
+            return is_free.then_some(*operand);
+        }
+        let of_function = super::component_of(self.function, name.as_str())?;
+        match self.local(&[name])? {
+            Lowered::Array(array)
+                if array.dims.is_empty() && of_function.value_type == ValueType::Integer =>
+            {
+                let operand = *array.elements.first()?;
+                matches!(operand, Operand::Register(_)).then_some(operand)
+            }
+            _ => None,
+        }
+    }
+
+    /// Gives an Integer another operand.
+    fn bind(&mut self, name: Ident, operand: Operand, loops: &mut Loops) {
+        if let Some((_, value)) = loops.iter_mut().rev().find(|(own, _)| *own == name) {
+            *value = operand;
+        } else if let Some((_, value)) = self.locals.iter_mut().find(|(own, _)| *own == name) {
+            *value = Lowered::scalar(operand);
+        }
+    }
+
+    /// Integers that the statement reads and does not assign, those in ranges first.
+    fn deciding_integers(&self, s: &Statement, loops: &Loops) -> Vec<Ident> {
+        let mut read = Names::default();
+        read.statement(s);
+        let assigned: Vec<Ident> = match &s.kind {
+            StatementKind::Assign { target, .. } => target.as_ident().into_iter().collect(),
+            StatementKind::MultiAssign { targets, .. } => {
+                targets.iter().flatten().filter_map(ComponentReference::as_ident).collect()
+            }
+            _ => Vec::new(),
+        };
+        let mut found = Vec::new();
+        for name in read.in_ranges.into_iter().chain(read.all) {
+            let is_new = !found.contains(&name) && !assigned.contains(&name);
+            if is_new && self.integer(name, loops).is_some() {
+                found.push(name);
+            }
+        }
+        found
+    }
+
+    /// The largest dimension of the arrays in a statement.
+    fn largest_dimension(&self, s: &Statement) -> usize {
+        let mut names = Names::default();
+        names.statement(s);
+        let of_local = |name: &Ident| self.local(&[*name]).map_or(0, largest_dimension);
+        names.all.iter().map(of_local).max().unwrap_or(0)
+    }
+}
+
+fn largest_dimension(value: &Lowered<Operand>) -> usize {
+    match value {
+        Lowered::Array(array) => array.dims.iter().copied().max().unwrap_or(0),
+        Lowered::Record(fields) => {
+            fields.iter().map(|(_, field)| largest_dimension(field)).max().unwrap_or(0)
+        }
+        _ => 0,
+    }
+}
+
+/// The first names of the references of a statement.
+#[derive(Debug, Default)]
+struct Names {
+    all: Vec<Ident>,
+    /// Those in the ends of ranges.
+    in_ranges: Vec<Ident>,
+    ranges: usize,
+}
+
+impl Visit for Names {
+    fn expression(&mut self, expression: &Expression) {
+        let is_range = matches!(expression.kind, ExpressionKind::Range { .. });
+        self.ranges += usize::from(is_range);
+        walk_expression(self, expression);
+        self.ranges -= usize::from(is_range);
+    }
+
+    fn reference(&mut self, reference: &ComponentReference) {
+        if let Some(first) = reference.parts.first() {
+            self.all.push(first.name);
+            if self.ranges > 0 {
+                self.in_ranges.push(first.name);
+            }
+        }
+        walk_reference(self, reference);
+    }
+}
