@@ -20,6 +20,7 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     for folder in library_folders(global) {
         session.world.grant(Grant::Read(&folder));
         session.add_library_dir(&folder);
+        offer_neighbours(&mut session, &folder);
     }
     let current = session.world.current_dir();
     session.grant_models(&current);
@@ -28,6 +29,23 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
         session.storage = translations::of_the_user();
     }
     session
+}
+
+/// Makes what lies beside the folder of a package loadable by name: libraries that come together
+/// use each other (`Modelica` needs `ModelicaServices`).
+fn offer_neighbours(session: &mut Session, package: &Path) {
+    if !package.join("package.mo").is_file() {
+        return;
+    }
+    let package = session.world.absolute(package);
+    let Some(folder) = package.parent() else { return };
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.join("package.mo").is_file() || path.extension().is_some_and(|e| e == "mo") {
+            session.world.grant(Grant::Read(&path));
+        }
+    }
+    session.add_library_dir(folder);
 }
 
 /// What `--allow-read`, `--allow-write` and `--allow-external` allow.
@@ -69,6 +87,7 @@ pub(super) fn with_files(
     let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
         session.grant_input(file);
+        offer_neighbours(&mut session, file);
         match session.load_path(file) {
             Ok(loaded) => names.extend(loaded),
             Err(wrong) => errors.extend(wrong),

@@ -375,10 +375,17 @@ fn text_has_the_parentheses_it_needs() {
         let not = p.not(less);
         let minus = p.constant(-1.5);
         let power = p.pow(minus, x);
-        let both = p.and(not, less);
+        let other = p.relation(RelationOperator::Greater, x, y);
+        let both = p.and(not, other);
         p.if_then_else(both, power, y)
     });
-    assert_eq!(text_of, "if not x < y and x < y then (-1.5) ^ x else y");
+    assert_eq!(text_of, "if not x < y and x > y then (-1.5) ^ x else y");
+    let text_of = text(&|p| {
+        let less = p.relation(RelationOperator::Less, x, y);
+        let not = p.not(less);
+        p.and(less, not)
+    });
+    assert_eq!(text_of, "0.0", "nothing and its opposite");
 }
 
 #[test]

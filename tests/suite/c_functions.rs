@@ -265,3 +265,14 @@ fn strings_of_objects_are_known_at_translation() {
     let values = last_values("StringsOfObjects", &[]);
     assert_eq!(value(&values, "y"), 4.0 + 6.0);
 }
+
+#[test]
+fn code_of_older_libraries_is_compiled() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let (code, out, errors) = script("Foreign.charge(\"Hg+2\")\n");
+    assert!(code == 0 && out.contains('2'), "{out}{errors}");
+    let (_, out, errors) = script("Foreign.charge(\"SO-4\")\n");
+    assert!(out.contains("-4"), "{out}{errors}");
+}

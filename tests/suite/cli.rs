@@ -545,3 +545,21 @@ fn a_comparison_of_models_is_written() {
     assert!(out.contains("comparison-a-b.json"), "{out}");
     assert_eq!(found["sentence"].as_str().map(|s| out.contains(s)), Some(true), "{out}");
 }
+
+#[test]
+fn libraries_beside_a_library_are_found() {
+    let here = folder(&[]);
+    for (name, text) in [
+        ("A", "package A model M Real x = B.k; end M; end A;"),
+        ("B", "package B constant Real k = 7; end B;"),
+    ] {
+        fs::create_dir_all(here.path().join("libs").join(name)).unwrap();
+        fs::write(here.path().join("libs").join(name).join("package.mo"), text).unwrap();
+    }
+    let (code, out, errors) = gapi(&here, &["simulate", "libs/A", "--model", "A.M"]);
+    assert_eq!((code, errors.as_str()), (0, ""), "{out}");
+    assert!(out.contains("x = 7"), "{out}");
+    let by_option = ["simulate", "--model", "A.M", "--library", "libs/A"];
+    let (code, out, errors) = gapi(&here, &by_option);
+    assert!(code == 0 && out.contains("x = 7"), "{out}{errors}");
+}

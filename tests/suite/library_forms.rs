@@ -600,3 +600,57 @@ fn loops_with_computed_ends_read_previous_values() {
     // 1·1, then 1·(1 + 2), then 3·(1 + 2 + 3), then 18·(1 + 2 + 3 + 4).
     assert_eq!(at_end(text), 180.0);
 }
+
+#[test]
+fn connectors_that_are_passed_on_have_the_sizes_of_the_first() {
+    let text = "connector T parameter Integer n; Real phi[n]; flow Real f[n]; end T; \
+        expandable connector Node end Node; model S parameter Integer n_in = 2; \
+        parameter Real k = 1; T port[2](each n = n_in); equation for i in 1:2 loop \
+        port[i].f = k*port[i].phi - fill(time, n_in); end for; end S; \
+        model M parameter Integer m = 2; S a(n_in = m), b(k = 3, n_in = m); Node common, other; \
+        Real x = sum(a.port[1].phi); equation connect(a.port[1], common.node); \
+        connect(b.port[1], common.node); connect(a.port[2], other.node); \
+        connect(b.port[2], other.node); end M;";
+    // φ - t + 3 φ - t = 0, two elements.
+    assert_eq!(at_end(text), 1.0);
+}
+
+#[test]
+fn expandable_connectors_within_new_members_get_members_too() {
+    let text = "connector Pin Real v; flow Real i; end Pin; expandable connector Bus end Bus; \
+        model Source Pin p; equation p.v = time; end Source; \
+        model Sensor Pin p; equation p.i = 0; end Sensor; \
+        model Phase Bus side; Source s; equation connect(s.p, side.H2); end Phase; \
+        model Region Bus side; Phase gas; equation connect(gas.side, side.gas); end Region; \
+        model Load Bus side; Sensor s; Real v = s.p.v; equation connect(s.p, side.H2); end Load; \
+        model M Region region; Load load; Bus bus; Real x = load.v; equation \
+        connect(region.side, bus); connect(bus.gas, load.side); end M;";
+    assert_eq!(at_end(text), 1.0);
+}
+
+/// MLS §9.1.3, §9.2: nothing flows into a component that does not use what its bus carries.
+#[test]
+fn flows_that_a_component_does_not_use_are_zero() {
+    let text = "connector Flange Real phi; flow Real tau; end Flange; \
+        expandable connector Bus end Bus; connector Out = output Real; \
+        model Hand Flange wheel; equation wheel.phi = time; end Hand; \
+        model Driver Bus bus; Hand hand; equation connect(hand.wheel, bus.wheel); end Driver; \
+        model Two Out y = 2; end Two; model ByWire Bus bus; Two two; equation \
+        connect(two.y, bus.u); end ByWire; model M Driver d; ByWire e; \
+        Real x = d.hand.wheel.phi + d.hand.wheel.tau; equation connect(d.bus, e.bus); end M;";
+    assert_eq!(at_end(text), 1.0);
+}
+
+/// BioChem: which side of a connector with flows gives its signals shows in the whole.
+#[test]
+fn signals_in_connectors_with_flows_may_be_outputs_on_both_sides() {
+    let text = "connector Node Real c; flow Real r; output Real V; end Node; \
+        model Pool Node n; Real amount(start = 1, fixed = true); equation \
+        der(amount) = n.r; n.c = amount; n.V = 2; end Pool; \
+        model Inside Node n; Real seen; equation n.r = 0.5; seen = n.V; end Inside; \
+        model M Pool a; Inside b; Real x = b.seen + a.amount; equation connect(a.n, b.n); end M;";
+    assert!((at_end(text) - 2.5).abs() < 1e-6);
+    let signals = "block A output Real y = time; end A; block B output Real y; end B; \
+        model M A a; B b; Real x = b.y; equation connect(a.y, b.y); end M;";
+    assert!(attempted(signals).is_err(), "two sources of a signal");
+}

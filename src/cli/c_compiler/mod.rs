@@ -31,6 +31,12 @@ const FLAGS: &[&str] = &[
     "-Werror=incompatible-pointer-types",
 ];
 
+/// What older compilers did: functions of the standard library that are not declared. Where the
+/// code is not accepted otherwise, the headers that declare them are included first.
+const LENIENT: &[&str] = &["-include", "stdlib.h", "-include", "string.h", "-include", "stdio.h"];
+/// What the compiler says then.
+const UNDECLARED: &str = "implicit declaration of function";
+
 /// Longest part of a compiler's complaints that is shown, in lines.
 const SHOWN: usize = 12;
 
@@ -145,7 +151,13 @@ fn compiled(unit: &Unit) -> Result<(Vec<FileState>, Loaded), Fault> {
             let linking = linking(unit);
             let mut arguments = vec!["-shared", "-o", "unit.so", "unit.c", "utilities.c"];
             arguments.extend(linking.iter().map(String::as_str));
-            run(&compiler, folder.path(), unit, &arguments)?;
+            if let Err(fault) = run(&compiler, folder.path(), unit, &arguments) {
+                if !fault.message.contains(UNDECLARED) {
+                    return Err(fault);
+                }
+                arguments.splice(0..0, LENIENT.iter().copied());
+                run(&compiler, folder.path(), unit, &arguments).map_err(|_| fault)?;
+            }
             cache::keep(&key, &folder.path().join("unit.so"))?
         }
     };

@@ -7,7 +7,8 @@ mod report;
 use super::options::{Global, seconds};
 use super::session;
 use super::terminal::{self, Terminal};
-use crate::diag::Fault;
+use crate::cli::disk::list_named;
+use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
 use crate::results::{self, Compared};
 use crate::script::Session;
@@ -21,6 +22,7 @@ use cases::Case;
 use clap::{Args, ValueHint};
 use pool::{Ended, Watch};
 use report::{Outcome, Row};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -71,6 +73,9 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
         Err(code) => return code,
     };
     let (references, filter) = (&arguments.references, arguments.filter.as_deref());
+    if let Err(wrong) = load_named(&mut session, references) {
+        return session::failed(&mut session, wrong);
+    }
     let library = session.library();
     let classes = |name: &Name| match name.first() {
         Some(_) => library.children(name),
@@ -94,6 +99,22 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
     }
     let all_good = rows.iter().all(|row| row.outcome.is_good());
     if all_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Loads the libraries that the collection is about, if they are found by name: what a folder or a
+/// file in it is called begins with theirs.
+fn load_named(session: &mut Session, references: &Path) -> Result<(), Vec<Diagnostic>> {
+    let mut names = BTreeSet::new();
+    // A folder that cannot be read is named where its cases are looked for.
+    for entry in list_named(references).unwrap_or_default() {
+        let is_letter = |c: char| c.is_ascii_alphanumeric();
+        let name: String = entry.chars().take_while(|c| is_letter(*c)).collect();
+        names.extend((!name.is_empty()).then_some(name));
+    }
+    for name in names {
+        session.autoload(&Name::parse(&name))?;
+    }
+    Ok(())
 }
 
 fn write(session: &mut Session, path: &Path, rows: &[Row]) -> Result<(), Fault> {

@@ -22,6 +22,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "ftannnannnnnn->o", time::init2),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ftannnannnnnntn->o", time::init3),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_close", "o", close),
+    Entry::pure("ModelicaStandardTables_CombiTimeTable_read", "onn->n", read),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getValue", "onnnn->n", time::value),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getDerValue", "onnnnn->n", time::derivative),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getDer2Value", "onnnnnn->n", time::second),
@@ -36,6 +37,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "ftannannnn->o", one::init2),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init3", "ftannannnntn->o", one::init3),
     Entry::pure("ModelicaStandardTables_CombiTable1D_close", "o", close),
+    Entry::pure("ModelicaStandardTables_CombiTable1D_read", "onn->n", read),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getValue", "onn->n", one::value),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getDerValue", "onnn->n", one::derivative),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getDer2Value", "onnnn->n", one::second),
@@ -45,6 +47,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTable2D_init2", "ftannnnn->o", two::init2),
     Entry::pure("ModelicaStandardTables_CombiTable2D_init3", "ftannnnntn->o", two::init3),
     Entry::pure("ModelicaStandardTables_CombiTable2D_close", "o", close),
+    Entry::pure("ModelicaStandardTables_CombiTable2D_read", "onn->n", read),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getValue", "onn->n", two::value),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getDerValue", "onnnn->n", two::derivative),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getDer2Value", "onnnnnn->n", two::second),
@@ -55,4 +58,9 @@ pub const ENTRIES: &[Entry] = &[
 /// Tables are freed with the model that made them.
 fn close(_: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
+}
+
+/// Tables are read when they are made: this confirms it (interface of version 3.2).
+fn read(call: &mut Call<'_>) -> Result<(), Fault> {
+    call.give(1.0)
 }

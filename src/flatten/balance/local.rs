@@ -345,8 +345,13 @@ impl Classes<'_> {
                 None => false,
             }
         };
-        let mut sources =
-            set.iter().filter(|side| is_source(side) && !self.is_inside_expandable(side.leaf));
+        // A connector with flow variables has two sides; which of them gives its signals shows in
+        // the balance of the whole (as BioChem has it).
+        let mut sources = set.iter().filter(|side| {
+            is_source(side)
+                && !self.is_inside_expandable(side.leaf)
+                && !self.tree.is_beside_flow(side.leaf)
+        });
         let (one, other) = (sources.next()?, sources.next()?);
         let edge = edges.iter().find(|edge| edge.sides.contains(other))?;
         let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
@@ -361,6 +366,17 @@ impl Classes<'_> {
 }
 
 impl Tree {
+    /// Whether a scalar stands in a connector that has flow variables.
+    fn is_beside_flow(&self, leaf: NodeId) -> bool {
+        let Some(parent) = self.nodes[leaf.0].parent else { return false };
+        let NodeKind::Composite(connector) = &self.nodes[parent.0].kind else { return false };
+        let members = connector.members.iter().flat_map(|members| members.values());
+        members.into_iter().any(|member| match member.state {
+            MemberState::Single(child) => self.connection_of(child) == Some(ConnectionPrefix::Flow),
+            _ => false,
+        })
+    }
+
     fn potential_equations(&self, set: &[ConnectorSide]) -> usize {
         let varies = |side: &&ConnectorSide| match &self.nodes[side.leaf.0].kind {
             NodeKind::Variable(leaf) => {

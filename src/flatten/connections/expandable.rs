@@ -2,14 +2,16 @@
 //! ones get those of each other; components that nothing connects are left out.
 
 use super::super::errors::INVALID_CONNECTION;
+use super::super::flat_expression::literal;
 use super::super::instantiate::instance::Declaration;
 use super::super::instantiate::instance::Member;
 use super::super::instantiate::instance::MemberState;
 use super::super::instantiate::instance::NodeKind;
-use super::super::lookup::modification::Modifier;
+use super::super::lookup::modification::{Bound, Modifier};
 use super::collect::Connect;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::Variability;
 use crate::flatten::connections::end::End;
 use crate::flatten::connections::end::Ends;
 use crate::flatten::connections::sets::Connections;
@@ -39,15 +41,20 @@ impl Instantiation<'_> {
     /// Adds to all expandable connectors what connections ask of them.
     pub fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
         let mut links: Vec<(NodeId, NodeId)> = Vec::new();
-        for round in 0..MAX_ROUNDS {
+        let mut is_linked = vec![false; connects.len()];
+        for _ in 0..MAX_ROUNDS {
             let mut wanted: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
-            for connect in connects {
+            for (connect, is_linked) in connects.iter().zip(&mut is_linked) {
                 let one = self.undeclared(&connect.left, connect)?;
                 let other = self.undeclared(&connect.right, connect)?;
                 match (one, other) {
                     (Some(new), None) => self.want(new, &connect.right, connect, &mut wanted)?,
                     (None, Some(new)) => self.want(new, &connect.left, connect, &mut wanted)?,
-                    (None, None) if round == 0 => self.link(connect, &mut links)?,
+                    // A component added by an earlier round may be expandable itself.
+                    (None, None) if !*is_linked => {
+                        self.link(connect, &mut links)?;
+                        *is_linked = true;
+                    }
                     _ => {}
                 }
             }
@@ -139,7 +146,7 @@ impl Instantiation<'_> {
         let declaration = Declaration {
             name: new.part.name,
             dims: sizes.into_iter().map(dim).collect(),
-            modifier: Modifier::default(),
+            modifier: self.structure_of(node, partner, connect),
             condition: None,
             prefixes: ElementPrefixes::default(),
             protected: false,
@@ -148,6 +155,46 @@ impl Instantiation<'_> {
         };
         wanted.insert(key, declaration);
         Ok(())
+    }
+
+    /// The parameters of a connector that sizes and conditions in it may depend on: a connector that
+    /// is to have its type has their values as well.
+    fn structure_of(
+        &mut self,
+        node: NodeId,
+        reference: &ComponentReference,
+        connect: &Connect,
+    ) -> Modifier {
+        let mut modifier = Modifier::default();
+        for (name, state) in self.classes.members(node).unwrap_or_default() {
+            let MemberState::Single(parameter) = state else { continue };
+            let NodeKind::Variable(leaf) = &self.classes.tree.nodes[parameter.0].kind else {
+                continue;
+            };
+            let variable = &self.classes.tree.variables[leaf.variable].0;
+            if variable.variability > Variability::Parameter || !variable.dims.is_empty() {
+                continue;
+            }
+            let mut of_member = reference.clone();
+            of_member.parts.push(ReferencePart { name, subscripts: Vec::new() });
+            let e = Expression::new(ExpressionKind::Reference(of_member), connect.span);
+            let Ok(resolved) = self.resolve(&e, connect.context, &connect.local) else { continue };
+            let Ok(value @ (Value::Integer(_) | Value::Boolean(_) | Value::Enumeration(_))) =
+                self.flat_value(&resolved)
+            else {
+                continue;
+            };
+            let binding = Bound {
+                value: Some(literal(&value, connect.span)),
+                context: ScopeId::TOP,
+                each: true,
+                indices: Vec::new(),
+                of_class: false,
+            };
+            let own = Modifier { binding: Some(binding), ..Modifier::default() };
+            modifier.elements.insert(name, own);
+        }
+        modifier
     }
 
     fn place_of(&mut self, subscript: &Subscript, connect: &Connect) -> Result<usize, Diagnostic> {
@@ -230,6 +277,7 @@ impl Instantiation<'_> {
         };
         for node in nodes {
             let _ = self.complete(node);
+            self.classes.tree.passed_on.insert(node);
         }
     }
 }

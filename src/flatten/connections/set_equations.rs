@@ -48,6 +48,7 @@ impl Instantiation<'_> {
         let mut unconnected = Vec::new();
         let root = self.classes.tree.root;
         self.classes.unconnected_flows(root, false, connections, &mut unconnected);
+        self.classes.flows_passed_on(connections, &mut unconnected);
         for side in unconnected {
             let span = self.classes.tree.end_span(End::Scalar(side.leaf, side.element));
             model.equations.push(self.classes.tree.flow_equation(&[side], span));
@@ -170,6 +171,50 @@ impl Classes<'_> {
         }
         false
     }
+
+    /// Flows that expandable connectors of components have because others have them: without a
+    /// connection within the component nothing flows into it.
+    fn flows_passed_on(&mut self, connections: &Connections, found: &mut Vec<ConnectorSide>) {
+        let mut nodes: Vec<NodeId> = self.tree.passed_on.iter().copied().collect();
+        nodes.sort_unstable_by_key(|node| node.0);
+        let mut leaves = Vec::new();
+        for node in nodes {
+            self.leaves_below(node, &mut leaves);
+        }
+        for node in leaves {
+            let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind else { continue };
+            if leaf.connection != Some(ConnectionPrefix::Flow)
+                || connections.dropped.contains(&node)
+                || self.is_connector_of_model(node)
+            {
+                continue;
+            }
+            let count = self.tree.variables[leaf.variable].0.len();
+            let side = |element, outside| ConnectorSide { leaf: node, element, outside };
+            let only_above = (0..count).filter(|element| {
+                connections.contains(&side(*element, false))
+                    && !connections.contains(&side(*element, true))
+            });
+            found.extend(only_above.map(|element| side(element, true)));
+        }
+    }
+
+    fn leaves_below(&mut self, node: NodeId, found: &mut Vec<NodeId>) {
+        if let NodeKind::Variable(_) = &self.tree.nodes[node.0].kind {
+            found.push(node);
+            return;
+        }
+        for (_, state) in self.members(node).unwrap_or_default() {
+            match state {
+                MemberState::Single(one) => self.leaves_below(one, found),
+                MemberState::Array(_, nodes) => {
+                    nodes.into_iter().for_each(|one| self.leaves_below(one, found));
+                }
+                _ => {}
+            }
+        }
+    }
+
     /// Flows of connectors that no connection sees from the inside.
     fn unconnected_flows(
         &mut self,

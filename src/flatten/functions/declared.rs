@@ -21,9 +21,9 @@ use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
-    ElementModification, Expression, ExpressionKind, ForIndex, NamedArgument, Purity, Restriction,
-    Section, Statement, StatementKind, Subscript, Visibility,
+    Annotation, Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference,
+    Element, ElementModification, Expression, ExpressionKind, External, ForIndex, NamedArgument,
+    Purity, Restriction, Section, Statement, StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
@@ -536,6 +536,7 @@ impl Instantiation<'_> {
                     }
                     Section::External(external) => {
                         let mut external = external.clone();
+                        external.annotation = annotation_of(&external, &text);
                         for argument in &mut external.arguments {
                             *argument = self.resolve(argument, context, local)?;
                         }
@@ -761,4 +762,25 @@ fn annotation(sections: &[Section]) -> Vec<Argument> {
         _ => None,
     });
     arguments.flatten().collect()
+}
+
+/// The annotation of an external clause; what names code may stand in that of the function, after a
+/// semicolon (`external "C"; annotation(Include = …);`, as older libraries write it).
+fn annotation_of(external: &External, text: &Text) -> Option<Annotation> {
+    let own = external.annotation.clone();
+    if own.is_some() {
+        return own;
+    }
+    let names_code = |argument: &Argument| match argument {
+        Argument::Element(element) => element.name.node.last().is_some_and(|name| {
+            ["Include", "IncludeDirectory", "Library", "LibraryDirectory"].contains(&name.as_str())
+        }),
+        Argument::Redeclaration(_) => false,
+    };
+    text.sections().iter().find_map(|section| match section {
+        Section::Annotation(annotation) if annotation.arguments.iter().any(names_code) => {
+            Some(annotation.clone())
+        }
+        _ => None,
+    })
 }

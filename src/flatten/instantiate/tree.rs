@@ -15,7 +15,7 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{CausalityPrefix, VariabilityPrefix};
 use indexmap::IndexMap;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
 /// The most scalar variables and the most components that are built.
@@ -45,6 +45,8 @@ pub struct Tree {
     /// Variables with the node of each.
     pub variables: Vec<(Variable, NodeId)>,
     pub variable_of: FxHashMap<Arc<str>, usize>,
+    /// Components that expandable connectors have because others have them (MLS §9.1.3).
+    pub passed_on: FxHashSet<NodeId>,
     /// The instance of the model.
     pub root: NodeId,
     /// The simple name of its class.
@@ -75,6 +77,7 @@ impl Tree {
             nodes: vec![node],
             variables: Vec::new(),
             variable_of: FxHashMap::default(),
+            passed_on: FxHashSet::default(),
             root: NodeId(0),
             model_name: Ident::new(""),
             scalars: 0,

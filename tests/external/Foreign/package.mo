@@ -34,6 +34,13 @@ package Foreign "Functions in C beside a library"
     external "C" annotation(Include = "#include \"arrays.c\"");
   end weighted;
 
+  function charge "Its annotation is that of the function, its C code forgets a header"
+    input String formula;
+    output Integer z;
+    external "C";
+    annotation(Include = "#include \"undeclared.c\"");
+  end charge;
+
   function greeting "Strings in and out"
     input String name;
     output String text;
