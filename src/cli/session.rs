@@ -19,8 +19,10 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     let mut session = Session::new(Box::new(world));
     for folder in library_folders(global) {
         session.world.grant(Grant::Read(&folder));
-        session.add_library_dir(&folder);
-        offer_neighbours(&mut session, &folder);
+        // What lies in a package is not at the top level.
+        if !offer_neighbours(&mut session, &folder) {
+            session.add_library_dir(&folder);
+        }
     }
     let current = session.world.current_dir();
     session.grant_models(&current);
@@ -32,13 +34,13 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
 }
 
 /// Makes what lies beside the folder of a package loadable by name: libraries that come together
-/// use each other (`Modelica` needs `ModelicaServices`).
-fn offer_neighbours(session: &mut Session, package: &Path) {
+/// use each other (`Modelica` needs `ModelicaServices`). Whether the folder is one of a package.
+fn offer_neighbours(session: &mut Session, package: &Path) -> bool {
     if !package.join("package.mo").is_file() {
-        return;
+        return false;
     }
     let package = session.world.absolute(package);
-    let Some(folder) = package.parent() else { return };
+    let Some(folder) = package.parent() else { return false };
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.join("package.mo").is_file() || path.extension().is_some_and(|e| e == "mo") {
@@ -46,6 +48,7 @@ fn offer_neighbours(session: &mut Session, package: &Path) {
         }
     }
     session.add_library_dir(folder);
+    true
 }
 
 /// What `--allow-read`, `--allow-write` and `--allow-external` allow.

@@ -95,7 +95,12 @@ impl Evaluator<'_> {
             values.push(value);
             Ok(())
         })?;
-        construct::array(values).at(span)
+        match values.is_empty() && inner.is_empty() {
+            true => {
+                construct::shaped(&[&[0], &element.written_sizes()[..]].concat(), values).at(span)
+            }
+            false => construct::array(values).at(span),
+        }
     }
 
     /// `sum`, `product`, `min`, `max`, `array` with iterators; `None` for any other name.

@@ -654,3 +654,20 @@ fn signals_in_connectors_with_flows_may_be_outputs_on_both_sides() {
         model M A a; B b; Real x = b.y; equation connect(a.y, b.y); end M;";
     assert!(attempted(signals).is_err(), "two sources of a signal");
 }
+
+#[test]
+fn empty_arrays_of_vectors_have_the_sizes_of_the_vectors() {
+    let text = "model M parameter Integer n = 0; Real p[n, 3] = {{0, i, time} for i in 1:n}; \
+        Real x = size(p, 2) + sum(p); end M;";
+    assert_eq!(at_end(text), 3.0);
+}
+
+/// MLS §3.7.4.4.
+#[test]
+fn defaults_of_inputs_may_ask_for_the_instance_that_calls() {
+    let text = "function length input String s = getInstanceName(); output Integer n; \
+        algorithm n := 0; if s == \"M.part\" then n := 6; end if; end length; \
+        model Part Integer n = length(); end Part; \
+        model M Part part; Real x = part.n; end M;";
+    assert_eq!(at_end(text), 6.0);
+}

@@ -42,7 +42,8 @@ impl Instantiation<'_> {
             return Ok(text);
         }
         let name = self.called_name(function, &arguments, span, context, local)?;
-        let arguments = self.functions.with_defaults(&name, arguments, span);
+        let instance = self.instance_at(context);
+        let arguments = self.functions.with_defaults(&name, arguments, instance.as_deref(), span);
         let (name, arguments) = self.functions.specialized(name, arguments, span, 0)?;
         // Variables of a function have no sizes here, though the model may have some of their names.
         if !has_open_names(&arguments, local)
@@ -53,6 +54,13 @@ impl Instantiation<'_> {
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// The name of the instance of a model that a scope belongs to.
+    fn instance_at(&self, context: ScopeId) -> Option<String> {
+        let is_of_model =
+            context != ScopeId::TOP && !self.classes.tree.in_package(self.classes.node_of(context));
+        is_of_model.then(|| self.classes.instance_name(context))
     }
 
     /// A call that is not one of a function: of an operator of connections, of a conversion, of
@@ -80,10 +88,8 @@ impl Instantiation<'_> {
             return Ok(Some(size));
         }
         if function.as_ident().is_some_and(|name| name == "getInstanceName")
-            && context != ScopeId::TOP
-            && !self.classes.tree.in_package(self.classes.node_of(context))
+            && let Some(name) = self.instance_at(context)
         {
-            let name = self.classes.instance_name(context);
             return Ok(Some(Expression::new(ExpressionKind::String(name.into()), span)));
         }
         if self.classes.is_array_constructor(function, arguments, context)? {

@@ -1,6 +1,7 @@
 //! Inputs that a call leaves out and whose defaults refer to other inputs or, in a function with a
 //! modifier, to variables of the model (MLS §12.4.1): the default with the call's own arguments in
-//! place of the inputs is written into the call.
+//! place of the inputs is written into the call. So is the name of the instance that calls, for
+//! defaults that ask for it (MLS §3.7.4.4).
 
 use crate::eval::Function;
 use crate::flatten::flat_expression::subscripted;
@@ -16,6 +17,7 @@ impl FunctionTable {
         &self,
         function: &Name,
         mut arguments: Arguments,
+        instance: Option<&str>,
         span: Span,
     ) -> Arguments {
         let Some(Some(function)) = self.table.get(function) else { return arguments };
@@ -29,7 +31,9 @@ impl FunctionTable {
             }
             let mut value = default.clone();
             let within = vec![input.name];
-            Substitution { function, arguments: &arguments, within }.expression(&mut value);
+            let arguments_given = &arguments;
+            Substitution { function, arguments: arguments_given, instance, within }
+                .expression(&mut value);
             let name = Spanned { node: input.name, span };
             arguments.named.push(NamedArgument { name, value });
         }
@@ -50,7 +54,7 @@ fn has_references(default: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn expression(&mut self, e: &Expression) {
-            self.0 |= matches!(e.kind, ExpressionKind::Reference(_));
+            self.0 |= matches!(e.kind, ExpressionKind::Reference(_)) || asks_for_instance(e);
             walk_expression(self, e);
         }
     }
@@ -59,11 +63,23 @@ fn has_references(default: &Expression) -> bool {
     search.0
 }
 
+/// `getInstanceName()`
+fn asks_for_instance(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Call { function, .. } => {
+            function.as_ident().is_some_and(|name| name == "getInstanceName")
+        }
+        _ => false,
+    }
+}
+
 /// Puts the arguments of a call in place of the inputs; an input that the call leaves out as well
 /// stands for its default, in which the same is done.
 struct Substitution<'f> {
     function: &'f Function,
     arguments: &'f Arguments,
+    /// The instance that calls, if that is known.
+    instance: Option<&'f str>,
     /// The inputs whose defaults led here: one that needs itself stays.
     within: Vec<Ident>,
 }
@@ -81,8 +97,7 @@ impl Substitution<'_> {
                 return None;
             }
             let within = self.within.iter().copied().chain([name]).collect();
-            let Substitution { function, arguments, .. } = *self;
-            Substitution { function, arguments, within }.expression(&mut default);
+            Substitution { within, ..*self }.expression(&mut default);
         }
         Some(default)
     }
@@ -90,6 +105,10 @@ impl Substitution<'_> {
 
 impl Rewrite for Substitution<'_> {
     fn expression(&mut self, e: &mut Expression) {
+        if let (Some(instance), true) = (self.instance, asks_for_instance(e)) {
+            e.kind = ExpressionKind::String(instance.into());
+            return;
+        }
         rewrite_expression(self, e);
         let ExpressionKind::Reference(reference) = &e.kind else { return };
         let Some((first, rest)) = reference.parts.split_first() else { return };

@@ -4,7 +4,7 @@ use super::records::{field, stacked};
 use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::lower::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Subscript, UnaryOperator,
@@ -200,7 +200,13 @@ impl<T: Target> Lowering<'_, T> {
             return Err(fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span));
         };
         let Some(shape) = a.joined(&b) else {
-            return Err(fault!(ARRAY_MISMATCH, "the branches have different sizes").at(span));
+            self.target.end_if(branch, &[]);
+            return match self.target.settle(condition) {
+                Some(holds) => Ok(if holds != 0.0 { first } else { second }),
+                None => Err(fault!(NO_CONSTANT_VALUE, "the branches have different sizes, and \
+                    which of them holds is not known at translation")
+                .at(span)),
+            };
         };
         scalars.clear();
         second.append_scalars(&mut scalars);
@@ -245,6 +251,10 @@ impl<T: Target> Lowering<'_, T> {
             let element = self.comprehension(element, outer, span);
             self.loops.pop();
             inner.push(element?);
+        }
+        if inner.is_empty() && outer.is_empty() {
+            let dims = [&[0], &element.written_sizes()[..]].concat();
+            return Ok(Lowered::Array(Array { dims, elements: Vec::new() }));
         }
         stacked(inner, span)
     }

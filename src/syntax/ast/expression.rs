@@ -297,6 +297,18 @@ impl Expression {
     pub fn new(kind: ExpressionKind, span: Span) -> Expression {
         Expression { kind, span }
     }
+
+    /// The sizes that its text shows: those of array constructors; none for anything else. An
+    /// array of such elements has them even if it is empty.
+    pub fn written_sizes(&self) -> Vec<usize> {
+        match &self.kind {
+            ExpressionKind::Array(elements) => {
+                let inner = elements.first().map_or(Vec::new(), Expression::written_sizes);
+                std::iter::once(elements.len()).chain(inner).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 impl Subscript {
