@@ -1,0 +1,22 @@
+//! What editors ask about open documents, by the Language Server Protocol
+//! ([3.17](https://microsoft.github.io/language-server-protocol/)): diagnostics, completion, hover,
+//! definitions and references, renaming, outline, formatting, actions, colours and units.
+//!
+//! Text goes in and types of the protocol come out. Whoever has a connection (`cli::lsp`) keeps the
+//! documents and hands the newest versions to a [`Workspace`], which keeps the classes in a session: an
+//! open document stands for its file, saved or not. Text that cannot be read is read without the lines
+//! that are wrong (`recovery`), so that everything but diagnostics works while someone types. All
+//! answers about names come from one list: what each written name means (`occurrences`).
+
+mod diagnostics;
+mod document;
+mod lines;
+mod parsed;
+mod recovery;
+mod requests;
+mod uri;
+mod workspace;
+
+pub use document::Document;
+pub use requests::{Refusal, answer, capabilities, libraries};
+pub use workspace::{Documents, Examination, Workspace};

@@ -1,0 +1,189 @@
+//! The classes of open documents and of the libraries that they use.
+
+use super::diagnostics;
+use super::document::Document;
+use super::parsed::{Parsed, file_of};
+use super::recovery::{self, Read};
+use super::uri;
+use crate::diag::Diagnostic;
+use crate::name::Name;
+use crate::script::Session;
+use crate::source::{SourceId, Span};
+use crate::syntax::ast::Restriction;
+use crate::syntax::errors::NOT_A_SCRIPT;
+use lsp_types::Location;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+
+/// The newest versions of the open documents, by their names.
+pub type Documents = BTreeMap<String, Arc<Document>>;
+
+/// Bytes of former versions that are kept, at most: a session forgets no text, so that it is replaced by
+/// another one.
+const MOST_FORMER: usize = 8 << 20;
+
+/// The session that knows the classes, and what it was given.
+pub struct Workspace {
+    new_session: Box<dyn Fn() -> Session>,
+    pub(super) session: Session,
+    parsed: BTreeMap<String, Arc<Parsed>>,
+    /// Bytes of all versions that were loaded.
+    loaded: usize,
+}
+
+/// What is left to be found out about a document.
+#[derive(Debug)]
+pub struct Examination {
+    parsed: Arc<Parsed>,
+    models: VecDeque<Name>,
+    found: Vec<Diagnostic>,
+}
+
+impl Workspace {
+    /// A workspace whose sessions are made so.
+    pub fn new(new_session: impl Fn() -> Session + 'static) -> Workspace {
+        let session = new_session();
+        let new_session = Box::new(new_session);
+        Workspace { new_session, session, parsed: BTreeMap::new(), loaded: 0 }
+    }
+
+    /// Files have changed on the disk: all is read again when it is needed.
+    pub fn forget(&mut self) {
+        self.session = (self.new_session)();
+        self.parsed.clear();
+        self.loaded = 0;
+    }
+
+    /// A document is closed: from now on its file counts.
+    pub fn close(&mut self, document: &Document) {
+        let saved = document.path.as_ref().and_then(|path| self.session.world.read(path).ok());
+        let is_saved = saved.is_some_and(|bytes| *crate::syntax::decode(&bytes).0 == *document.text);
+        if is_saved {
+            self.parsed.remove(document.uri.as_str());
+        } else {
+            self.forget();
+        }
+    }
+
+    /// A document as it was read, its classes and those of all other open documents loaded.
+    pub fn open(&mut self, document: &Arc<Document>, all: &Documents) -> Arc<Parsed> {
+        if self.loaded > MOST_FORMER + all.values().map(|one| one.text.len()).sum::<usize>() {
+            self.forget();
+        }
+        for other in all.values().filter(|other| !other.is_script() && other.uri != document.uri) {
+            self.read(other);
+        }
+        self.read(document)
+    }
+
+    /// The same without the line that someone is typing: where a name is completed.
+    pub(super) fn open_without_line(
+        &mut self,
+        document: &Arc<Document>,
+        all: &Documents,
+        line: usize,
+    ) -> Arc<Parsed> {
+        let parsed = self.open(document, all);
+        if parsed.errors.is_empty() {
+            return parsed;
+        }
+        let source = self.session.sources.add(document.name(), document.text.clone());
+        let read =
+            recovery::read_without_line(source, &document.text, document.is_script(), line);
+        match read.tree {
+            Some(_) => self.load(document, source, read),
+            None => parsed,
+        }
+    }
+
+    fn read(&mut self, document: &Arc<Document>) -> Arc<Parsed> {
+        let known = self.parsed.get(document.uri.as_str()).cloned();
+        if let Some(known) = known.filter(|known| Arc::ptr_eq(&known.document.text, &document.text)) {
+            if self.is_loaded(&known) {
+                return known;
+            }
+        }
+        let source = self.session.sources.add(document.name(), document.text.clone());
+        let read = recovery::read(source, &document.text, document.is_script());
+        let parsed = self.load(document, source, read);
+        self.parsed.insert(document.uri.as_str().to_owned(), parsed.clone());
+        parsed
+    }
+
+    fn load(&mut self, document: &Arc<Document>, source: SourceId, read: Read) -> Arc<Parsed> {
+        self.loaded += document.text.len();
+        let (mut names, mut errors) = (Vec::new(), read.errors);
+        if let Some(tree) = &read.tree {
+            let path = document.path.as_deref().filter(|_| !document.is_script());
+            if document.is_script() && let Some(path) = &document.path {
+                self.session.grant_input(path);
+            }
+            match self.session.load_document(path, &file_of(tree)) {
+                Ok(loaded) => names = loaded,
+                Err(wrong) if errors.is_empty() => errors = wrong,
+                Err(_) => {}
+            }
+        }
+        Arc::new(Parsed { document: document.clone(), source, tree: read.tree, errors, names })
+    }
+
+    /// Whether its classes are those that their names mean: another document may declare them too.
+    fn is_loaded(&mut self, parsed: &Parsed) -> bool {
+        let library = self.session.library();
+        let is_own = |name: &Name| {
+            library.definition(name).is_some_and(|class| class.span.source == parsed.source)
+        };
+        parsed.names.iter().all(is_own)
+    }
+
+    /// Begins to look for what is wrong with a document: with its text and the names in it.
+    pub fn examine(&mut self, document: &Arc<Document>, all: &Documents) -> Examination {
+        let parsed = self.open(document, all);
+        let mut found = parsed.errors.clone();
+        found.retain(|error| error.code != NOT_A_SCRIPT);
+        let mut models = VecDeque::new();
+        if parsed.errors.is_empty() {
+            for (name, class) in parsed.all_classes() {
+                found.extend(self.session.examine_class(&name));
+                let is_model = matches!(class.restriction, Restriction::Model | Restriction::Block);
+                if is_model && !class.partial {
+                    models.push_back(name);
+                }
+            }
+        }
+        Examination { parsed, models, found }
+    }
+
+    /// Looks for what is wrong with one more model of a document; whether more are left.
+    pub fn examine_next(&mut self, examination: &mut Examination) -> bool {
+        if let Some(model) = examination.models.pop_front() {
+            examination.found.extend(self.session.examine_model(&model));
+        }
+        !examination.models.is_empty()
+    }
+
+    /// What was found so far, for the editor.
+    pub fn diagnostics(&self, examination: &Examination) -> Vec<lsp_types::Diagnostic> {
+        let mut seen = BTreeSet::new();
+        let is_new = |one: &&Diagnostic| {
+            let span = one.span();
+            seen.insert((one.code.slug, span.source, span.start, one.message.clone()))
+        };
+        let distinct = examination.found.iter().filter(is_new);
+        distinct.map(|one| diagnostics::of(self, &examination.parsed, one)).collect()
+    }
+
+    /// The place of a span in the protocol, in whatever document or file it is.
+    pub(super) fn location(&self, span: Span) -> Option<Location> {
+        let source = self.session.sources.get(span.source)?;
+        let bytes = span.start as usize..span.end as usize;
+        let open = self.parsed.values().find(|parsed| parsed.source == span.source);
+        if let Some(parsed) = open {
+            let uri = parsed.document.uri.clone();
+            return Some(Location { uri, range: parsed.document.range(bytes) });
+        }
+        let uri = uri::of_path(&self.session.file_of_source(span.source)?)?;
+        let lines = super::lines::Lines::of(&source.text);
+        Some(Location { uri, range: lines.range(&source.text, bytes) })
+    }
+}
