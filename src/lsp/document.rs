@@ -88,6 +88,11 @@ impl Document {
         }
     }
 
+    /// How its lines end.
+    pub fn line_end(&self) -> &'static str {
+        if self.text.contains("\r\n") { "\r\n" } else { "\n" }
+    }
+
     /// The range of some bytes.
     pub fn range(&self, bytes: ops::Range<usize>) -> lsp_types::Range {
         self.lines.range(&self.text, bytes)

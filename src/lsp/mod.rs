@@ -8,12 +8,23 @@
 //! that are wrong (`recovery`), so that everything but diagnostics works while someone types. All
 //! answers about names come from one list: what each written name means (`occurrences`).
 
+mod actions;
+mod attributes;
+mod completion;
+mod description;
 mod diagnostics;
 mod document;
+mod formatting;
+mod hints;
 mod lines;
+mod navigation;
+mod occurrences;
+mod outline;
 mod parsed;
 mod recovery;
+mod rename;
 mod requests;
+mod tokens;
 mod uri;
 mod workspace;
 

@@ -2,12 +2,15 @@
 
 use super::diagnostics;
 use super::document::Document;
+use super::lines::Lines;
+use super::occurrences::{self, Occurrence};
 use super::parsed::{Parsed, file_of};
 use super::recovery::{self, Read};
 use super::uri;
 use crate::diag::Diagnostic;
+use crate::models;
 use crate::name::Name;
-use crate::script::Session;
+use crate::script::{Session, builtins};
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::Restriction;
 use crate::syntax::errors::NOT_A_SCRIPT;
@@ -27,8 +30,11 @@ pub struct Workspace {
     new_session: Box<dyn Fn() -> Session>,
     pub(super) session: Session,
     parsed: BTreeMap<String, Arc<Parsed>>,
+    /// The names of documents, by the names of these, each with the state of the classes.
+    names: BTreeMap<String, (u64, Arc<Parsed>, Arc<Vec<Occurrence>>)>,
     /// Bytes of all versions that were loaded.
     loaded: usize,
+    commands: BTreeSet<&'static str>,
 }
 
 /// What is left to be found out about a document.
@@ -44,13 +50,21 @@ impl Workspace {
     pub fn new(new_session: impl Fn() -> Session + 'static) -> Workspace {
         let session = new_session();
         let new_session = Box::new(new_session);
-        Workspace { new_session, session, parsed: BTreeMap::new(), loaded: 0 }
+        Workspace {
+            new_session,
+            session,
+            parsed: BTreeMap::new(),
+            names: BTreeMap::new(),
+            loaded: 0,
+            commands: builtins::names().into_iter().collect(),
+        }
     }
 
     /// Files have changed on the disk: all is read again when it is needed.
     pub fn forget(&mut self) {
         self.session = (self.new_session)();
         self.parsed.clear();
+        self.names.clear();
         self.loaded = 0;
     }
 
@@ -60,6 +74,7 @@ impl Workspace {
         let is_saved = saved.is_some_and(|bytes| *crate::syntax::decode(&bytes).0 == *document.text);
         if is_saved {
             self.parsed.remove(document.uri.as_str());
+            self.names.remove(document.uri.as_str());
         } else {
             self.forget();
         }
@@ -127,6 +142,47 @@ impl Workspace {
         Arc::new(Parsed { document: document.clone(), source, tree: read.tree, errors, names })
     }
 
+    /// The names of a document and what they mean.
+    pub(super) fn names(&mut self, parsed: &Arc<Parsed>) -> Arc<Vec<Occurrence>> {
+        let name = parsed.document.uri.as_str();
+        let revision = self.session.library_revision();
+        if let Some((known, of, names)) = self.names.get(name)
+            && *known == revision
+            && Arc::ptr_eq(of, parsed)
+        {
+            return names.clone();
+        }
+        let names = Arc::new(self.names_once(parsed));
+        // Looking them up may have loaded libraries.
+        let revision = self.session.library_revision();
+        self.names.insert(name.to_owned(), (revision, parsed.clone(), names.clone()));
+        names
+    }
+
+    /// The same, not kept.
+    pub(super) fn names_once(&mut self, parsed: &Parsed) -> Vec<Occurrence> {
+        let commands = &self.commands;
+        self.session.ask(|library| occurrences::of(library, parsed, commands))
+    }
+
+    /// A file of a library that is loaded, as it was read; `None` if its classes are not those of the
+    /// library.
+    pub(super) fn as_loaded(
+        &mut self,
+        document: &Arc<Document>,
+        source: SourceId,
+        read: Read,
+    ) -> Option<Arc<Parsed>> {
+        let tree = read.tree?;
+        let file = file_of(&tree);
+        let package = file.within.as_ref().map_or(Name::default(), |within| within.node.clone());
+        let names: Vec<Name> =
+            file.classes.iter().map(|class| package.child(class.name.node)).collect();
+        let is_known = names.iter().all(|name| self.session.class_id(name).is_some());
+        let (document, tree) = (document.clone(), Some(tree));
+        is_known.then(|| Arc::new(Parsed { document, source, tree, errors: Vec::new(), names }))
+    }
+
     /// Whether its classes are those that their names mean: another document may declare them too.
     fn is_loaded(&mut self, parsed: &Parsed) -> bool {
         let library = self.session.library();
@@ -182,8 +238,10 @@ impl Workspace {
             let uri = parsed.document.uri.clone();
             return Some(Location { uri, range: parsed.document.range(bytes) });
         }
-        let uri = uri::of_path(&self.session.file_of_source(span.source)?)?;
-        let lines = super::lines::Lines::of(&source.text);
+        let path = self.session.file_of_source(span.source)?;
+        // What is part of the program has no file.
+        let uri = uri::of_path(&path).filter(|_| !path.starts_with(models::FOLDER))?;
+        let lines = Lines::of(&source.text);
         Some(Location { uri, range: lines.range(&source.text, bytes) })
     }
 }

@@ -5,10 +5,11 @@ use super::simulation;
 use crate::causalize;
 use crate::diag::Diagnostic;
 use crate::flatten::{self, ClassId, Library};
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::StoredDefinition;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 impl Session {
@@ -110,5 +111,24 @@ impl Session {
             }
             found
         })
+    }
+
+    /// The names of the classes that are found in the library folders and beside open files, loaded or
+    /// not. No file is read.
+    pub fn loadable_classes(&self) -> BTreeSet<Ident> {
+        let folders = self.library_folders().iter();
+        let names = folders.flat_map(|folder| {
+            let entries = self.world.list_dir(folder).unwrap_or_default().into_iter();
+            entries.filter(|entry| {
+                entry.ends_with(".mo") || self.world.exists(&folder.join(entry).join("package.mo"))
+            })
+        });
+        let class = |entry: String| {
+            let name = entry.strip_suffix(".mo").unwrap_or(&entry);
+            // The version of a library is behind a blank.
+            Ident::new(name.split(' ').next().unwrap_or(name))
+        };
+        let shipped = crate::models::list(Path::new(crate::models::FOLDER)).unwrap_or_default();
+        names.chain(shipped).map(class).collect()
     }
 }

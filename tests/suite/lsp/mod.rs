@@ -1,6 +1,7 @@
 //! The language server as an editor meets it: the program itself, over standard input and output.
 
 mod client;
+mod features;
 
 use crate::cli::folder;
 use client::{Client, uri};
