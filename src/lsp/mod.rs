@@ -24,6 +24,7 @@ mod parsed;
 mod recovery;
 mod rename;
 mod requests;
+mod script_checks;
 mod tokens;
 mod uri;
 mod workspace;

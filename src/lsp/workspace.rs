@@ -6,6 +6,7 @@ use super::lines::Lines;
 use super::occurrences::{self, Occurrence};
 use super::parsed::{Parsed, file_of};
 use super::recovery::{self, Read};
+use super::script_checks;
 use super::uri;
 use crate::diag::Diagnostic;
 use crate::models;
@@ -199,6 +200,7 @@ impl Workspace {
         found.retain(|error| error.code != NOT_A_SCRIPT);
         let mut models = VecDeque::new();
         if parsed.errors.is_empty() {
+            found.extend(script_checks::check(&mut self.session, &parsed));
             for (name, class) in parsed.all_classes() {
                 found.extend(self.session.examine_class(&name));
                 let is_model = matches!(class.restriction, Restriction::Model | Restriction::Block);
@@ -208,6 +210,11 @@ impl Workspace {
             }
         }
         Examination { parsed, models, found }
+    }
+
+    /// How many models of a document are left.
+    pub fn models_left(examination: &Examination) -> usize {
+        examination.models.len()
     }
 
     /// Looks for what is wrong with one more model of a document; whether more are left.

@@ -9,6 +9,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
+/// Of a document with more models, what is wrong with its text is shown before they are examined.
+const MANY: usize = 8;
+
 /// Works until the connection ends.
 pub(super) struct Worker<'q> {
     pub workspace: Workspace,
@@ -42,6 +45,10 @@ impl Worker<'_> {
                         self.queue.put_off(&former);
                     }
                     let examination = self.workspace.examine(&document, &documents);
+                    if Workspace::models_left(&examination) > MANY {
+                        let found = self.workspace.diagnostics(&examination);
+                        self.publish(&document.uri, Some(document.version), found);
+                    }
                     begun = Some((document, examination));
                 }
                 None => begun = begun.and_then(|begun| self.examine_on(begun)),

@@ -63,6 +63,18 @@ impl Session {
         Ok(())
     }
 
+    /// Loads the classes of a file, if they are not loaded.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn load_path_once(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
+        self.grant_input(path);
+        if !self.has_loaded(path) {
+            self.load_path(path)?;
+        }
+        Ok(())
+    }
+
     /// The file that a source was read from as part of a library.
     pub fn file_of_source(&self, source: SourceId) -> Option<PathBuf> {
         self.classes.reads.file_of(source)
@@ -88,16 +100,21 @@ impl Session {
     pub fn examine_model(&mut self, model: &Name) -> Vec<Diagnostic> {
         let flattened = match simulation::flattened_silently(self, &model.to_string()) {
             Ok(flattened) => flattened,
-            Err(errors) => return errors,
+            Err(mut errors) => {
+                errors.retain(|error| error.code.slug != "parameter-without-value");
+                return errors;
+            }
         };
         let mut found = flattened.warnings;
-        // What has open connectors is no system by itself.
+        // What has open connectors is no system by itself, and whoever uses a model gives its parameters
+        // values.
         let is_component = flattened.balance.and_then(|balance| balance.of_component()).is_some();
-        if let Err(error) = causalize::causalize(&flattened.model)
-            && !(is_component && error.code.slug == "singular-system")
-        {
-            found.push(error);
-        }
+        let is_wrong = |error: &Diagnostic| match error.code.slug {
+            "singular-system" => !is_component,
+            "parameter-without-value" => false,
+            _ => true,
+        };
+        found.extend(causalize::causalize(&flattened.model).err().filter(is_wrong));
         found
     }
 

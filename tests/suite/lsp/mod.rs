@@ -132,3 +132,77 @@ fn unsaved_text_counts_in_other_documents_too() {
     assert!(client.diagnostics(&user_path, 3).is_empty());
     assert_eq!(client.shut_down(), 0);
 }
+
+#[test]
+fn scripts_are_checked_before_they_run() {
+    let here = folder(&[
+        ("parts.mo", "model Part\n  Real x = 1;\nend Part;\n"),
+        ("init.mos", "function twice\n  input Real u;\n  output Real y = 2*u;\nend twice;\n"),
+    ]);
+    let mut client = Client::start(here.path());
+    let path = here.path().join("run.mos");
+    let text = "RunScript(\"init.mos\")\nopenModel(\"parts.mo\")\nx = twice(sin(1))\n\
+                simulateModel(\"Part\", stopTme = x)\nsimulateModl(\"Part\")\n";
+    client.open(&path, text);
+    let found = client.diagnostics(&path, 1);
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].starts_with("3:22-29 wrong-arguments: `simulateModel` has no input `stopTme`"));
+    assert!(found[0].contains("did you mean `stopTime`?"), "{}", found[0]);
+    assert_eq!(
+        found[1],
+        "4:0-12 unknown-function: there is no function `simulateModl` | help: did you mean \
+         `simulateModel`?"
+    );
+    // What another script defines is known only when it runs.
+    client.change(&path, 2, &text.replace("\"init.mos\"", "name"));
+    assert_eq!(client.diagnostics(&path, 2).len(), 1);
+    client.change(&path, 3, "x = (1;\ny = 2\n");
+    assert_eq!(client.diagnostics(&path, 3).len(), 1);
+    client.change(&path, 4, "#1\ndouble table(2, 2)\n1 2\n3 4\n");
+    assert!(client.diagnostics(&path, 4).is_empty());
+    assert_eq!(client.shut_down(), 0);
+}
+
+#[test]
+fn what_an_editor_can_do_does_not_end_the_server() {
+    let here = folder(&[]);
+    let mut client = Client::start(here.path());
+    let path = here.path().join("gone/M.mo");
+    // A document whose file was deleted, and one without a file.
+    client.open(&path, "model M\n  Real x = 1;\nend M;\n");
+    assert!(client.diagnostics(&path, 1).is_empty());
+    let untitled = json!({"uri": "untitled:Untitled-1", "languageId": "modelica", "version": 1,
+        "text": "model U\n  Real x = y;\nend U;\n"});
+    client.notify("textDocument/didOpen", json!({"textDocument": untitled}));
+    let params = json!({"textDocument": {"uri": "untitled:Untitled-1"}});
+    let symbols = client.request("textDocument/documentSymbol", params);
+    assert_eq!(symbols[0]["name"], "U");
+    // Every prefix of a text, as it is typed.
+    for version in 2..(RESISTOR.len() as i32) {
+        client.change(&path, version, &RESISTOR[..version as usize]);
+        let position = json!({"line": 99, "character": 0});
+        let params = json!({"textDocument": {"uri": uri(&path)}, "position": position});
+        client.ask("textDocument/completion", params);
+    }
+    let last = RESISTOR.len() as i32;
+    client.change(&path, last, RESISTOR);
+    assert!(client.diagnostics(&path, last).is_empty());
+    // Cancelled, and for what is not open.
+    let id = client.ask("textDocument/hover", json!({"textDocument": {"uri": uri(&path)},
+        "position": {"line": 0, "character": 0}}));
+    client.notify("$/cancelRequest", json!({"id": id}));
+    let answer = client.response(id);
+    assert!(answer.get("result").is_some() || answer["error"]["code"] == -32800, "{answer}");
+    let nowhere = json!({"textDocument": {"uri": "file:///nowhere.mo"}});
+    assert_eq!(client.refused("textDocument/documentSymbol", nowhere)["code"], -32803);
+    // A text that is deeper and longer than any.
+    client.change(&path, last + 1, &"(".repeat(100_000));
+    assert_eq!(client.diagnostics(&path, last + 1).len(), 1);
+    client.change(&path, last + 2, &format!("model M\n{}end M;\n", "  Real x\n".repeat(30_000)));
+    assert!(!client.diagnostics(&path, last + 2).is_empty());
+    let changes = json!({"changes": [{"uri": uri(&here.path().join("Other.mo")), "type": 3}]});
+    client.notify("workspace/didChangeWatchedFiles", changes);
+    client.change(&path, last + 3, RESISTOR);
+    assert!(client.diagnostics(&path, last + 3).is_empty());
+    assert_eq!(client.shut_down(), 0);
+}
