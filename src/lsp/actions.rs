@@ -1,5 +1,6 @@
 //! Code actions: the helps of diagnostics, where they say what to write.
 
+use super::client::Client;
 use super::diagnostics::HELP;
 use super::document::Document;
 use super::occurrences::{identifiers, is_identifier};
@@ -7,27 +8,32 @@ use super::parsed::{Parsed, sections};
 use crate::diag::suggest;
 use crate::syntax::ast::{ClassSpecifier, Section};
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionOrCommand, Diagnostic, DocumentChanges, NumberOrString,
-    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit, WorkspaceEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, Diagnostic, NumberOrString,
+    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
 };
 use std::ops::Range;
 
 /// The actions for some diagnostics of a document.
-pub fn actions(parsed: &Parsed, diagnostics: &[Diagnostic]) -> Vec<CodeActionOrCommand> {
+pub fn actions(
+    client: &Client,
+    parsed: &Parsed,
+    diagnostics: &[Diagnostic],
+) -> Vec<CodeActionOrCommand> {
     let mut found = Vec::new();
     for diagnostic in diagnostics {
         let range = parsed.document.lines.bytes(&parsed.document.text, diagnostic.range);
         for help in diagnostic.message.lines().filter_map(|line| line.strip_prefix(HELP)) {
-            found.extend(of_help(&parsed.document, diagnostic, range.clone(), help));
+            found.extend(of_help(client, &parsed.document, diagnostic, (range.clone(), help)));
         }
         if diagnostic.code == Some(NumberOrString::String("unknown-name".to_owned())) {
-            found.extend(declarations(parsed, diagnostic, range));
+            found.extend(declarations(client, parsed, diagnostic, range));
         }
     }
     found.into_iter().map(CodeActionOrCommand::CodeAction).collect()
 }
 
 fn action(
+    client: &Client,
     document: &Document,
     diagnostic: &Diagnostic,
     title: String,
@@ -44,10 +50,7 @@ fn action(
         title,
         kind: Some(CodeActionKind::QUICKFIX),
         diagnostics: Some(vec![diagnostic.clone()]),
-        edit: Some(WorkspaceEdit {
-            document_changes: Some(DocumentChanges::Edits(vec![change])),
-            ..WorkspaceEdit::default()
-        }),
+        edit: Some(client.edit(vec![change])),
         is_preferred: Some(is_preferred),
         ..CodeAction::default()
     }
@@ -60,27 +63,27 @@ fn quoted(text: &str) -> Option<&str> {
 
 /// The action of a help that says what to write.
 fn of_help(
+    client: &Client,
     document: &Document,
     diagnostic: &Diagnostic,
-    range: Range<usize>,
-    help: &str,
+    (range, help): (Range<usize>, &str),
 ) -> Option<CodeAction> {
     let wanted = quoted(help)?;
     if help.starts_with("did you mean `") {
         let place = meant(document, range, wanted);
         let title = format!("Change to `{wanted}`");
-        return Some(action(document, diagnostic, title, (place, wanted.to_owned()), true));
+        return Some(action(client, document, diagnostic, title, (place, wanted.to_owned()), true));
     }
     let rest = help.strip_prefix("write `")?.strip_prefix(wanted)?.strip_prefix('`')?;
     let title = format!("Write `{wanted}`");
     if rest.starts_with(" here") {
         let blank = if wanted.starts_with(|c: char| c.is_alphanumeric()) { " " } else { "" };
         let written = format!("{blank}{wanted}");
-        return Some(action(document, diagnostic, title, (range.end..range.end, written), true));
+        return Some(action(client, document, diagnostic, title, (range.end..range.end, written), true));
     }
     let is_replacement = rest.is_empty() || rest.starts_with(": ") || rest.starts_with(" to ");
     is_replacement
-        .then(|| action(document, diagnostic, title, (range, wanted.to_owned()), true))
+        .then(|| action(client, document, diagnostic, title, (range, wanted.to_owned()), true))
 }
 
 /// The part of what is marked that a suggestion replaces: all for a dotted one, else the identifier
@@ -98,6 +101,7 @@ fn meant(document: &Document, range: Range<usize>, wanted: &str) -> Range<usize>
 
 /// Declarations of a name that nothing declares, before the equations of its class.
 fn declarations(
+    client: &Client,
     parsed: &Parsed,
     diagnostic: &Diagnostic,
     range: Range<usize>,
@@ -132,7 +136,7 @@ fn declarations(
             false => format!("{text} "),
         };
         let title = format!("Declare `{name}` as {title}");
-        action(document, diagnostic, title, (place..place, text), false)
+        action(client, document, diagnostic, title, (place..place, text), false)
     };
     vec![
         declaration("a Real variable", format!("Real {name};")),

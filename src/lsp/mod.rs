@@ -10,6 +10,7 @@
 
 mod actions;
 mod attributes;
+mod client;
 mod completion;
 mod description;
 mod diagnostics;
@@ -30,5 +31,6 @@ mod uri;
 mod workspace;
 
 pub use document::Document;
-pub use requests::{Refusal, answer, capabilities, libraries};
+pub use client::Client;
+pub use requests::{Refusal, answer, capabilities};
 pub use workspace::{Documents, Examination, Workspace};

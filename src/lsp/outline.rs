@@ -9,7 +9,7 @@ use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentClause, Element, InteractiveKind, Restriction,
     StatementKind, VariabilityPrefix,
 };
-use lsp_types::{DocumentSymbol, SymbolKind};
+use lsp_types::{DocumentSymbol, Location, SymbolInformation, SymbolKind};
 use std::collections::BTreeSet;
 
 /// The symbols of a document.
@@ -31,6 +31,28 @@ pub fn symbols(parsed: &Parsed) -> Vec<DocumentSymbol> {
                 .collect()
         }
     }
+}
+
+/// The same for clients that do not know trees.
+#[allow(deprecated, reason = "the field must be given")]
+pub fn flat(document: &Document, symbols: Vec<DocumentSymbol>) -> Vec<SymbolInformation> {
+    let mut found = Vec::new();
+    let mut pending: Vec<(DocumentSymbol, Option<String>)> =
+        symbols.into_iter().rev().map(|symbol| (symbol, None)).collect();
+    while let Some((symbol, container_name)) = pending.pop() {
+        let location = Location { uri: document.uri.clone(), range: symbol.range };
+        let inside = symbol.children.into_iter().flatten().rev();
+        pending.extend(inside.map(|child| (child, Some(symbol.name.clone()))));
+        found.push(SymbolInformation {
+            name: symbol.name,
+            kind: symbol.kind,
+            tags: None,
+            deprecated: None,
+            location,
+            container_name,
+        });
+    }
+    found
 }
 
 #[allow(deprecated, reason = "the field must be given")]

@@ -7,7 +7,7 @@ use super::workspace::{Documents, Workspace};
 use crate::flatten::Declared;
 use crate::name::{Ident, Name};
 use lsp_types::{
-    DocumentChanges, OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
+    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
     WorkspaceEdit,
 };
 
@@ -93,10 +93,7 @@ pub fn edits(
     let old = declared_name(workspace, found);
     let places = navigation::references(workspace, found, all);
     let changes = places.into_iter().filter_map(|one| changes(&one, &old, new_name, all)).collect();
-    Ok(WorkspaceEdit {
-        document_changes: Some(DocumentChanges::Edits(changes)),
-        ..WorkspaceEdit::default()
-    })
+    Ok(workspace.client.edit(changes))
 }
 
 /// Refuses a name that another element has where the renamed one is declared or used.

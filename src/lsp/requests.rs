@@ -9,9 +9,18 @@ use lsp_types::request::{
     GotoDefinition, HoverRequest, InlayHintRequest, PrepareRenameRequest, References, Rename,
     Request, SemanticTokensFullRequest,
 };
-use lsp_types::*;
+use lsp_types::{
+    CodeActionKind, CodeActionOptions, CodeActionParams, CodeActionProviderCapability,
+    CodeActionResponse, CompletionOptions, CompletionParams, CompletionResponse,
+    DocumentFormattingParams, DocumentHighlight, DocumentHighlightParams, DocumentSymbolParams,
+    DocumentSymbolResponse, GotoDefinitionParams, GotoDefinitionResponse, Hover, HoverParams,
+    HoverProviderCapability, InlayHint, InlayHintParams, Location, OneOf, PrepareRenameResponse,
+    ReferenceParams, RenameOptions, RenameParams, SemanticTokens, SemanticTokensFullOptions,
+    SemanticTokensOptions, SemanticTokensParams, SemanticTokensResult, ServerCapabilities,
+    TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind,
+    TextDocumentSyncOptions, TextEdit, Uri, WorkDoneProgressOptions, WorkspaceEdit,
+};
 use serde_json::Value;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Why a request has no answer.
@@ -73,14 +82,6 @@ pub fn capabilities() -> ServerCapabilities {
         inlay_hint_provider: Some(OneOf::Left(true)),
         ..ServerCapabilities::default()
     }
-}
-
-/// The folders with libraries that the client names, besides those of the command line:
-/// `initializationOptions.libraries`.
-pub fn libraries(params: &InitializeParams) -> Vec<PathBuf> {
-    let folders = params.initialization_options.as_ref().and_then(|all| all.get("libraries"));
-    let folders = folders.and_then(Value::as_array).into_iter().flatten();
-    folders.filter_map(Value::as_str).map(PathBuf::from).collect()
 }
 
 /// Answers a request.
@@ -155,7 +156,11 @@ impl Asked<'_> {
     ) -> Result<Option<DocumentSymbolResponse>, Refusal> {
         let document = self.document(&params.text_document.uri)?;
         let parsed = self.workspace.open(&document, self.all);
-        Ok(Some(DocumentSymbolResponse::Nested(outline::symbols(&parsed))))
+        let symbols = outline::symbols(&parsed);
+        Ok(Some(match self.workspace.client.nested_outline {
+            true => DocumentSymbolResponse::Nested(symbols),
+            false => DocumentSymbolResponse::Flat(outline::flat(&document, symbols)),
+        }))
     }
 
     fn formatting(
@@ -173,10 +178,8 @@ impl Asked<'_> {
         let library = self.workspace.session.library();
         let text = description::markdown(library, found.one.entity).or_else(|| assigned(&found));
         let range = Some(found.parsed.document.range(found.one.range.clone()));
-        let contents = |value| {
-            HoverContents::Markup(MarkupContent { kind: MarkupKind::Markdown, value })
-        };
-        Ok(text.map(|text| Hover { contents: contents(text), range }))
+        let client = &self.workspace.client;
+        Ok(text.map(|text| Hover { contents: client.hover(text), range }))
     }
 
     fn completion(
@@ -251,7 +254,8 @@ impl Asked<'_> {
     fn actions(&mut self, params: CodeActionParams) -> Result<Option<CodeActionResponse>, Refusal> {
         let document = self.document(&params.text_document.uri)?;
         let parsed = self.workspace.open(&document, self.all);
-        Ok(Some(actions::actions(&parsed, &params.context.diagnostics)))
+        let client = &self.workspace.client;
+        Ok(Some(actions::actions(client, &parsed, &params.context.diagnostics)))
     }
 
     fn hints(&mut self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>, Refusal> {

@@ -1,5 +1,6 @@
 //! The classes of open documents and of the libraries that they use.
 
+use super::client::Client;
 use super::diagnostics;
 use super::document::Document;
 use super::lines::Lines;
@@ -30,6 +31,8 @@ const MOST_FORMER: usize = 8 << 20;
 pub struct Workspace {
     new_session: Box<dyn Fn() -> Session>,
     pub(super) session: Session,
+    /// Who asks.
+    pub(super) client: Client,
     parsed: BTreeMap<String, Arc<Parsed>>,
     /// The names of documents, by the names of these, each with the state of the classes.
     names: BTreeMap<String, (u64, Arc<Parsed>, Arc<Vec<Occurrence>>)>,
@@ -48,12 +51,13 @@ pub struct Examination {
 
 impl Workspace {
     /// A workspace whose sessions are made so.
-    pub fn new(new_session: impl Fn() -> Session + 'static) -> Workspace {
+    pub fn new(client: Client, new_session: impl Fn() -> Session + 'static) -> Workspace {
         let session = new_session();
         let new_session = Box::new(new_session);
         Workspace {
             new_session,
             session,
+            client,
             parsed: BTreeMap::new(),
             names: BTreeMap::new(),
             loaded: 0,

@@ -10,7 +10,7 @@ mod worker;
 use super::embedding::Embedding;
 use super::options::Global;
 use super::terminal;
-use crate::lsp::{Document, Workspace, capabilities, libraries};
+use crate::lsp::{Client, Document, Workspace, capabilities};
 use crate::script::Session;
 use crate::script::runs::view::Progress;
 use crate::script::world::Screen;
@@ -26,7 +26,6 @@ use lsp_types::{InitializeParams, InitializeResult, ServerInfo};
 use queue::Queue;
 use serde::de::DeserializeOwned;
 use std::io::{self, BufRead};
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -64,14 +63,14 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
         stage: Stage::Uninitialized,
     };
     std::thread::spawn(move || reader.run(&mut io::stdin().lock()));
-    // A connection that ends before it begins has no libraries.
-    let folders = started.recv().unwrap_or_default();
+    // A connection that ends before it begins has no client.
+    let who = started.recv().unwrap_or_default();
     let mut embedding = Embedding { cache: false, ..Embedding::default() };
-    embedding.libraries = global.library.iter().cloned().chain(folders).collect();
+    embedding.libraries = global.library.iter().chain(&who.libraries).cloned().collect();
     embedding.read = global.allow_read.clone();
     let code = match embedding.session(Box::new(Silent), Arc::default()) {
         Ok(first) => {
-            let mut worker = Worker { workspace: workspace(embedding, first), queue: &queue, client };
+            let mut worker = Worker { workspace: workspace(who, embedding, first), queue: &queue, client };
             worker.run()
         }
         Err(error) => {
@@ -87,9 +86,9 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
     }
 }
 
-fn workspace(embedding: Embedding, first: Session) -> Workspace {
+fn workspace(who: Client, embedding: Embedding, first: Session) -> Workspace {
     let first = std::cell::Cell::new(Some(first));
-    Workspace::new(move || match first.take() {
+    Workspace::new(who, move || match first.take() {
         Some(session) => session,
         None => match embedding.session(Box::new(Silent), Arc::default()) {
             Ok(session) => session,
@@ -118,8 +117,8 @@ impl Screen for Silent {
 struct Reader {
     queue: Arc<Queue>,
     client: Sender<Message>,
-    /// Gets the folders of libraries once the client has said which.
-    initialized: Sender<Vec<PathBuf>>,
+    /// Gets what the client says of itself.
+    initialized: Sender<Client>,
     stage: Stage,
 }
 
@@ -175,7 +174,7 @@ impl Reader {
             }
         };
         self.stage = Stage::Running;
-        drop(self.initialized.send(libraries(&params)));
+        drop(self.initialized.send(Client::of(&params)));
         let name = "gapi".to_owned();
         let version = Some(env!("CARGO_PKG_VERSION").to_owned());
         let server_info = Some(ServerInfo { name, version });

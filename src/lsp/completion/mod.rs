@@ -3,6 +3,7 @@
 
 mod context;
 
+use super::client::Client;
 use super::description;
 use super::occurrences::Entity;
 use super::parsed::Parsed;
@@ -15,8 +16,7 @@ use crate::script::builtins;
 use crate::syntax::ast::{CausalityPrefix, Restriction, VariabilityPrefix};
 use context::{Context, Open};
 use lsp_types::{
-    CompletionItem, CompletionItemKind, CompletionTextEdit, Documentation, MarkupContent,
-    MarkupKind, Position, TextEdit,
+    CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -52,10 +52,12 @@ pub fn items(
     let line = position.line as usize;
     let parsed = workspace.open_without_line(document, all, line);
     let class = parsed.class_at(offset).map(|(name, _)| name);
+    let client = workspace.client.clone();
     let loadable = workspace.session.loadable_classes();
     let found = workspace.session.ask(|library| {
         let scope = class.as_ref().and_then(|name| library.find(name));
-        Completion { library, parsed: &parsed, context: &context, scope, loadable: &loadable }.items()
+        let names = (&loadable, &client);
+        Completion { library, parsed: &parsed, context: &context, scope, names }.items()
     });
     let range = document.range(context.start..offset);
     let replace = |mut item: CompletionItem| {
@@ -72,8 +74,8 @@ struct Completion<'a> {
     context: &'a Context,
     /// The class around the cursor.
     scope: Option<ClassId>,
-    /// Classes at the top that are not loaded.
-    loadable: &'a BTreeSet<Ident>,
+    /// Classes at the top that are not loaded, and who reads the answer.
+    names: (&'a BTreeSet<Ident>, &'a Client),
 }
 
 impl Completion<'_> {
@@ -221,7 +223,7 @@ impl Completion<'_> {
     /// The classes at the top, loaded or not.
     fn roots(&self) -> Vec<CompletionItem> {
         let loaded: BTreeSet<Ident> = self.library.roots().collect();
-        let known = loaded.iter().chain(self.loadable.difference(&loaded));
+        let known = loaded.iter().chain(self.names.0.difference(&loaded));
         let item = |name: &Ident| match self.library.find(&Name::from(*name)) {
             Some(class) => {
                 let declared = Declared::Class(class);
@@ -252,7 +254,7 @@ impl Completion<'_> {
         }
         let item = |name: &'static str| CompletionItem {
             documentation: description::markdown(self.library, Entity::Function(Ident::new(name)))
-                .map(documentation),
+                .map(|text| self.names.1.documentation(text)),
             ..plain(name, CompletionItemKind::FUNCTION, '5')
         };
         names.into_iter().map(item).collect()
@@ -283,7 +285,7 @@ impl Completion<'_> {
         };
         CompletionItem {
             detail,
-            documentation: comment.map(|text| documentation(text.to_owned())),
+            documentation: comment.map(|text| self.names.1.documentation(text.to_owned())),
             ..plain(member.name.as_str(), kind, rank)
         }
     }
@@ -308,10 +310,6 @@ fn plain(name: &str, kind: CompletionItemKind, rank: char) -> CompletionItem {
         sort_text: Some(format!("{rank}{name}")),
         ..CompletionItem::default()
     }
-}
-
-fn documentation(text: String) -> Documentation {
-    Documentation::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value: text })
 }
 
 /// `name = `, for an argument.

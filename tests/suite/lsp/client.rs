@@ -17,6 +17,18 @@ pub struct Client {
     pending: VecDeque<Value>,
 }
 
+/// What current editors can do.
+fn capabilities() -> Value {
+    json!({
+        "textDocument": {
+            "hover": {"contentFormat": ["markdown"]},
+            "completion": {"completionItem": {"documentationFormat": ["markdown"]}},
+            "documentSymbol": {"hierarchicalDocumentSymbolSupport": true},
+        },
+        "workspace": {"workspaceEdit": {"documentChanges": true}},
+    })
+}
+
 /// The name of a file in the protocol.
 pub fn uri(path: &Path) -> String {
     format!("file://{}", path.display())
@@ -26,7 +38,7 @@ impl Client {
     /// Starts a server in a folder and initializes it.
     pub fn start(folder: &Path) -> Client {
         let mut client = Client::uninitialized(folder);
-        client.request("initialize", json!({"capabilities": {}, "processId": null}));
+        client.request("initialize", json!({"capabilities": capabilities(), "processId": null}));
         client.notify("initialized", json!({}));
         client
     }

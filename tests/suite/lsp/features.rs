@@ -389,3 +389,27 @@ fn colours_follow_the_meaning() {
         p:property! =x".replace("=x", "1:number Real:type x:property p:property! end:keyword M:class"));
     open.end();
 }
+
+#[test]
+fn a_client_that_can_little_gets_what_it_understands() {
+    let here = folder(&[]);
+    let mut client = Client::uninitialized(here.path());
+    client.request("initialize", json!({"capabilities": {}}));
+    client.notify("initialized", json!({}));
+    let path = here.path().join("Circuit.mo");
+    client.open(&path, CIRCUIT);
+    let (text, version) = (CIRCUIT.to_owned(), 1);
+    let mut open = Open { here, client, path, text, version };
+    let hover = open.at("textDocument/hover", "scaled(u = ^R)");
+    assert_eq!(hover["contents"]["kind"], "plaintext");
+    assert!(!hover["contents"]["value"].as_str().unwrap().contains("```"));
+    let params = json!({"textDocument": {"uri": uri(&open.path)}});
+    let symbols = open.client.request("textDocument/documentSymbol", params);
+    assert_eq!(symbols[1]["name"], "Voltage");
+    assert_eq!(symbols[1]["containerName"], "Circuit");
+    let renamed = open.rename("for ^i in", "k");
+    let edits = renamed["result"]["changes"][uri(&open.path)].as_array().unwrap().clone();
+    let expected = CIRCUIT.replace("for i", "for k").replace("r[i", "r[k");
+    assert_eq!(applied(CIRCUIT, edits), expected);
+    open.end();
+}
