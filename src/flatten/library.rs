@@ -284,19 +284,27 @@ impl Library {
         Arc::make_mut(&mut self.classes).get_mut(id.0 as usize)?.class.get_mut()
     }
 
-    /// A package read again from its own file keeps the classes that lie in files beside it.
+    /// A package read again from its own file keeps the classes that lie in files beside it. They are
+    /// read again when they are needed: what encloses them is another class now.
     fn keep_separate_files(&mut self, former: Option<ClassId>, id: ClassId) {
         let Some(former) = former else { return };
         let source = self.class(former).definition.span.source;
-        let elsewhere = |child: &ClassId| match &self.slot(*child).origin {
+        let elsewhere = |child: ClassId| match &self.slot(child).origin {
             Origin::Head(definition, _) => definition.span.source != source,
             Origin::File(..) => true,
         };
-        let children = self.class(former).children.iter().map(|(name, child)| (*name, *child));
-        let kept: Vec<(Ident, ClassId)> = children.filter(|(_, child)| elsewhere(child)).collect();
-        let Some(class) = self.class_mut(id) else { return };
-        for (name, child) in kept {
-            class.children.entry(name).or_insert(child);
+        let own = &self.class(id).children;
+        let children = self.class(former).children.iter();
+        let children =
+            children.filter(|(name, child)| !own.contains_key(*name) && elsewhere(**child));
+        let kept: Vec<(Ident, ClassId)> = children
+            .map(|(name, child)| {
+                let Slot { origin, declared, .. } = self.slot(*child).clone();
+                (*name, self.push(origin, declared, *name, Some(id)))
+            })
+            .collect();
+        if let Some(class) = self.class_mut(id) {
+            class.children.extend(kept);
         }
     }
 

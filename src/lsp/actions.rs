@@ -8,8 +8,8 @@ use super::parsed::{Parsed, sections};
 use crate::diag::suggest;
 use crate::syntax::ast::{ClassSpecifier, Section};
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionOrCommand, Diagnostic, NumberOrString,
-    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, Diagnostic, NumberOrString, OneOf,
+    OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
 };
 use std::ops::Range;
 
@@ -79,7 +79,14 @@ fn of_help(
     if rest.starts_with(" here") {
         let blank = if wanted.starts_with(|c: char| c.is_alphanumeric()) { " " } else { "" };
         let written = format!("{blank}{wanted}");
-        return Some(action(client, document, diagnostic, title, (range.end..range.end, written), true));
+        return Some(action(
+            client,
+            document,
+            diagnostic,
+            title,
+            (range.end..range.end, written),
+            true,
+        ));
     }
     let is_replacement = rest.is_empty() || rest.starts_with(": ") || rest.starts_with(" to ");
     is_replacement

@@ -14,7 +14,12 @@ use crate::syntax::print;
 const MAX_TYPES: usize = 50;
 
 /// An attribute of a component, as it is written; strings without quotation marks.
-pub fn attribute(library: &Library, owner: ClassId, name: Ident, attribute: &str) -> Option<String> {
+pub fn attribute(
+    library: &Library,
+    owner: ClassId,
+    name: Ident,
+    attribute: &str,
+) -> Option<String> {
     let (clause, declaration) = library.component(owner, name)?;
     let own = declaration.modification.as_ref();
     own.and_then(|own| argument(&own.arguments, attribute))

@@ -72,17 +72,17 @@ impl Client {
     }
 }
 
-fn is_markdown(formats: &Vec<MarkupKind>) -> bool {
+fn is_markdown(formats: &[MarkupKind]) -> bool {
     formats.contains(&MarkupKind::Markdown)
 }
 
-fn hover_formats(all: &ClientCapabilities) -> Option<&Vec<MarkupKind>> {
-    all.text_document.as_ref()?.hover.as_ref()?.content_format.as_ref()
+fn hover_formats(all: &ClientCapabilities) -> Option<&[MarkupKind]> {
+    all.text_document.as_ref()?.hover.as_ref()?.content_format.as_deref()
 }
 
-fn completion_formats(all: &ClientCapabilities) -> Option<&Vec<MarkupKind>> {
+fn completion_formats(all: &ClientCapabilities) -> Option<&[MarkupKind]> {
     let completion = all.text_document.as_ref()?.completion.as_ref()?;
-    completion.completion_item.as_ref()?.documentation_format.as_ref()
+    completion.completion_item.as_ref()?.documentation_format.as_deref()
 }
 
 fn versioned_changes(all: &ClientCapabilities) -> Option<bool> {

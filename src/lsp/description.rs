@@ -47,7 +47,9 @@ fn function(name: &str) -> Option<String> {
     let blocks = declarations.iter().map(|text| format!("```modelica\n{text}\n```"));
     let text = blocks.collect::<Vec<_>>().join("\n\n");
     match (text.is_empty(), name) {
-        (true, "time") => Some("```modelica\nReal time(unit = \"s\")\n```\n\nMLS §3.6.7".to_owned()),
+        (true, "time") => {
+            Some("```modelica\nReal time(unit = \"s\")\n```\n\nMLS §3.6.7".to_owned())
+        }
         (true, _) => None,
         (false, _) => Some(text),
     }
@@ -57,7 +59,8 @@ fn literal(library: &Library, owner: ClassId, name: Ident) -> String {
     let mut text = format!("```modelica\n{}.{name}\n```", library.name_of(owner));
     if let ClassSpecifier::Enumeration(enumeration) = &library.definition_of(owner).specifier {
         let literals = enumeration.literals.iter().flatten();
-        let comment = literals.filter(|one| one.name.node == name).find_map(|one| one.comment.text.clone());
+        let comment =
+            literals.filter(|one| one.name.node == name).find_map(|one| one.comment.text.clone());
         text.extend(comment.map(|comment| format!("\n\n{comment}")));
     }
     text

@@ -4,9 +4,7 @@ use super::parsed::Parsed;
 use super::workspace::Workspace;
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Span;
-use lsp_types::{
-    DiagnosticRelatedInformation, DiagnosticSeverity, NumberOrString, Range,
-};
+use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, NumberOrString, Range};
 use std::ops;
 
 /// What precedes an action in a message.

@@ -55,11 +55,7 @@ impl Document {
 
     /// The next version: the changes one after the other.
     #[must_use]
-    pub fn changed(
-        &self,
-        version: i32,
-        changes: Vec<TextDocumentContentChangeEvent>,
-    ) -> Document {
+    pub fn changed(&self, version: i32, changes: Vec<TextDocumentContentChangeEvent>) -> Document {
         let mut text = self.text.to_string();
         let mut lines = self.lines.clone();
         for change in changes {
@@ -120,7 +116,8 @@ mod tests {
 
     #[test]
     fn changes_apply_one_after_the_other() {
-        let opened = document("file:///a/M.mo", "modelica", "model M\r\n  Real \u{1f600};\r\nend M;\r\n");
+        let opened =
+            document("file:///a/M.mo", "modelica", "model M\r\n  Real \u{1f600};\r\nend M;\r\n");
         let change = |line: u32, from: u32, to: u32, text: &str| TextDocumentContentChangeEvent {
             range: Some(Range {
                 start: Position { line, character: from },

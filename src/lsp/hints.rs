@@ -38,7 +38,8 @@ pub fn hints(
     let document = &parsed.document;
     let hint = |(name, value): Given| {
         let end = value.end as usize;
-        let unit = unit(library, names, name).filter(|_| within.start <= end && end <= within.end)?;
+        let unit =
+            unit(library, names, name).filter(|_| within.start <= end && end <= within.end)?;
         Some(InlayHint {
             position: document.range(end..end).start,
             label: InlayHintLabel::String(unit),
@@ -57,9 +58,8 @@ pub fn hints(
 fn unit(library: &Library, names: &[Occurrence], name: Span) -> Option<String> {
     // Of a dotted name the last part.
     let within = name.start as usize..name.end as usize;
-    let last = names
-        .iter()
-        .rfind(|one| within.start <= one.range.start && one.range.end == within.end)?;
+    let last =
+        names.iter().rfind(|one| within.start <= one.range.start && one.range.end == within.end)?;
     let Entity::Declared(Declared::Component(owner, name)) = last.entity else { return None };
     attributes::attribute(library, owner, name, "unit").filter(|unit| unit != "1")
 }

@@ -30,7 +30,7 @@ mod tokens;
 mod uri;
 mod workspace;
 
-pub use document::Document;
 pub use client::Client;
+pub use document::Document;
 pub use requests::{Refusal, answer, capabilities};
 pub use workspace::{Documents, Examination, Workspace};

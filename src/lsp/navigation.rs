@@ -11,9 +11,7 @@ use crate::format::Language;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::ClassSpecifier;
-use lsp_types::{
-    DocumentHighlight, DocumentHighlightKind, Location, Position, TextDocumentItem,
-};
+use lsp_types::{DocumentHighlight, DocumentHighlightKind, Location, Position, TextDocumentItem};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -91,7 +91,11 @@ pub fn sections(class: &ClassDefinition) -> &[Section] {
     }
 }
 
-fn collect(name: Name, class: &Arc<ClassDefinition>, found: &mut Vec<(Name, Arc<ClassDefinition>)>) {
+fn collect(
+    name: Name,
+    class: &Arc<ClassDefinition>,
+    found: &mut Vec<(Name, Arc<ClassDefinition>)>,
+) {
     found.push((name.clone(), class.clone()));
     for element in elements(class) {
         if let Element::Class(nested) = element {

@@ -147,8 +147,10 @@ mod tests {
 
     #[test]
     fn half_typed_lines_are_left_out() {
-        for line in ["  Real", "  Modelica.", "  Real z(", "  Real z = a.", "  Real z = \"", "  if"] {
-            let text = format!("model M\n  Real x;\n{line}\n  Real y;\nequation\n  x = y;\nend M;\n");
+        for line in ["  Real", "  Modelica.", "  Real z(", "  Real z = a.", "  Real z = \"", "  if"]
+        {
+            let text =
+                format!("model M\n  Real x;\n{line}\n  Real y;\nequation\n  x = y;\nend M;\n");
             let expected = Some(vec!["x".to_owned(), "y".to_owned()]);
             assert_eq!(components(&text), expected, "{line}");
         }

@@ -7,8 +7,7 @@ use super::workspace::{Documents, Workspace};
 use crate::flatten::Declared;
 use crate::name::{Ident, Name};
 use lsp_types::{
-    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
-    WorkspaceEdit,
+    OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit, WorkspaceEdit,
 };
 
 /// Refuses what cannot be renamed: what is not declared in the workspace, and names that other
@@ -69,9 +68,9 @@ fn is_named_by_file(workspace: &mut Workspace, class: crate::flatten::ClassId) -
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folder = path.parent().and_then(|folder| folder.file_name()).unwrap_or_default();
     let is_package = stem == "package" && name.is_some_and(|name| folder == name.as_str());
-    let in_package = path.parent().is_some_and(|folder| {
-        workspace.session.world.exists(&folder.join("package.mo"))
-    });
+    let in_package = path
+        .parent()
+        .is_some_and(|folder| workspace.session.world.exists(&folder.join("package.mo")));
     is_package || in_package && name.is_some_and(|name| name == stem.as_str())
 }
 

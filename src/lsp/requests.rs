@@ -96,7 +96,9 @@ pub fn answer(
 ) -> Result<Value, Refusal> {
     let mut asked = Asked { workspace, all: documents };
     match method {
-        DocumentSymbolRequest::METHOD => asked.with::<DocumentSymbolRequest>(params, Asked::outline),
+        DocumentSymbolRequest::METHOD => {
+            asked.with::<DocumentSymbolRequest>(params, Asked::outline)
+        }
         Formatting::METHOD => asked.with::<Formatting>(params, Asked::formatting),
         HoverRequest::METHOD => asked.with::<HoverRequest>(params, Asked::hover),
         Completion::METHOD => asked.with::<Completion>(params, Asked::completion),
@@ -114,10 +116,9 @@ pub fn answer(
         }
         CodeActionRequest::METHOD => asked.with::<CodeActionRequest>(params, Asked::actions),
         InlayHintRequest::METHOD => asked.with::<InlayHintRequest>(params, Asked::hints),
-        _ => Err(Refusal {
-            code: METHOD_NOT_FOUND,
-            message: format!("`{method}` is not supported"),
-        }),
+        _ => {
+            Err(Refusal { code: METHOD_NOT_FOUND, message: format!("`{method}` is not supported") })
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use super::recovery::{self, Tree};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::Library;
-use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 use crate::functions;
+use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 use crate::name::Ident;
 use crate::script::{Session, builtins};
 use crate::source::SourceId;
@@ -68,7 +68,9 @@ impl Known {
             match name {
                 "RunScript" | "runScript" => self.add_run(session, arguments, folder),
                 "openModel" | "loadFile" => self.add_opened(session, arguments, folder),
-                "loadString" | "loadFiles" | "openModelFile" | "setClassText" => self.is_open = true,
+                "loadString" | "loadFiles" | "openModelFile" | "setClassText" => {
+                    self.is_open = true
+                }
                 _ => {}
             }
         }

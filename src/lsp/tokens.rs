@@ -68,10 +68,10 @@ pub fn tokens(library: &Library, parsed: &Parsed, names: &[Occurrence]) -> Vec<S
         let (kind, mut modifiers) = coloured(library, name.entity);
         modifiers |= if name.is_declaration { DECLARATION } else { 0 };
         // Names in strings of scripts stay strings.
-        let is_in_string =
-            found.range(..name.range.start).next_back().is_some_and(|(_, (range, ..))| {
-                range.end >= name.range.end
-            });
+        let is_in_string = found
+            .range(..name.range.start)
+            .next_back()
+            .is_some_and(|(_, (range, ..))| range.end >= name.range.end);
         if !is_in_string {
             found.insert(name.range.start, (name.range.clone(), number(&kind), modifiers));
         }
@@ -91,8 +91,9 @@ fn coloured(library: &Library, entity: Entity) -> (SemanticTokenType, u32) {
             (kind, 0)
         }
         Entity::Declared(Declared::Component(owner, name)) => {
-            let variability =
-                library.component(owner, name).and_then(|(clause, _)| clause.type_prefixes.variability);
+            let variability = library
+                .component(owner, name)
+                .and_then(|(clause, _)| clause.type_prefixes.variability);
             let is_fixed = matches!(
                 variability,
                 Some(VariabilityPrefix::Constant | VariabilityPrefix::Parameter)

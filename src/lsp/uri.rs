@@ -29,7 +29,8 @@ pub fn path(uri: &Uri) -> Option<PathBuf> {
     let rest = uri.as_str().strip_prefix("file://")?;
     let (_, path) = rest.split_at(rest.find('/')?);
     let decoded = percent_decode_str(path).decode_utf8().ok()?;
-    let is_drive = matches!(decoded.as_bytes(), [b'/', letter, b':', ..] if letter.is_ascii_alphabetic());
+    let is_drive =
+        matches!(decoded.as_bytes(), [b'/', letter, b':', ..] if letter.is_ascii_alphabetic());
     Some(PathBuf::from(if cfg!(windows) && is_drive { &decoded[1..] } else { &decoded }))
 }
 

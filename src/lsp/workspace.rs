@@ -35,10 +35,17 @@ pub struct Workspace {
     pub(super) client: Client,
     parsed: BTreeMap<String, Arc<Parsed>>,
     /// The names of documents, by the names of these, each with the state of the classes.
-    names: BTreeMap<String, (u64, Arc<Parsed>, Arc<Vec<Occurrence>>)>,
+    names: BTreeMap<String, Names>,
     /// Bytes of all versions that were loaded.
     loaded: usize,
     commands: BTreeSet<&'static str>,
+}
+
+/// The names of a document at a state of the classes.
+struct Names {
+    revision: u64,
+    parsed: Arc<Parsed>,
+    all: Arc<Vec<Occurrence>>,
 }
 
 /// What is left to be found out about a document.
@@ -76,7 +83,8 @@ impl Workspace {
     /// A document is closed: from now on its file counts.
     pub fn close(&mut self, document: &Document) {
         let saved = document.path.as_ref().and_then(|path| self.session.world.read(path).ok());
-        let is_saved = saved.is_some_and(|bytes| *crate::syntax::decode(&bytes).0 == *document.text);
+        let is_saved =
+            saved.is_some_and(|bytes| *crate::syntax::decode(&bytes).0 == *document.text);
         if is_saved {
             self.parsed.remove(document.uri.as_str());
             self.names.remove(document.uri.as_str());
@@ -90,6 +98,8 @@ impl Workspace {
         if self.loaded > MOST_FORMER + all.values().map(|one| one.text.len()).sum::<usize>() {
             self.forget();
         }
+        self.read(document);
+        // Loading a package again forgets the documents inside it, so that those come after it.
         for other in all.values().filter(|other| !other.is_script() && other.uri != document.uri) {
             self.read(other);
         }
@@ -108,8 +118,7 @@ impl Workspace {
             return parsed;
         }
         let source = self.session.sources.add(document.name(), document.text.clone());
-        let read =
-            recovery::read_without_line(source, &document.text, document.is_script(), line);
+        let read = recovery::read_without_line(source, &document.text, document.is_script(), line);
         match read.tree {
             Some(_) => self.load(document, source, read),
             None => parsed,
@@ -118,10 +127,11 @@ impl Workspace {
 
     fn read(&mut self, document: &Arc<Document>) -> Arc<Parsed> {
         let known = self.parsed.get(document.uri.as_str()).cloned();
-        if let Some(known) = known.filter(|known| Arc::ptr_eq(&known.document.text, &document.text)) {
-            if self.is_loaded(&known) {
-                return known;
-            }
+        if let Some(known) = known
+            && Arc::ptr_eq(&known.document.text, &document.text)
+            && self.is_loaded(&known)
+        {
+            return known;
         }
         let source = self.session.sources.add(document.name(), document.text.clone());
         let read = recovery::read(source, &document.text, document.is_script());
@@ -135,7 +145,9 @@ impl Workspace {
         let (mut names, mut errors) = (Vec::new(), read.errors);
         if let Some(tree) = &read.tree {
             let path = document.path.as_deref().filter(|_| !document.is_script());
-            if document.is_script() && let Some(path) = &document.path {
+            if document.is_script()
+                && let Some(path) = &document.path
+            {
                 self.session.grant_input(path);
             }
             match self.session.load_document(path, &file_of(tree)) {
@@ -151,17 +163,18 @@ impl Workspace {
     pub(super) fn names(&mut self, parsed: &Arc<Parsed>) -> Arc<Vec<Occurrence>> {
         let name = parsed.document.uri.as_str();
         let revision = self.session.library_revision();
-        if let Some((known, of, names)) = self.names.get(name)
-            && *known == revision
-            && Arc::ptr_eq(of, parsed)
+        if let Some(known) = self.names.get(name)
+            && known.revision == revision
+            && Arc::ptr_eq(&known.parsed, parsed)
         {
-            return names.clone();
+            return known.all.clone();
         }
-        let names = Arc::new(self.names_once(parsed));
+        let all = Arc::new(self.names_once(parsed));
         // Looking them up may have loaded libraries.
         let revision = self.session.library_revision();
-        self.names.insert(name.to_owned(), (revision, parsed.clone(), names.clone()));
-        names
+        let names = Names { revision, parsed: parsed.clone(), all: all.clone() };
+        self.names.insert(name.to_owned(), names);
+        all
     }
 
     /// The same, not kept.

@@ -70,7 +70,8 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
     embedding.read = global.allow_read.clone();
     let code = match embedding.session(Box::new(Silent), Arc::default()) {
         Ok(first) => {
-            let mut worker = Worker { workspace: workspace(who, embedding, first), queue: &queue, client };
+            let mut worker =
+                Worker { workspace: workspace(who, embedding, first), queue: &queue, client };
             worker.run()
         }
         Err(error) => {
@@ -127,7 +128,9 @@ impl Reader {
         loop {
             match frames::read(input) {
                 Ok(Frame::Message(Message::Request(request))) => self.request(request),
-                Ok(Frame::Message(Message::Notification(one))) if one.method == Exit::METHOD => break,
+                Ok(Frame::Message(Message::Notification(one))) if one.method == Exit::METHOD => {
+                    break;
+                }
                 Ok(Frame::Message(Message::Notification(notification))) => {
                     if self.stage == Stage::Running {
                         self.notified(notification);
@@ -206,7 +209,8 @@ impl Reader {
             }
             DidChangeWatchedFiles::METHOD => {
                 if let Some(changed) = decoded::<DidChangeWatchedFiles>(params) {
-                    let is_open = |uri: &lsp_types::Uri| self.queue.document(uri.as_str()).is_some();
+                    let is_open =
+                        |uri: &lsp_types::Uri| self.queue.document(uri.as_str()).is_some();
                     // What is open counts as it is in the editor.
                     if !changed.changes.iter().all(|change| is_open(&change.uri)) {
                         self.queue.forget();

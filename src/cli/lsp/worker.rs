@@ -40,7 +40,8 @@ impl Worker<'_> {
                     begun = None;
                 }
                 Some(Work::Examine(document, documents)) => {
-                    if let Some((former, _)) = begun.take().filter(|(one, _)| one.uri != document.uri)
+                    if let Some((former, _)) =
+                        begun.take().filter(|(one, _)| one.uri != document.uri)
                     {
                         self.queue.put_off(&former);
                     }

@@ -76,7 +76,8 @@ enum Kind {
 /// The piece that a text begins with: its length and kind.
 fn piece(text: &str) -> (usize, Kind) {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let length_of = |belongs: &dyn Fn(char) -> bool| text.find(|c| !belongs(c)).unwrap_or(text.len());
+    let length_of =
+        |belongs: &dyn Fn(char) -> bool| text.find(|c| !belongs(c)).unwrap_or(text.len());
     match text.chars().next() {
         Some(c) if c.is_whitespace() => (length_of(&char::is_whitespace), Kind::Blank),
         Some('/') if text.starts_with("//") => match text.find('\n') {

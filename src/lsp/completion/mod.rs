@@ -5,36 +5,88 @@ mod context;
 
 use super::client::Client;
 use super::description;
+use super::document::Document;
 use super::occurrences::Entity;
 use super::parsed::Parsed;
 use super::workspace::{Documents, Workspace};
-use super::document::Document;
 use crate::flatten::{ClassId, Declared, Library, Member};
 use crate::functions;
 use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::syntax::ast::{CausalityPrefix, Restriction, VariabilityPrefix};
 use context::{Context, Open};
-use lsp_types::{
-    CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit,
-};
+use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Attributes of predefined types (MLS §4.9.1).
 const ATTRIBUTES: &[&str] = &[
-    "start", "fixed", "unit", "displayUnit", "quantity", "min", "max", "nominal", "stateSelect",
+    "start",
+    "fixed",
+    "unit",
+    "displayUnit",
+    "quantity",
+    "min",
+    "max",
+    "nominal",
+    "stateSelect",
     "unbounded",
 ];
 
 /// Keywords that are offered.
 const KEYWORDS: &[&str] = &[
-    "algorithm", "and", "annotation", "block", "class", "connect", "connector", "constant",
-    "constrainedby", "discrete", "each", "else", "elseif", "elsewhen", "encapsulated", "end",
-    "enumeration", "equation", "extends", "external", "false", "final", "flow", "for", "function",
-    "if", "import", "initial", "inner", "input", "loop", "model", "not", "or", "outer", "output",
-    "package", "parameter", "partial", "protected", "public", "record", "redeclare", "replaceable",
-    "return", "stream", "then", "true", "type", "when", "while", "within",
+    "algorithm",
+    "and",
+    "annotation",
+    "block",
+    "class",
+    "connect",
+    "connector",
+    "constant",
+    "constrainedby",
+    "discrete",
+    "each",
+    "else",
+    "elseif",
+    "elsewhen",
+    "encapsulated",
+    "end",
+    "enumeration",
+    "equation",
+    "extends",
+    "external",
+    "false",
+    "final",
+    "flow",
+    "for",
+    "function",
+    "if",
+    "import",
+    "initial",
+    "inner",
+    "input",
+    "loop",
+    "model",
+    "not",
+    "or",
+    "outer",
+    "output",
+    "package",
+    "parameter",
+    "partial",
+    "protected",
+    "public",
+    "record",
+    "redeclare",
+    "replaceable",
+    "return",
+    "stream",
+    "then",
+    "true",
+    "type",
+    "when",
+    "while",
+    "within",
 ];
 
 /// What can be written at a position of a document.
@@ -163,8 +215,10 @@ impl Completion<'_> {
     fn is_input(&self, function: ClassId, member: &Member) -> bool {
         let Declared::Component(owner, name) = member.declared else { return false };
         let clause = self.library.component(owner, name).map(|(clause, _)| clause.type_prefixes);
-        let is_function =
-            matches!(self.library.definition_of(function).restriction, Restriction::Function { .. });
+        let is_function = matches!(
+            self.library.definition_of(function).restriction,
+            Restriction::Function { .. }
+        );
         !is_function
             || clause.is_some_and(|prefixes| prefixes.causality == Some(CausalityPrefix::Input))
     }
@@ -202,7 +256,9 @@ impl Completion<'_> {
         let mut scope = self.scope;
         while let Some(class) = scope {
             let members = self.library.members(class);
-            found.extend(members.iter().filter(|one| seen.insert(one.name)).map(|one| self.member(one, '1')));
+            found.extend(
+                members.iter().filter(|one| seen.insert(one.name)).map(|one| self.member(one, '1')),
+            );
             for (name, declared) in self.library.imports_of(class) {
                 if seen.insert(name) {
                     found.push(self.member(&Member { name, declared, protected: false }, '2'));
@@ -250,7 +306,8 @@ impl Completion<'_> {
         let mut names: BTreeSet<&'static str> = functions::names().collect();
         match self.is_script() {
             true => names.extend(builtins::names()),
-            false => names.extend(["der", "pre", "edge", "change", "initial", "terminal", "sample", "time"]),
+            false => names
+                .extend(["der", "pre", "edge", "change", "initial", "terminal", "sample", "time"]),
         }
         let item = |name: &'static str| CompletionItem {
             documentation: description::markdown(self.library, Entity::Function(Ident::new(name)))

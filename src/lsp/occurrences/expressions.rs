@@ -9,9 +9,7 @@ use crate::syntax::ast::{
     Arguments, ComponentReference, Equation, EquationKind, Expression, ExpressionKind, ForIndex,
     Statement, StatementKind,
 };
-use crate::syntax::visit::{
-    Visit, walk_equation, walk_expression, walk_reference, walk_statement,
-};
+use crate::syntax::visit::{Visit, walk_equation, walk_expression, walk_reference, walk_statement};
 
 impl Walk<'_> {
     /// Walks a body in which loop variables are in force.
@@ -97,11 +95,16 @@ impl Walk<'_> {
         let ExpressionKind::String(text) = &argument.kind else { return };
         let is_name = text.split('.').all(super::is_identifier);
         // Without quotation marks, which are one byte each.
-        let span = Span { start: argument.span.start + 1, end: argument.span.end - 1, ..argument.span };
+        let span =
+            Span { start: argument.span.start + 1, end: argument.span.end - 1, ..argument.span };
         let bytes = span.start as usize..span.end as usize;
         if is_name && self.text.get(bytes) == Some(text) {
             let parts = self.library.parts_of_type(None, &Name::parse(text));
-            if parts.last().copied().flatten().is_some_and(|last| matches!(last, Declared::Class(_)))
+            if parts
+                .last()
+                .copied()
+                .flatten()
+                .is_some_and(|last| matches!(last, Declared::Class(_)))
             {
                 self.name(span, &parts);
             }

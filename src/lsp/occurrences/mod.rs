@@ -10,9 +10,9 @@ use super::recovery::Tree;
 use crate::flatten::{ClassId, Declared, Library};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{ClassDefinition, InteractiveKind, StatementKind};
+pub use identifiers::{identifiers, is_identifier};
 use std::collections::BTreeSet;
 use std::ops::Range;
-pub use identifiers::{identifiers, is_identifier};
 
 /// What a name means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,7 +39,11 @@ pub struct Occurrence {
 }
 
 /// The names of a document that mean something, in the order of the text.
-pub fn of(library: &Library, parsed: &Parsed, commands: &BTreeSet<&'static str>) -> Vec<Occurrence> {
+pub fn of(
+    library: &Library,
+    parsed: &Parsed,
+    commands: &BTreeSet<&'static str>,
+) -> Vec<Occurrence> {
     let Some(tree) = &parsed.tree else { return Vec::new() };
     let mut walk = Walk {
         library,

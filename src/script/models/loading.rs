@@ -109,7 +109,11 @@ impl Session {
     }
 
     /// Loads a package from its folder; its classes are read when they are needed.
-    pub(super) fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
+    pub(super) fn load_library(
+        &mut self,
+        folder: &Path,
+        around: &Name,
+    ) -> Result<Vec<Name>, Vec<Diagnostic>> {
         self.classes.invalidate();
         self.classes.history.note("folder", &format!("{} in `{around}`", folder.display()));
         let files = self.library_files();

@@ -151,16 +151,14 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("lessons", &["script", "value", "syntax", "source"]),
     (
         "lsp",
-        &[
-            "script", "flatten", "format", "functions", "syntax", "models", "name", "source", "diag",
-        ],
+        &["script", "flatten", "format", "functions", "syntax", "models", "name", "source", "diag"],
     ),
     (
         "cli",
         &[
-            "lsp", "lessons", "format", "syntax", "budget", "external", "script", "identify", "teach",
-            "runtime", "codegen", "results", "plot", "sim", "ga", "models", "registry", "name",
-            "source", "diag",
+            "lsp", "lessons", "format", "syntax", "budget", "external", "script", "identify",
+            "teach", "runtime", "codegen", "results", "plot", "sim", "ga", "models", "registry",
+            "name", "source", "diag",
         ],
     ),
 ];

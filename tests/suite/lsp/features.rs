@@ -285,7 +285,8 @@ fn a_name_is_renamed_in_all_files_of_a_library() {
     fs::write(root.join("package.mo"), "within;\npackage Lib\nend Lib;\n").unwrap();
     let part = "within Lib;\nmodel Part\n  parameter Real gain = 1;\nend Part;\n";
     fs::write(root.join("Part.mo"), part).unwrap();
-    let user = "within Lib;\nmodel User\n  Part part(gain = 2);\n  Real y = part.gain;\nend User;\n";
+    let user =
+        "within Lib;\nmodel User\n  Part part(gain = 2);\n  Real y = part.gain;\nend User;\n";
     fs::write(root.join("User.mo"), user).unwrap();
     let mut client = Client::start(here.path());
     let path = root.join("Part.mo");
@@ -306,14 +307,16 @@ fn a_name_is_renamed_in_all_files_of_a_library() {
 
 #[test]
 fn formatting_is_that_of_gapi_fmt() {
-    let text = "model M\nReal x ( start=1 ) ;\n  Real y;\nequation\nder (x)=-x;\n y = 2*x;\nend M;\n";
+    let text =
+        "model M\nReal x ( start=1 ) ;\n  Real y;\nequation\nder (x)=-x;\n y = 2*x;\nend M;\n";
     let mut open = Open::new("M.mo", text);
     let params = json!({"textDocument": {"uri": uri(&open.path)},
         "options": {"tabSize": 2, "insertSpaces": true}});
     let edits = open.client.request("textDocument/formatting", params.clone());
     let edits = edits.as_array().unwrap().clone();
     let formatted = applied(text, edits);
-    let expected = "model M\n  Real x(start=1);\n  Real y;\nequation\n  der(x) = -x;\n  y = 2*x;\nend M;\n";
+    let expected =
+        "model M\n  Real x(start=1);\n  Real y;\nequation\n  der(x) = -x;\n  y = 2*x;\nend M;\n";
     assert_eq!(formatted, expected);
     open.change(expected);
     assert_eq!(open.client.request("textDocument/formatting", params.clone()), json!([]));
@@ -373,20 +376,41 @@ fn colours_follow_the_meaning() {
     let mut open = Open::new("M.mo", text);
     let params = json!({"textDocument": {"uri": uri(&open.path)}});
     let found = open.client.request("textDocument/semanticTokens/full", params);
-    let data: Vec<u64> = found["data"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
-    let kinds = ["namespace", "class", "type", "literal", "function", "property", "variable",
-        "keyword", "comment", "string", "number"];
+    let data: Vec<u64> =
+        found["data"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    let kinds = [
+        "namespace",
+        "class",
+        "type",
+        "literal",
+        "function",
+        "property",
+        "variable",
+        "keyword",
+        "comment",
+        "string",
+        "number",
+    ];
     let (mut line, mut column) = (0, 0);
     let mut shown = Vec::new();
     for token in data.chunks(5) {
-        (line, column) = if token[0] == 0 { (line, column + token[1]) } else { (line + token[0], token[1]) };
+        (line, column) =
+            if token[0] == 0 { (line, column + token[1]) } else { (line + token[0], token[1]) };
         let start: usize = text.split_inclusive('\n').take(line as usize).map(str::len).sum();
         let start = start + column as usize;
         let word = &text[start..start + token[2] as usize];
-        shown.push(format!("{word}:{}{}", kinds[token[3] as usize], if token[4] & 2 > 0 { "!" } else { "" }));
+        shown.push(format!(
+            "{word}:{}{}",
+            kinds[token[3] as usize],
+            if token[4] & 2 > 0 { "!" } else { "" }
+        ));
     }
-    assert_eq!(shown.join(" "), "model:keyword M:class // a:comment parameter:keyword Real:type \
-        p:property! =x".replace("=x", "1:number Real:type x:property p:property! end:keyword M:class"));
+    assert_eq!(
+        shown.join(" "),
+        "model:keyword M:class // a:comment parameter:keyword Real:type \
+        p:property! =x"
+            .replace("=x", "1:number Real:type x:property p:property! end:keyword M:class")
+    );
     open.end();
 }
 

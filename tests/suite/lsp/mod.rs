@@ -130,6 +130,18 @@ fn unsaved_text_counts_in_other_documents_too() {
     assert!(client.diagnostics(&package, 1).is_empty());
     client.change(&user_path, 3, &user.replace("b = 2", "a = 2"));
     assert!(client.diagnostics(&user_path, 3).is_empty());
+    // What the package declares, unsaved, is seen by classes that are not open.
+    fs::write(root.join("Other.mo"), "within Lib;\nmodel Other\n  Real z = c;\nend Other;\n")
+        .unwrap();
+    let changes = json!({"changes": [{"uri": uri(&root.join("Other.mo")), "type": 1}]});
+    client.notify("workspace/didChangeWatchedFiles", changes);
+    let with_other = user.replace("Parts.Part part(b = 2)", "Other other");
+    client.change(&user_path, 4, &with_other);
+    let found = client.diagnostics(&user_path, 4);
+    assert!(found.len() == 1 && found[0].contains("`c` is not declared"), "{found:?}");
+    client.change(&package, 2, "within;\npackage Lib\n  constant Real c = 3;\nend Lib;\n");
+    client.change(&user_path, 5, &with_other);
+    assert!(client.diagnostics(&user_path, 5).is_empty());
     assert_eq!(client.shut_down(), 0);
 }
 
@@ -146,7 +158,9 @@ fn scripts_are_checked_before_they_run() {
     client.open(&path, text);
     let found = client.diagnostics(&path, 1);
     assert_eq!(found.len(), 2, "{found:?}");
-    assert!(found[0].starts_with("3:22-29 wrong-arguments: `simulateModel` has no input `stopTme`"));
+    assert!(
+        found[0].starts_with("3:22-29 wrong-arguments: `simulateModel` has no input `stopTme`")
+    );
     assert!(found[0].contains("did you mean `stopTime`?"), "{}", found[0]);
     assert_eq!(
         found[1],
@@ -188,8 +202,11 @@ fn what_an_editor_can_do_does_not_end_the_server() {
     client.change(&path, last, RESISTOR);
     assert!(client.diagnostics(&path, last).is_empty());
     // Cancelled, and for what is not open.
-    let id = client.ask("textDocument/hover", json!({"textDocument": {"uri": uri(&path)},
-        "position": {"line": 0, "character": 0}}));
+    let id = client.ask(
+        "textDocument/hover",
+        json!({"textDocument": {"uri": uri(&path)},
+        "position": {"line": 0, "character": 0}}),
+    );
     client.notify("$/cancelRequest", json!({"id": id}));
     let answer = client.response(id);
     assert!(answer.get("result").is_some() || answer["error"]["code"] == -32800, "{answer}");
