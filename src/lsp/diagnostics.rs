@@ -1,20 +1,21 @@
 //! Diagnostics as editors show them: message, code and helps of `gapi check`.
 
 use super::parsed::Parsed;
-use super::workspace::Workspace;
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Span;
-use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, NumberOrString, Range};
+use lsp_types::{
+    DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range,
+};
 use std::ops;
 
 /// What precedes an action in a message.
 pub const HELP: &str = "help: ";
 
-/// A diagnostic of a document.
+/// A diagnostic of a document; `location` says where a span is in the protocol.
 pub fn of(
-    workspace: &Workspace,
     parsed: &Parsed,
     diagnostic: &Diagnostic,
+    location: impl Fn(Span) -> Option<Location>,
 ) -> lsp_types::Diagnostic {
     let own = diagnostic.labels.iter().find(|label| label.span.source == parsed.source);
     let bytes = own.map_or_else(|| around(parsed), |label| shown(parsed, label.span));
@@ -31,7 +32,7 @@ pub fn of(
         code: Some(NumberOrString::String(diagnostic.code.slug.to_owned())),
         source: Some("gapi".to_owned()),
         message,
-        related_information: related(workspace, parsed, diagnostic, range),
+        related_information: related(parsed, diagnostic, (range, location)),
         ..lsp_types::Diagnostic::default()
     }
 }
@@ -61,17 +62,16 @@ fn around(parsed: &Parsed) -> ops::Range<usize> {
 
 /// The other places of a diagnostic.
 fn related(
-    workspace: &Workspace,
     parsed: &Parsed,
     diagnostic: &Diagnostic,
-    own: Range,
+    (own, location): (Range, impl Fn(Span) -> Option<Location>),
 ) -> Option<Vec<DiagnosticRelatedInformation>> {
     let labels = diagnostic.labels.iter().map(|label| (label.span, label.text.as_str()));
     let calls = diagnostic.trace.iter().map(|frame| (frame.span, frame.what.as_str()));
     let found: Vec<DiagnosticRelatedInformation> = labels
         .chain(calls)
         .filter_map(|(span, text)| {
-            let location = workspace.location(span)?;
+            let location = location(span)?;
             let is_own = span.source == parsed.source && location.range.start == own.start;
             let message = if text.is_empty() { "here".to_owned() } else { text.to_owned() };
             (!is_own).then_some(DiagnosticRelatedInformation { location, message })

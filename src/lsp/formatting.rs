@@ -1,7 +1,7 @@
 //! Formatting: what `gapi fmt` writes, as changes of lines.
 
 use super::document::Document;
-use super::requests::Refusal;
+use super::refusal::Refusal;
 use crate::format::{self, Failure, diff};
 use crate::source::SourceId;
 use lsp_types::TextEdit;

@@ -23,6 +23,7 @@ mod occurrences;
 mod outline;
 mod parsed;
 mod recovery;
+mod refusal;
 mod rename;
 mod requests;
 mod script_checks;
@@ -32,5 +33,6 @@ mod workspace;
 
 pub use client::Client;
 pub use document::Document;
-pub use requests::{Refusal, answer, capabilities};
+pub use refusal::Refusal;
+pub use requests::{answer, capabilities};
 pub use workspace::{Documents, Examination, Workspace};

@@ -2,7 +2,7 @@
 
 use super::navigation::{self, Found, Places};
 use super::occurrences::{Entity, is_identifier};
-use super::requests::Refusal;
+use super::refusal::Refusal;
 use super::workspace::{Documents, Workspace};
 use crate::flatten::Declared;
 use crate::name::{Ident, Name};

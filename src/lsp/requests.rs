@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::navigation::{self, Found};
+use super::refusal::Refusal;
 use super::workspace::{Documents, Workspace};
 use super::{actions, completion, description, formatting, hints, outline, rename, tokens};
 use lsp_types::request::{
@@ -22,27 +23,6 @@ use lsp_types::{
 };
 use serde_json::Value;
 use std::sync::Arc;
-
-/// Why a request has no answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refusal {
-    /// The code of the protocol.
-    pub code: i32,
-    /// One sentence.
-    pub message: String,
-}
-
-/// The codes of JSON-RPC and of the protocol.
-const METHOD_NOT_FOUND: i32 = -32601;
-const INVALID_PARAMS: i32 = -32602;
-const REQUEST_FAILED: i32 = -32803;
-
-impl Refusal {
-    /// A request that cannot be served, and why.
-    pub fn failed(message: impl Into<String>) -> Refusal {
-        Refusal { code: REQUEST_FAILED, message: message.into() }
-    }
-}
 
 /// What the server can do.
 pub fn capabilities() -> ServerCapabilities {
@@ -116,9 +96,7 @@ pub fn answer(
         }
         CodeActionRequest::METHOD => asked.with::<CodeActionRequest>(params, Asked::actions),
         InlayHintRequest::METHOD => asked.with::<InlayHintRequest>(params, Asked::hints),
-        _ => {
-            Err(Refusal { code: METHOD_NOT_FOUND, message: format!("`{method}` is not supported") })
-        }
+        _ => Err(Refusal::unknown(method)),
     }
 }
 
@@ -135,8 +113,7 @@ impl Asked<'_> {
         params: Value,
         work: impl FnOnce(&mut Self, R::Params) -> Result<R::Result, Refusal>,
     ) -> Result<Value, Refusal> {
-        let params = serde_json::from_value(params)
-            .map_err(|error| Refusal { code: INVALID_PARAMS, message: error.to_string() })?;
+        let params = serde_json::from_value(params).map_err(|error| Refusal::malformed(&error))?;
         let result = work(self, params)?;
         serde_json::to_value(result).map_err(|error| Refusal::failed(error.to_string()))
     }

@@ -250,7 +250,9 @@ impl Workspace {
             seen.insert((one.code.slug, span.source, span.start, one.message.clone()))
         };
         let distinct = examination.found.iter().filter(is_new);
-        distinct.map(|one| diagnostics::of(self, &examination.parsed, one)).collect()
+        distinct
+            .map(|one| diagnostics::of(&examination.parsed, one, |span| self.location(span)))
+            .collect()
     }
 
     /// The place of a span in the protocol, in whatever document or file it is.
