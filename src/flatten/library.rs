@@ -295,16 +295,24 @@ impl Library {
         };
         let own = &self.class(id).children;
         let children = self.class(former).children.iter();
-        let children =
-            children.filter(|(name, child)| !own.contains_key(*name) && elsewhere(**child));
         let kept: Vec<(Ident, ClassId)> = children
-            .map(|(name, child)| {
-                let Slot { origin, declared, .. } = self.slot(*child).clone();
-                (*name, self.push(origin, declared, *name, Some(id)))
-            })
+            .filter(|(name, child)| !own.contains_key(*name) && elsewhere(**child))
+            .map(|(name, child)| (*name, *child))
             .collect();
+        let again = |(name, child): &(Ident, ClassId)| {
+            let Slot { origin, declared, .. } = self.slot(*child).clone();
+            (*name, self.push(origin, declared, *name, Some(id)))
+        };
+        let read_again: Vec<(Ident, ClassId)> = kept.iter().map(again).collect();
         if let Some(class) = self.class_mut(id) {
-            class.children.extend(kept);
+            class.children.extend(read_again.iter().copied());
+        }
+        // Those in a folder are found again; what was put into a package by itself is not.
+        for ((_, child), (_, new)) in kept.into_iter().zip(read_again) {
+            let slot = self.slot(child);
+            if matches!(slot.origin, Origin::Head(_, None)) && slot.class.get().is_some() {
+                self.keep_separate_files(Some(child), new);
+            }
         }
     }
 

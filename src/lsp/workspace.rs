@@ -12,6 +12,7 @@ use super::uri;
 use crate::diag::Diagnostic;
 use crate::models;
 use crate::name::Name;
+use crate::script::models::documents::{CheckedModel, ModelCheck};
 use crate::script::{Session, builtins};
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::Restriction;
@@ -85,7 +86,9 @@ impl Workspace {
         let saved = document.path.as_ref().and_then(|path| self.session.world.read(path).ok());
         let is_saved =
             saved.is_some_and(|bytes| *crate::syntax::decode(&bytes).0 == *document.text);
-        if is_saved {
+        let defines = document.is_script()
+            && self.parsed.get(document.uri.as_str()).is_some_and(|one| !one.names.is_empty());
+        if is_saved && !defines {
             self.parsed.remove(document.uri.as_str());
             self.names.remove(document.uri.as_str());
         } else {
@@ -148,7 +151,7 @@ impl Workspace {
             if document.is_script()
                 && let Some(path) = &document.path
             {
-                self.session.grant_input(path);
+                self.session.search_beside(path);
             }
             match self.session.load_document(path, &file_of(tree)) {
                 Ok(loaded) => names = loaded,
@@ -234,12 +237,20 @@ impl Workspace {
         examination.models.len()
     }
 
-    /// Looks for what is wrong with one more model of a document; whether more are left.
-    pub fn examine_next(&mut self, examination: &mut Examination) -> bool {
-        if let Some(model) = examination.models.pop_front() {
-            examination.found.extend(self.session.examine_model(&model));
+    /// The work on one more model of a document, for any thread; `None` if none is left.
+    pub fn next_model(&mut self, examination: &mut Examination) -> Option<ModelCheck> {
+        let model = examination.models.pop_front()?;
+        Some(self.session.model_check(&model))
+    }
+
+    /// What was found out about a model. If it lacked a library that can be loaded, the model is left
+    /// again.
+    pub fn add_model(&mut self, examination: &mut Examination, checked: CheckedModel) {
+        if self.session.load_missing(&checked.missing) {
+            examination.models.push_front(checked.model);
+        } else {
+            examination.found.extend(checked.found);
         }
-        !examination.models.is_empty()
     }
 
     /// What was found so far, for the editor.

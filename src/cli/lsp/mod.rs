@@ -1,7 +1,7 @@
 //! `gapi lsp`: the language server, on standard input and output.
 //!
-//! Three threads: one reads messages and keeps the documents, one works, one writes. So documents are
-//! up to date and requests can be cancelled while a model is examined.
+//! One thread reads messages and keeps the documents, one answers requests, one examines models, one
+//! writes. So documents are up to date and requests are answered while a model is examined.
 
 mod frames;
 mod queue;
@@ -69,11 +69,7 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
     embedding.libraries = global.library.iter().chain(&who.libraries).cloned().collect();
     embedding.read = global.allow_read.clone();
     let code = match embedding.session(Box::new(Silent), Arc::default()) {
-        Ok(first) => {
-            let mut worker =
-                Worker { workspace: workspace(who, embedding, first), queue: &queue, client };
-            worker.run()
-        }
+        Ok(first) => Worker::new(workspace(who, embedding, first), queue, client).run(),
         Err(error) => {
             terminal::eprint(&format!("error: {error}\n"));
             drop(client);

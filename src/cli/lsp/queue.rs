@@ -2,6 +2,7 @@
 //! the one that works.
 
 use crate::lsp::{Document, Documents};
+use crate::script::models::documents::CheckedModel;
 use lsp_server::{Request, RequestId};
 use std::collections::VecDeque;
 use std::process::ExitCode;
@@ -17,6 +18,8 @@ pub(super) enum Work {
     Forget,
     /// The newest version of a document is to be examined.
     Examine(Arc<Document>, Documents),
+    /// A model of the examination of this number was examined.
+    Examined(usize, Option<CheckedModel>),
     /// The connection has ended.
     End(ExitCode),
 }
@@ -25,15 +28,17 @@ pub(super) enum Work {
 struct State {
     documents: Documents,
     work: VecDeque<Work>,
-    /// Names of documents to be examined when nothing else is to be done, each once.
-    to_examine: VecDeque<String>,
+    /// Names of documents that were changed, the last first.
+    changed: VecDeque<String>,
+    /// Names of other documents to be examined, when nothing else is to be done.
+    others: VecDeque<String>,
 }
 
 /// Work in the order in which it is done: what was asked for first, then examinations.
 #[derive(Default)]
 pub(super) struct Queue {
     state: Mutex<State>,
-    changed: Condvar,
+    notify: Condvar,
 }
 
 impl Queue {
@@ -46,7 +51,7 @@ impl Queue {
         let mut state = self.state();
         let documents = state.documents.clone();
         state.work.push_back(Work::Request(request, documents));
-        self.changed.notify_one();
+        self.notify.notify_one();
     }
 
     /// Takes back a request that was not begun; whether there was one.
@@ -64,14 +69,10 @@ impl Queue {
         state.documents.insert(name.clone(), Arc::new(document));
         let others: Vec<String> =
             state.documents.keys().filter(|other| **other != name).cloned().collect();
-        state.to_examine.retain(|one| *one != name);
-        state.to_examine.push_front(name);
-        for other in others {
-            if !state.to_examine.contains(&other) {
-                state.to_examine.push_back(other);
-            }
-        }
-        self.changed.notify_one();
+        state.no_longer(&name);
+        state.changed.push_front(name);
+        others.into_iter().for_each(|other| state.later(other));
+        self.notify.notify_one();
     }
 
     /// The newest version of a document.
@@ -82,10 +83,10 @@ impl Queue {
     /// A document was closed; whether it was open.
     pub(super) fn close(&self, name: &str) -> bool {
         let mut state = self.state();
-        state.to_examine.retain(|one| one != name);
+        state.no_longer(name);
         let Some(document) = state.documents.remove(name) else { return false };
         state.work.push_back(Work::Close(document));
-        self.changed.notify_one();
+        self.notify.notify_one();
         true
     }
 
@@ -93,59 +94,68 @@ impl Queue {
     pub(super) fn forget(&self) {
         let mut state = self.state();
         state.work.push_back(Work::Forget);
-        state.to_examine = state.documents.keys().cloned().collect();
-        self.changed.notify_one();
+        state.others = state.documents.keys().cloned().collect();
+        self.notify.notify_one();
     }
 
     /// The connection has ended.
     pub(super) fn end(&self, code: ExitCode) {
         self.state().work.push_back(Work::End(code));
-        self.changed.notify_one();
+        self.notify.notify_one();
     }
 
-    /// What to do next.
-    pub(super) fn next(&self) -> Work {
+    /// What was found out about a model.
+    pub(super) fn examined(&self, count: usize, checked: Option<CheckedModel>) {
+        self.state().work.push_back(Work::Examined(count, checked));
+        self.notify.notify_one();
+    }
+
+    /// What to do next. While a document is being examined (`is_examining`), only what was asked for and
+    /// documents that were changed.
+    pub(super) fn next(&self, is_examining: bool) -> Work {
         let mut state = self.state();
         loop {
-            if let Some(work) = state.next() {
+            if let Some(work) = state.next(is_examining) {
                 return work;
             }
-            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-
-    /// The same if something is to be done that goes before the examination of this version of a
-    /// document: whatever was asked for, or a newer version.
-    pub(super) fn urgent(&self, examined: &Document) -> Option<Work> {
-        let mut state = self.state();
-        let newest = state.documents.get(examined.uri.as_str());
-        let is_newest = newest.is_some_and(|newest| newest.version == examined.version);
-        match state.work.is_empty() && is_newest {
-            true => None,
-            false => state.next(),
+            state = self.notify.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
     /// The examination of a document was put off for something else.
     pub(super) fn put_off(&self, document: &Document) {
-        let name = document.uri.as_str().to_owned();
         let mut state = self.state();
-        if state.documents.contains_key(&name) && !state.to_examine.contains(&name) {
-            state.to_examine.push_back(name);
-        }
+        state.later(document.uri.as_str().to_owned());
     }
 }
 
 impl State {
-    fn next(&mut self) -> Option<Work> {
+    fn next(&mut self, is_examining: bool) -> Option<Work> {
         if let Some(work) = self.work.pop_front() {
             return Some(work);
         }
-        while let Some(name) = self.to_examine.pop_front() {
+        loop {
+            let changed = self.changed.pop_front();
+            let name = match is_examining {
+                true => changed?,
+                false => changed.or_else(|| self.others.pop_front())?,
+            };
             if let Some(document) = self.documents.get(&name) {
                 return Some(Work::Examine(document.clone(), self.documents.clone()));
             }
         }
-        None
+    }
+
+    /// A document is examined later, once.
+    fn later(&mut self, name: String) {
+        let is_known = self.changed.contains(&name) || self.others.contains(&name);
+        if self.documents.contains_key(&name) && !is_known {
+            self.others.push_back(name);
+        }
+    }
+
+    fn no_longer(&mut self, name: &str) {
+        self.changed.retain(|one| one != name);
+        self.others.retain(|one| one != name);
     }
 }

@@ -1,7 +1,6 @@
 //! Classes whose text an editor shows, saved or not: they stand for those of their files, and what is
 //! wrong with them is an answer, not a message.
 
-use super::simulation;
 use crate::causalize;
 use crate::diag::Diagnostic;
 use crate::flatten::{self, ClassId, Library};
@@ -11,6 +10,62 @@ use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+/// A model, and the classes as they are now.
+#[derive(Debug)]
+pub struct ModelCheck {
+    library: Library,
+    model: Name,
+}
+
+/// What is wrong with a model.
+#[derive(Debug)]
+pub struct CheckedModel {
+    /// The model.
+    pub model: Name,
+    /// Errors and warnings.
+    pub found: Vec<Diagnostic>,
+    /// Classes at the top that were looked for and are not loaded.
+    pub missing: BTreeSet<Ident>,
+}
+
+impl ModelCheck {
+    /// Finds out what is wrong with the model down to its causalization: what `gapi check` finds.
+    pub fn run(self) -> CheckedModel {
+        let mut found = self.found();
+        let problems = self.library.take_problems();
+        if !problems.is_empty() {
+            found = problems;
+        }
+        CheckedModel { missing: self.library.take_missing(), model: self.model, found }
+    }
+
+    fn found(&self) -> Vec<Diagnostic> {
+        let (flattened, imbalance) =
+            match flatten::flatten_unbalanced(&self.library, &self.model, &[]) {
+                Ok(flattened) => flattened,
+                Err(mut errors) => {
+                    errors.retain(|error| error.code.slug != VALUE_LEFT_OPEN);
+                    return errors;
+                }
+            };
+        if let Some(imbalance) = imbalance {
+            return vec![causalize::explain_imbalance(&flattened.model, imbalance)];
+        }
+        let mut found = flattened.warnings;
+        // What has open connectors is no system by itself.
+        let is_component = flattened.balance.and_then(|balance| balance.of_component()).is_some();
+        let is_wrong = |error: &Diagnostic| match error.code.slug {
+            "singular-system" => !is_component,
+            slug => slug != VALUE_LEFT_OPEN,
+        };
+        found.extend(causalize::causalize(&flattened.model).err().filter(is_wrong));
+        found
+    }
+}
+
+/// Whoever uses a model gives its parameters values.
+const VALUE_LEFT_OPEN: &str = "parameter-without-value";
 
 impl Session {
     /// Loads the classes of a text instead of those of its file, with the package that it belongs to
@@ -48,12 +103,21 @@ impl Session {
         match root.last().map(Path::to_path_buf) {
             // What is wrong with its own text is known from the document.
             Some(root) => _ = self.load_root(&root),
-            None if !self.library_folders().iter().any(|known| known == folder) => {
-                self.add_library_dir(folder);
-            }
-            None => {}
+            None => self.search_beside(path),
         }
         self.package_around(if is_package { folder } else { path })
+    }
+
+    /// Finds classes by name beside a file, and in the folders `models` above it as a run of it does.
+    pub fn search_beside(&mut self, path: &Path) {
+        self.grant_input(path);
+        let Some(folder) = path.parent() else { return };
+        let models = folder.ancestors().map(|above| above.join("models"));
+        let folders: Vec<PathBuf> = std::iter::once(folder.to_path_buf())
+            .chain(models.filter(|models| self.world.is_dir(models)))
+            .filter(|one| !self.library_folders().contains(one))
+            .collect();
+        folders.iter().for_each(|folder| self.add_library_dir(folder));
     }
 
     fn load_root(&mut self, root: &Path) -> Result<(), Vec<Diagnostic>> {
@@ -96,26 +160,21 @@ impl Session {
         self.ask(|library| flatten::check(library, class))
     }
 
-    /// What is wrong with a model down to its causalization: what `gapi check` finds.
-    pub fn examine_model(&mut self, model: &Name) -> Vec<Diagnostic> {
-        let flattened = match simulation::flattened_silently(self, &model.to_string()) {
-            Ok(flattened) => flattened,
-            Err(mut errors) => {
-                errors.retain(|error| error.code.slug != "parameter-without-value");
-                return errors;
-            }
-        };
-        let mut found = flattened.warnings;
-        // What has open connectors is no system by itself, and whoever uses a model gives its parameters
-        // values.
-        let is_component = flattened.balance.and_then(|balance| balance.of_component()).is_some();
-        let is_wrong = |error: &Diagnostic| match error.code.slug {
-            "singular-system" => !is_component,
-            "parameter-without-value" => false,
-            _ => true,
-        };
-        found.extend(causalize::causalize(&flattened.model).err().filter(is_wrong));
-        found
+    /// The work of finding out what is wrong with a model, for any thread.
+    pub fn model_check(&mut self, model: &Name) -> ModelCheck {
+        let resources = self.resources_for(model);
+        self.classes.library.set_resources(resources);
+        ModelCheck { library: self.classes.library.clone(), model: model.clone() }
+    }
+
+    /// Loads what a model lacked; whether something was loaded, so that it is worth another attempt.
+    pub fn load_missing(&mut self, missing: &BTreeSet<Ident>) -> bool {
+        let mut loaded = false;
+        for name in missing {
+            // A library that cannot be loaded is missed again by what needs it.
+            loaded |= self.autoload_class(*name).unwrap_or(false);
+        }
+        loaded
     }
 
     /// The class of a full name, loaded if it can be.

@@ -178,16 +178,6 @@ pub(in crate::script) fn flattened(
     session: &mut Session,
     problem: &str,
 ) -> Result<flatten::Flattened, Vec<Diagnostic>> {
-    let flattened = flattened_silently(session, problem)?;
-    warn(session, &flattened.warnings);
-    Ok(flattened)
-}
-
-/// As [`flattened`]; warnings are not reported.
-pub(super) fn flattened_silently(
-    session: &mut Session,
-    problem: &str,
-) -> Result<flatten::Flattened, Vec<Diagnostic>> {
     let source = session.sources.add("problem", problem);
     let (name, modification) =
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
@@ -209,6 +199,7 @@ pub(super) fn flattened_silently(
         if let Some(imbalance) = imbalance {
             return Err(vec![causalize::explain_imbalance(&flattened.model, imbalance)]);
         }
+        warn(session, &flattened.warnings);
         return Ok(flattened);
     }
 }

@@ -142,6 +142,33 @@ fn unsaved_text_counts_in_other_documents_too() {
     client.change(&package, 2, "within;\npackage Lib\n  constant Real c = 3;\nend Lib;\n");
     client.change(&user_path, 5, &with_other);
     assert!(client.diagnostics(&user_path, 5).is_empty());
+    // Packages inside each other, both open.
+    let parts = root.join("Parts/package.mo");
+    client.open(&parts, "within Lib;\npackage Parts\n  constant Real d = c;\nend Parts;\n");
+    assert!(client.diagnostics(&parts, 1).is_empty());
+    client.change(&package, 3, "within;\npackage Lib\n  constant Real c = 4;\nend Lib;\n");
+    client.change(&user_path, 6, &user.replace("b = 2", "a = Parts.d"));
+    assert!(client.diagnostics(&user_path, 6).is_empty());
+    assert_eq!(client.shut_down(), 0);
+}
+
+#[test]
+fn scripts_find_models_as_a_run_does() {
+    let here = folder(&[]);
+    fs::create_dir_all(here.path().join("scripts")).unwrap();
+    fs::create_dir_all(here.path().join("models")).unwrap();
+    let twice = "function Twice\n  input Real u;\n  output Real y = 2*u;\nend Twice;\n";
+    fs::write(here.path().join("models/Twice.mo"), twice).unwrap();
+    let elsewhere = folder(&[]);
+    let mut client = Client::start(elsewhere.path());
+    let path = here.path().join("scripts/run.mos");
+    client.open(&path, "x = Twice(1)\ny = Thrice(1)\n");
+    let found = client.diagnostics(&path, 1);
+    assert!(found.len() == 1 && found[0].contains("Thrice"), "{found:?}");
+    let position = json!({"line": 0, "character": 6});
+    let params = json!({"textDocument": {"uri": uri(&path)}, "position": position});
+    let place = client.request("textDocument/definition", params);
+    assert_eq!(place["uri"], uri(&here.path().join("models/Twice.mo")));
     assert_eq!(client.shut_down(), 0);
 }
 
