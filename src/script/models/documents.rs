@@ -139,9 +139,10 @@ impl Session {
         Ok(())
     }
 
-    /// The file that a source was read from as part of a library.
+    /// The file that a source was read from.
     pub fn file_of_source(&self, source: SourceId) -> Option<PathBuf> {
-        self.classes.reads.file_of(source)
+        let single = self.classes.single.get(&source).cloned();
+        single.or_else(|| self.classes.reads.file_of(source))
     }
 
     /// Asks about the loaded classes until nothing more has to be loaded for the answer.

@@ -103,6 +103,7 @@ impl Session {
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let (source, text) =
             self.add_file(path).at(self.call_site()).map_err(|error| vec![error])?;
+        self.classes.single.insert(source, self.world.absolute(path));
         let names = self.load_source(source, &text, Some(path))?;
         self.classes.note_files(&names, path);
         Ok(names)
