@@ -66,7 +66,8 @@
 //! - [`units`]: units of measurement and their conversion;
 //! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
 //! - [`models`]: the Modelica packages that are part of the program;
-//! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks; [`cli`]: the command line, the only door outside.
+//! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks;
+//! - [`lsp`]: what editors ask about open documents; [`cli`]: the command line, the only door outside.
 
 #![cfg_attr(
     not(all(feature = "jit", feature = "xlsx", feature = "hdf5", feature = "pictures")),
@@ -112,3 +113,5 @@ pub mod value;
 
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "lsp")]
+pub mod lsp;

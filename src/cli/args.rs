@@ -8,6 +8,8 @@ use super::fmt::FmtArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
 use super::lesson::LessonArgs;
+#[cfg(feature = "lsp")]
+use super::lsp::LspArgs;
 use super::man::ManArgs;
 use super::new::NewArgs;
 use super::options::Global;
@@ -77,6 +79,9 @@ pub(super) enum Command {
     Flatten(FlattenArgs),
     /// Format Modelica files and scripts
     Fmt(FmtArgs),
+    /// Serve an editor by the Language Server Protocol
+    #[cfg(feature = "lsp")]
+    Lsp(LspArgs),
     /// Recreate the report of an identification from its files
     Report(ReportArgs),
     /// Compare results with reference results

@@ -20,6 +20,8 @@ mod lesson;
 mod limits;
 mod live;
 mod lock;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod man;
 mod memory;
 mod named;
@@ -97,6 +99,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
         Command::Fmt(arguments) => fmt::fmt(arguments),
+        #[cfg(feature = "lsp")]
+        Command::Lsp(arguments) => lsp::lsp(arguments, &cli.global),
         Command::Report(arguments) => report::report(arguments, &cli.global),
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),
         Command::Verify(arguments) => verify::verify(arguments, &cli.global),

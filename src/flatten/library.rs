@@ -284,19 +284,35 @@ impl Library {
         Arc::make_mut(&mut self.classes).get_mut(id.0 as usize)?.class.get_mut()
     }
 
-    /// A package read again from its own file keeps the classes that lie in files beside it.
+    /// A package read again from its own file keeps the classes that lie in files beside it. They are
+    /// read again when they are needed: what encloses them is another class now.
     fn keep_separate_files(&mut self, former: Option<ClassId>, id: ClassId) {
         let Some(former) = former else { return };
         let source = self.class(former).definition.span.source;
-        let elsewhere = |child: &ClassId| match &self.slot(*child).origin {
+        let elsewhere = |child: ClassId| match &self.slot(child).origin {
             Origin::Head(definition, _) => definition.span.source != source,
             Origin::File(..) => true,
         };
-        let children = self.class(former).children.iter().map(|(name, child)| (*name, *child));
-        let kept: Vec<(Ident, ClassId)> = children.filter(|(_, child)| elsewhere(child)).collect();
-        let Some(class) = self.class_mut(id) else { return };
-        for (name, child) in kept {
-            class.children.entry(name).or_insert(child);
+        let own = &self.class(id).children;
+        let children = self.class(former).children.iter();
+        let kept: Vec<(Ident, ClassId)> = children
+            .filter(|(name, child)| !own.contains_key(*name) && elsewhere(**child))
+            .map(|(name, child)| (*name, *child))
+            .collect();
+        let again = |(name, child): &(Ident, ClassId)| {
+            let Slot { origin, declared, .. } = self.slot(*child).clone();
+            (*name, self.push(origin, declared, *name, Some(id)))
+        };
+        let read_again: Vec<(Ident, ClassId)> = kept.iter().map(again).collect();
+        if let Some(class) = self.class_mut(id) {
+            class.children.extend(read_again.iter().copied());
+        }
+        // Those in a folder are found again; what was put into a package by itself is not.
+        for ((_, child), (_, new)) in kept.into_iter().zip(read_again) {
+            let slot = self.slot(child);
+            if matches!(slot.origin, Origin::Head(_, None)) && slot.class.get().is_some() {
+                self.keep_separate_files(Some(child), new);
+            }
         }
     }
 

@@ -18,6 +18,7 @@
 mod balance;
 mod checks;
 mod connections;
+mod declared;
 mod equations;
 pub mod errors;
 mod expressions;
@@ -35,6 +36,7 @@ mod units;
 mod variables;
 
 pub use balance::LocalBalance;
+pub use declared::{Declared, Member};
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 

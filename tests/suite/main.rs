@@ -55,6 +55,7 @@ mod library_forms;
 mod limits;
 mod linear_algebra;
 mod linear_loops;
+mod lsp;
 mod mat;
 mod model_files;
 mod modelica;

@@ -9,6 +9,7 @@ use crate::fault;
 use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
+use crate::source::SourceId;
 use indexmap::IndexMap;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -34,6 +35,8 @@ pub struct Classes {
     directories: Vec<PathBuf>,
     /// The file of each top-level class that came from one.
     files: BTreeMap<Name, PathBuf>,
+    /// The files that were loaded as a whole, not as part of a library, by their sources.
+    pub single: BTreeMap<SourceId, PathBuf>,
     /// The versions of libraries that were asked for.
     pub versions: BTreeMap<Ident, String>,
     /// Warnings about the encodings of libraries.

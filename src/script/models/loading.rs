@@ -81,7 +81,7 @@ impl Session {
 
     /// The package that a file or folder belongs to by its place; the outermost package around it
     /// is loaded. The empty name if no package is around.
-    fn package_around(&mut self, path: &Path) -> Result<Name, Vec<Diagnostic>> {
+    pub(super) fn package_around(&mut self, path: &Path) -> Result<Name, Vec<Diagnostic>> {
         let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
         let folders: Vec<&Path> = path.ancestors().skip(1).take_while(is_package).collect();
         let Some(root) = folders.last() else { return Ok(Name::default()) };
@@ -103,13 +103,18 @@ impl Session {
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let (source, text) =
             self.add_file(path).at(self.call_site()).map_err(|error| vec![error])?;
+        self.classes.single.insert(source, self.world.absolute(path));
         let names = self.load_source(source, &text, Some(path))?;
         self.classes.note_files(&names, path);
         Ok(names)
     }
 
     /// Loads a package from its folder; its classes are read when they are needed.
-    fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
+    pub(super) fn load_library(
+        &mut self,
+        folder: &Path,
+        around: &Name,
+    ) -> Result<Vec<Name>, Vec<Diagnostic>> {
         self.classes.invalidate();
         self.classes.history.note("folder", &format!("{} in `{around}`", folder.display()));
         let files = self.library_files();

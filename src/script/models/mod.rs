@@ -8,6 +8,7 @@ pub mod classes;
 pub mod compiled;
 pub mod constant_cache;
 mod continuation;
+pub mod documents;
 pub mod hardest;
 mod libraries;
 pub mod library_files;

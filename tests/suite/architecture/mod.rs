@@ -150,11 +150,15 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("lessons", &["script", "value", "syntax", "source"]),
     (
+        "lsp",
+        &["script", "flatten", "format", "functions", "syntax", "models", "name", "source", "diag"],
+    ),
+    (
         "cli",
         &[
-            "lessons", "format", "syntax", "budget", "external", "script", "identify", "teach",
-            "runtime", "codegen", "results", "plot", "sim", "ga", "models", "registry", "name",
-            "source", "diag",
+            "lsp", "lessons", "format", "syntax", "budget", "external", "script", "identify",
+            "teach", "runtime", "codegen", "results", "plot", "sim", "ga", "models", "registry",
+            "name", "source", "diag",
         ],
     ),
 ];

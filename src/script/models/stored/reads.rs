@@ -54,7 +54,7 @@ impl Reads {
         self.notes().files.insert(source, path.to_owned());
     }
 
-    pub(super) fn file_of(&self, source: SourceId) -> Option<PathBuf> {
+    pub(in crate::script::models) fn file_of(&self, source: SourceId) -> Option<PathBuf> {
         self.notes().files.get(&source).cloned()
     }
 
