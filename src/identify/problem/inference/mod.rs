@@ -18,17 +18,19 @@ mod local;
 mod posterior;
 mod predictions;
 mod prior_data;
+mod term;
 
-pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust};
+pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust, adjusted_from};
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Nested, compare};
-pub use constraint::{Constraint, Sides};
+pub use constraint::{Constraint, PortableConstraint, Sides};
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
 pub use likelihood::Likelihood;
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
+pub use term::{Function, Operator, Term};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
 
 use super::{FindingKind, Run, Solution};
