@@ -11,6 +11,7 @@ use crate::identify::{
 };
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
+use crate::script::errors::INTERRUPTED;
 use crate::script::models::{simulation, static_curve};
 use crate::script::{Reporting, Session};
 use crate::source::Span;
@@ -146,7 +147,12 @@ impl Session {
                 known
             }
             None => {
+                evaluator.cancel_by(self.world.interrupt_flag());
                 let simulated = evaluator.evaluate(genomes)?;
+                if evaluator.is_cancelled() {
+                    // The population is simulated again by whoever resumes the run.
+                    return Err(Fault::new(INTERRUPTED, "interrupted").into());
+                }
                 self.journal(&request, &evaluator.settings_text(), genomes, &simulated);
                 simulated
             }
@@ -204,8 +210,8 @@ impl Session {
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
         self.load_model_of(request)?;
         let model = self.model_of(request)?;
-        let threads = self.world.threads();
-        Ok(Evaluator::new(Arc::new(model), request.question.clone(), threads)?)
+        let processors = self.world.processors();
+        Ok(Evaluator::on(Arc::new(model), request.question.clone(), &processors)?)
     }
 }
 
@@ -274,7 +280,7 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
-    let (threads, probe) = (session.world.threads(), session.options.probe);
+    let (processors, probe) = (session.world.processors(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
@@ -302,7 +308,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
             own.evaluator.model().clone()
         }));
     }
-    let ending = Ending { recorder: &recorder, models, noise, threads, probe, interrupted };
+    let ending = Ending { recorder: &recorder, models, noise, processors, probe, interrupted };
     let Some(solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
     for (measured, study) in compared {

@@ -30,8 +30,8 @@ pub use inferred::Inferred;
 pub use likelihood::Likelihood;
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
-pub use term::{Function, Operator, Term};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
+pub use term::{Function, Operator, Term};
 
 use super::{FindingKind, Run, Solution};
 use crate::diag::Fault;

@@ -61,10 +61,12 @@ fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Te
         },
         ExpressionKind::Call { function, arguments } => {
             let name = written(function);
-            match (Function::named(&name), arguments.positional.as_slice(), arguments.named.as_slice()) {
-                (Some(function), [argument], []) => {
-                    Ok(Term::Function(function, inner(argument)?))
-                }
+            match (
+                Function::named(&name),
+                arguments.positional.as_slice(),
+                arguments.named.as_slice(),
+            ) {
+                (Some(function), [argument], []) => Ok(Term::Function(function, inner(argument)?)),
                 _ => {
                     bail!(BAD_OPTION, "the constraint `{text}` calls `{name}`"; help: "use + - * / ^ abs exp log log10 sqrt")
                 }
