@@ -30,6 +30,7 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "structural-parameter",
     // Only several processes can differ: see `ranks.rs`.
     "ranks-differ",
+    "ranks-idle",
     // It takes a text of four gibibytes.
     "text-too-large",
     // Flattening reports `unknown-name` first.

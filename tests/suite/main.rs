@@ -72,6 +72,7 @@ mod oracles;
 mod page;
 mod permissions;
 mod plot;
+mod ranks;
 mod record_arrays;
 mod reference_problems;
 mod repl;

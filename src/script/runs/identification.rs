@@ -4,7 +4,7 @@
 use super::tracing;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
-use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
 use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
 use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
@@ -207,11 +207,21 @@ impl Session {
         Ok(())
     }
 
+    /// Says why other ranks take no part, if that is so.
+    pub(super) fn note_idle_ranks(&mut self, reason: Option<&str>) {
+        if let Some(reason) = reason {
+            let text = format!("the other ranks take no part in the simulations, because {reason}");
+            self.note(RANKS_IDLE, text);
+        }
+    }
+
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
         self.load_model_of(request)?;
         let model = self.model_of(request)?;
         let processors = self.world.processors();
-        Ok(Evaluator::on(Arc::new(model), request.question.clone(), &processors)?)
+        let evaluator = Evaluator::on(Arc::new(model), request.question.clone(), &processors)?;
+        self.note_idle_ranks(evaluator.alone());
+        Ok(evaluator)
     }
 }
 

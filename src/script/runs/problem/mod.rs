@@ -167,6 +167,7 @@ fn solve_built(
     let Built { problem, experiments, validation, origins, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::on(problem, &session.world.processors())?;
+    session.note_idle_ranks(run.evaluation.alone());
     let importance = analysed(session, &run, &folder, options)?;
     let checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
