@@ -120,7 +120,12 @@ impl Job {
 
 fn follow(post: &Post, version: &str, threads: usize) {
     let stop = AtomicBool::new(false);
-    serve(&Service { connection: post, about: about(version, threads), clock: seconds, stop: &stop });
+    serve(&Service {
+        connection: post,
+        about: about(version, threads),
+        clock: seconds,
+        stop: &stop,
+    });
 }
 
 fn model(text: &str, name: &str) -> Arc<CompiledModel> {
@@ -161,7 +166,8 @@ fn any_number_of_ranks_gives_the_same_bits() {
     let alone = answers(&Processors::threads(1));
     assert!(alone.1.iter().filter(|message| !message.is_empty()).count() > 20, "some fail");
     assert!(alone.1[3].contains("no gravity"), "{}", alone.1[3]);
-    for (size, own_threads, other_threads) in [(1, 2, 1), (2, 1, 1), (3, 1, 1), (3, 2, 2), (6, 1, 1)]
+    for (size, own_threads, other_threads) in
+        [(1, 2, 1), (2, 1, 1), (3, 1, 1), (3, 2, 2), (6, 1, 1)]
     {
         let job = Job::of(size, other_threads);
         let found = answers(&job.processors(own_threads));

@@ -1,7 +1,7 @@
 //! Evaluates populations on all cores. What comes out depends neither on the number of threads
 //! nor on what was evaluated before: equal genes are answered from memory.
 
-use super::{Failed, Linearization, Problem, Simulate};
+use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
@@ -10,6 +10,8 @@ use crate::registry::BAD_OPTION;
 use crate::{bail, elementary};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -46,6 +48,8 @@ pub struct Evaluation {
     others: Option<Prepared>,
     /// Why there are none although there are ranks.
     alone: Option<String>,
+    /// The independent parts of what follows the search.
+    pub parts: Parts,
     rows: Vec<f64>,
     memory: Memory,
     cancel: Option<Arc<AtomicBool>>,
@@ -103,6 +107,7 @@ impl Evaluation {
             pool,
             measured,
             weights,
+            parts: Parts::default(),
             rows: Vec::new(),
             memory: Memory::default(),
             cancel: None,
@@ -353,6 +358,35 @@ impl Evaluation {
         });
         of_ranks
             .unwrap_or_else(|| self.on_threads(|| (0..count).into_par_iter().map(one).collect()))
+    }
+
+    /// The results of jobs that several shards may share, all of which start from `start`; `None`
+    /// where others belong to other shards.
+    pub(super) fn each_part<T: Send + Serialize + DeserializeOwned>(
+        &self,
+        kind: &str,
+        start: &[f64],
+        count: usize,
+        job: impl Fn(usize, &mut dyn Simulate) -> T + Sync,
+    ) -> Option<Vec<T>> {
+        self.parts.all((kind, start), count, |missing| {
+            self.each(missing.len(), |place, simulator| job(missing[place], simulator))
+        })
+    }
+
+    /// The simulated points of several groups of individuals that several shards may share; `None`
+    /// where some belong to other shards.
+    pub(super) fn simulate_groups(
+        &self,
+        kind: &str,
+        groups: &[Vec<Vec<f64>>],
+    ) -> Option<Vec<Vec<Result<Vec<f64>, Failed>>>> {
+        let start: Vec<f64> = groups.iter().flatten().flatten().copied().collect();
+        self.parts.all((kind, &start), groups.len(), |missing| {
+            let values: Vec<Vec<f64>> = missing.iter().flat_map(|k| groups[*k].clone()).collect();
+            let mut rows = self.simulate_all(&values).into_iter();
+            missing.iter().map(|k| rows.by_ref().take(groups[*k].len()).collect()).collect()
+        })
     }
 
     /// Whether simulations have been cancelled.
