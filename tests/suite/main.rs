@@ -85,6 +85,7 @@ mod script_tests;
 mod scripts;
 mod sensitivities;
 mod session;
+mod shards;
 mod shipped;
 mod shipped_functions;
 mod simulation;
