@@ -18,6 +18,10 @@
 //!   random-number package with many long streams and substreams. Operations Research 50(6), 2002,
 //!   1073–1075.
 //!
+//! <a id="tanese-1989"></a>
+//! - **tanese-1989** — R. Tanese: Distributed genetic algorithms. Proceedings of the Third
+//!   International Conference on Genetic Algorithms, 1989, 434–439.
+//!
 //! <a id="polychronopoulos-kuck-1987"></a>
 //! - **polychronopoulos-kuck-1987** — C. D. Polychronopoulos, D. J. Kuck: Guided self-scheduling: a
 //!   practical scheduling scheme for parallel supercomputers. IEEE Transactions on Computers C-36(12),

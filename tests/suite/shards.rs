@@ -31,7 +31,8 @@ samples = 100
 samples = 2000
 ";
 
-const STUDY: [&str; 6] = ["identify", "p.toml", "--profile", "--sensitivity", "sobol", "--samples=16"];
+const STUDY: [&str; 6] =
+    ["identify", "p.toml", "--profile", "--sensitivity", "sobol", "--samples=16"];
 
 fn here() -> TempDir {
     let data = "time,y\n0.1,1.3\n0.5,1.9\n1,3.2\n1.4,4.1\n2,8.9\n2.4,12.7\n3,21\n";
