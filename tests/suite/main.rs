@@ -80,6 +80,7 @@ mod report_page;
 mod results;
 mod resume;
 mod scalable;
+mod scale;
 mod script_fuzzing;
 mod script_tests;
 mod scripts;
