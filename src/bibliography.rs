@@ -18,6 +18,15 @@
 //!   random-number package with many long streams and substreams. Operations Research 50(6), 2002,
 //!   1073–1075.
 //!
+//! <a id="tanese-1989"></a>
+//! - **tanese-1989** — R. Tanese: Distributed genetic algorithms. Proceedings of the Third
+//!   International Conference on Genetic Algorithms, 1989, 434–439.
+//!
+//! <a id="polychronopoulos-kuck-1987"></a>
+//! - **polychronopoulos-kuck-1987** — C. D. Polychronopoulos, D. J. Kuck: Guided self-scheduling: a
+//!   practical scheduling scheme for parallel supercomputers. IEEE Transactions on Computers C-36(12),
+//!   1987, 1425–1439.
+//!
 //! <a id="akima-1970"></a>
 //! - **akima-1970** — H. Akima: A new method of interpolation and smooth curve fitting based on
 //!   local procedures. Journal of the ACM 17(4), 1970, 589–602.

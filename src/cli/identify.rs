@@ -6,9 +6,9 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
 use crate::ga::operators;
-use crate::identify::problem::Solution;
+use crate::identify::problem::{Shard, Solution};
 use crate::script::access::policy::Grant;
-use crate::script::runs::problem::{RunOptions, grant_inputs, solve};
+use crate::script::runs::problem::{Division, RunOptions, grant_inputs, solve};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -22,6 +22,7 @@ Examples:
   gapi identify one.toml two.toml              compare two models of the same data
   gapi identify my.toml --resume               resume after Ctrl-C, a crash or a power failure
   gapi identify my.toml --watch settings.toml  change settings while it runs
+  gapi identify my.toml --bootstrap --shard 3/16 --out s3   one part of a large study
 
 A problem file:
   model = \"CaseStudies.PolarizationCurve(i_max = 1.46)\"
@@ -97,6 +98,9 @@ pub(super) struct IdentifyArgs {
     /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
     #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub samples: Option<u32>,
+    /// Compute one of N shards of what follows the fit; `gapi report --merge` makes the report of all
+    #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with_all = ["others", "watch"])]
+    pub shard: Option<Shard>,
     /// A file with settings (name = number) that can be changed during the run
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
@@ -109,6 +113,17 @@ pub(super) struct IdentifyArgs {
     /// Limits
     #[command(flatten)]
     pub limits: Limits,
+}
+
+/// `3/16`
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').map(|(k, n)| (k.trim().parse(), n.trim().parse()));
+    match parts {
+        Some((Ok(number), Ok(count))) if (1..=count).contains(&number) => {
+            Ok(Shard { number, count })
+        }
+        _ => Err("expected a number of a shard and how many there are, such as 3/16".to_owned()),
+    }
 }
 
 /// How a run ended.
@@ -172,6 +187,7 @@ pub(super) fn solve_one(
         sensitivity: arguments.sensitivity.clone(),
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
+        division: arguments.shard.map_or(Division::Whole, Division::Shard),
     };
     grant_inputs(&mut session, problem);
     if let Some(file) = &arguments.watch {

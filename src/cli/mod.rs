@@ -16,6 +16,7 @@ mod explain;
 mod fmt;
 mod help;
 mod identify;
+mod launcher;
 mod lesson;
 mod limits;
 mod live;
@@ -24,6 +25,8 @@ mod lock;
 mod lsp;
 mod man;
 mod memory;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod named;
 mod new;
 mod options;
@@ -58,10 +61,40 @@ const STACK: usize = 256 << 20;
 /// the other codes mean stands in the help of each command.
 pub fn main() -> ExitCode {
     crate::budget::allow_long_calls();
-    let cli = Cli::parse();
     #[cfg(unix)]
     signals::survive_large_files();
-    on_large_stack(move || dispatch(&cli))
+    match launcher::launched() {
+        None => command(),
+        #[cfg(feature = "mpi")]
+        Some(_) => mpi::join(command),
+        #[cfg(not(feature = "mpi"))]
+        Some(job) => {
+            // Once is enough.
+            if job.rank == 0 {
+                terminal::eprint(&launcher::refusal(job));
+            }
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn command() -> ExitCode {
+    match Cli::try_parse() {
+        Ok(cli) => on_large_stack(move || dispatch(&cli)),
+        Err(error) => {
+            // Without a terminal to print to, the code says it.
+            let _ = error.print();
+            ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+        }
+    }
+}
+
+/// The other ranks, where this is rank 0 of an MPI job.
+fn ranks() -> Option<std::sync::Arc<crate::identify::ranks::Ranks>> {
+    #[cfg(feature = "mpi")]
+    return mpi::ranks();
+    #[cfg(not(feature = "mpi"))]
+    None
 }
 
 /// Works on a thread with a large stack.

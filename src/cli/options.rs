@@ -66,7 +66,7 @@ pub(super) struct Freedom {
 }
 
 /// What a command may take.
-#[derive(Debug, Args, Clone)]
+#[derive(Debug, Args, Clone, Default)]
 pub(super) struct Limits {
     /// Stop after this number of seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]

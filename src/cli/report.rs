@@ -1,11 +1,15 @@
 //! `gapi report`: draws the report of a run again from its files.
 
 use super::options::Global;
-use super::{output, session};
+use super::output::Output;
+use super::terminal::Terminal;
+use super::world::SystemWorld;
+use super::{output, session, terminal};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
+use crate::script::runs::problem::{grant_inputs, read_shards, solve};
 use crate::source::Span;
 use clap::{Args, ValueHint};
 use std::path::Path;
@@ -18,6 +22,7 @@ use std::process::ExitCode;
 Examples:
   gapi report results
   gapi report results --output fit.html
+  gapi report --merge s1 s2 s3 --out study     the report of all shards
 
 It reads result.json, history.csv and individuals.csv, as written by `gapi run` and `gapi \
                         identify`; in a folder with several problems, the files written last.
@@ -26,31 +31,73 @@ Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
 pub(super) struct ReportArgs {
     /// The folder with the results of `gapi run` or `gapi identify`
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub folder: PathBuf,
+    #[arg(required_unless_present = "merge", conflicts_with = "merge")]
+    pub folder: Option<PathBuf>,
+    /// Merge the shards in these folders, as written by `gapi identify --shard`
+    #[arg(long, value_name = "DIR", num_args = 1.., value_hint = ValueHint::DirPath)]
+    pub merge: Vec<PathBuf>,
+    /// Folder for the merged results [default: that of the problem in `results`]
+    #[arg(long, value_name = "DIR", requires = "merge", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
     /// The page [default: report.html in the folder]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(conflicts_with = "merge")]
     pub output: Option<PathBuf>,
 }
 
 /// Reads the folder and writes the page.
 pub(super) fn report(arguments: &ReportArgs, global: &Global) -> ExitCode {
+    let Some(folder) = &arguments.folder else { return merge(arguments, global) };
     let mut session = match session::with_files(global, &[]) {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
-    match draw(&mut session, arguments) {
+    match draw(&mut session, folder, arguments.output.as_deref()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => session::failed(&mut session, vec![fault.at(Span::NONE)]),
     }
 }
 
-fn draw(session: &mut Session, arguments: &ReportArgs) -> Result<(), Fault> {
-    let folder = output::latest_of(&arguments.folder);
+/// Runs the problem of the shards with what they have computed.
+fn merge(arguments: &ReportArgs, global: &Global) -> ExitCode {
+    let read = session::with_files(global, &[]).and_then(|(mut session, _)| {
+        read_shards(&mut session, &arguments.merge)
+            .map_err(|fault| session::failed(&mut session, vec![fault.at(Span::NONE)]))
+    });
+    let (problem, options) = match read {
+        Ok(read) => read,
+        Err(code) => return code,
+    };
+    let refused = |message: String| {
+        terminal::eprint(&format!("error: {message}\n"));
+        ExitCode::from(2)
+    };
+    let output = Output::of("gapi identify", &problem, arguments.out.as_deref(), false);
+    let world = output.and_then(|output| {
+        let world = SystemWorld::for_results(Terminal::new(global.color, false), output, None);
+        world.map_err(|error| error.to_string())
+    });
+    let world = match world {
+        Ok(world) => world,
+        Err(message) => return refused(message),
+    };
+    world.catch_interrupts();
+    let mut session = session::open(global, world);
+    grant_inputs(&mut session, &problem);
+    match solve(&mut session, &problem, &options) {
+        Ok(_) if session.is_interrupted() => session::stopped(&mut session),
+        Ok(_) => ExitCode::SUCCESS,
+        Err(errors) => session::failed(&mut session, errors),
+    }
+}
+
+fn draw(session: &mut Session, folder: &Path, page: Option<&Path>) -> Result<(), Fault> {
+    let folder = output::latest_of(folder);
     session.world.grant(Grant::Read(&folder));
     let read = |name: &str| session.read_text(&folder.join(name));
     let (json, history) = (read("result.json")?, read("history.csv")?);
     let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
-    let page = arguments.output.clone().unwrap_or_else(|| folder.join("report.html"));
+    let page = page.map_or_else(|| folder.join("report.html"), Path::to_owned);
     session.world.grant(Grant::Named(&page));
     session.print(&solution.text());
     write(session, &page, &solution)?;

@@ -18,6 +18,14 @@ pub(super) fn catch(interrupt: &Arc<AtomicBool>) {
     }
 }
 
+/// Sets the flag at every request to end, Ctrl-C included.
+#[cfg(feature = "mpi")]
+pub(super) fn catch_all(interrupt: &Arc<AtomicBool>) {
+    catch(interrupt);
+    // Where it cannot be caught it ends the process as it always did.
+    let _ = flag::register(signal_hook::consts::SIGINT, Arc::clone(interrupt));
+}
+
 /// A write that exceeds the limit on the size of files fails with a message of its own, where the
 /// system would end the process.
 pub(super) fn survive_large_files() {

@@ -9,6 +9,7 @@ use super::output::Output;
 use super::signals;
 use super::terminal::Terminal;
 use crate::external::c::CCompiler;
+use crate::identify::ranks::Ranks;
 use crate::models;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::runs::view::Progress;
@@ -32,6 +33,7 @@ pub(super) struct SystemWorld {
     current: PathBuf,
     output: PathBuf,
     threads: usize,
+    ranks: Option<Arc<Ranks>>,
     started: Instant,
     stopping: Stopping,
     /// Whether the folder for the results says whose they are.
@@ -64,6 +66,7 @@ impl SystemWorld {
         let current = std::env::current_dir().map_err(|error| {
             io::Error::new(error.kind(), format!("the working directory cannot be read: {error}"))
         })?;
+        let ranks = super::ranks();
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let disk = Disk::default();
         disk.grant(Grant::Create(&current));
@@ -72,7 +75,9 @@ impl SystemWorld {
             current,
             stopping: Stopping { flag: interrupt, ..Stopping::default() },
             screen,
-            threads: threads.unwrap_or(available).max(1),
+            // Each rank of an MPI job has a thread of its own, as many as the user gave cores.
+            threads: threads.unwrap_or(if ranks.is_some() { 1 } else { available }).max(1),
+            ranks,
             started: Instant::now(),
             claimed: false,
             changes: 0,
@@ -141,6 +146,9 @@ impl SystemWorld {
         drop(caught);
         #[cfg(unix)]
         signals::catch(&self.stopping.flag);
+        if let Some(ranks) = &self.ranks {
+            ranks.stop_by(Arc::clone(&self.stopping.flag));
+        }
     }
 
     fn at(&self, path: &Path) -> PathBuf {
@@ -318,6 +326,10 @@ impl Environment for SystemWorld {
 
     fn threads(&self) -> usize {
         self.threads
+    }
+
+    fn ranks(&self) -> Option<Arc<Ranks>> {
+        self.ranks.clone()
     }
 }
 

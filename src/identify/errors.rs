@@ -30,6 +30,12 @@ codes! {
     /// Sizes of measured X and Y differ.
     DATA_SIZES_DIFFER = "data-sizes-differ":
         "## What it means\n\nThe matrices of X and Y values have different numbers of elements, so they do not form pairs of one experiment.\n\n## Example\n\n`Exp_Adq_SISO(\"data.mat\", \"t\", \"V\")` where `t` has 100 elements and `V` has 99.\n\n## What to do\n\nCorrect the file or the names of the matrices.",
+    /// Ranks of one job that do not fit each other.
+    RANKS_DIFFER = "ranks-differ":
+        "## What it means\n\nThe processes of an MPI job run different versions of the program, or one of them cannot make the simulator that rank 0 has sent. The message names the rank and its machine.\n\n## Example\n\nAn older `gapi` in the search path of one machine.\n\n## What to do\n\nStart the same program file on all machines, for example by its full path on a shared file system.",
+    /// Ranks that have nothing to do (a note).
+    RANKS_IDLE = "ranks-idle":
+        "## What it means\n\nThe other ranks of an MPI job take no part in the simulations, because the model cannot be sent to them. Rank 0 simulates alone; the results are the same.\n\n## Example\n\nA model that calls a function in C of a library.\n\n## What to do\n\nUse the threads of one machine (`--threads`), or divide the study into shards, each of which compiles the model (`gapi identify --shard 1/4`).",
     /// No parameters to identify.
     NO_PARAMETERS = "no-parameters":
         "## What it means\n\nThere is nothing to estimate: no names are given and the model has no tunable top-level parameter, or the population has no columns.\n\n## Example\n\nA model without parameters.\n\n## What to do\n\nPass the parameter names as argument `Parameter_Names` of `Eval`.",

@@ -8,13 +8,14 @@ use super::plan::TIME;
 use super::problem::{
     Experiment, Failed, ModelSimulator, NOISE_OF_FORMULAS, Observation, Simulate,
 };
+use super::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
 use crate::{bail, fault};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What is varied and what is compared.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,6 +38,12 @@ pub struct Evaluator {
     x: Vec<f64>,
     workers: Vec<ModelSimulator>,
     pool: Option<rayon::ThreadPool>,
+    /// The simulators of other ranks.
+    others: Option<Prepared>,
+    /// Why there are none although there are ranks.
+    alone: Option<String>,
+    /// Set where simulations have to end.
+    cancel: Option<Arc<AtomicBool>>,
 }
 
 /// The simulated values of a population.
@@ -71,6 +78,10 @@ impl std::fmt::Display for FailedSimulation {
 }
 
 impl Simulated {
+    fn none() -> Simulated {
+        Simulated { rows: Vec::new(), failures: Vec::new() }
+    }
+
     /// Why each simulation failed, as text; empty where it did not.
     pub fn messages(&self) -> Vec<String> {
         let text = |failed: &FailedSimulation| failed.to_string();
@@ -96,6 +107,19 @@ impl Evaluator {
         question: Question,
         threads: usize,
     ) -> Result<Evaluator, Fault> {
+        Evaluator::on(shared, question, &Processors::threads(threads))
+    }
+
+    /// Prepares to answer `question` with the threads of this process and with other ranks.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Evaluator::new`]; `ranks-differ` where a rank cannot make the simulator.
+    pub fn on(
+        shared: Arc<dyn Model>,
+        question: Question,
+        processors: &Processors,
+    ) -> Result<Evaluator, Fault> {
         let model = shared.as_ref();
         check_points(&question.x)?;
         let parameters = identified_parameters(model, &question.parameters)?;
@@ -118,17 +142,24 @@ impl Evaluator {
             x,
             y,
         };
-        let threads = threads.max(1);
+        let threads = processors.threads.max(1);
+        let workers: Vec<ModelSimulator> =
+            (0..threads).map(|_| worker()).collect::<Result<_, Fault>>()?;
+        let (others, alone) = processors.prepare(|| workers[0].portable())?;
         // Without a pool (one thread, or no more threads to be had) the caller's thread works alone.
-        let helpers = threads.saturating_sub(1).max(1);
+        // It gives work to the other ranks where there are some.
+        let helpers = if others.is_some() { threads } else { threads.saturating_sub(1).max(1) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
         Ok(Evaluator {
             study: Arc::new(study),
             model: Arc::clone(&shared),
             parameters,
             x: question.x,
-            workers: (0..threads).map(|_| worker()).collect::<Result<_, Fault>>()?,
-            pool: pool.filter(|_| threads > 1),
+            workers,
+            pool: pool.filter(|_| threads > 1 || others.is_some()),
+            others,
+            alone,
+            cancel: None,
         })
     }
 
@@ -167,6 +198,22 @@ impl Evaluator {
         if simulator.is_static() { NOISE_OF_FORMULAS } else { simulator.settings().tolerance }
     }
 
+    /// From now on simulations end when the flag is set.
+    pub fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
+        self.workers.iter_mut().for_each(|worker| worker.cancel_by(flag.clone()));
+        self.cancel = flag;
+    }
+
+    /// Whether simulations were cancelled; what was answered then is not used.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// Why other ranks take no part, in words that follow on "because".
+    pub fn alone(&self) -> Option<&str> {
+        self.alone.as_deref()
+    }
+
     /// The measured points.
     pub fn x(&self) -> &[f64] {
         &self.x
@@ -180,6 +227,9 @@ impl Evaluator {
     /// a gene lies outside what the model allows for its parameter.
     pub fn evaluate(&mut self, genomes: &Genomes) -> Result<Simulated, Fault> {
         self.check_genomes(genomes)?;
+        if self.others.is_some() && self.pool.is_some() {
+            return Ok(self.distributed(genomes));
+        }
         let Evaluator { x, workers, pool, .. } = self;
         let next = AtomicUsize::new(0);
         let points = x.len();
@@ -215,6 +265,36 @@ impl Evaluator {
             None => work_own(),
         }
         Ok(collect(answers, genomes.len(), points))
+    }
+
+    /// Simulates every individual on all threads and ranks.
+    fn distributed(&mut self, genomes: &Genomes) -> Simulated {
+        let Evaluator { x, workers, pool, others, cancel, .. } = self;
+        let (Some(others), Some(pool)) = (others, pool) else { return Simulated::none() };
+        let batch = Batch {
+            values: genomes.values(),
+            parameters: genomes.n_genes(),
+            points: x.len(),
+            asked: Asked::Points,
+            tolerance: 1.0,
+        };
+        let workers: Vec<Mutex<&mut ModelSimulator>> = workers.iter_mut().map(Mutex::new).collect();
+        let one = |individual: usize| {
+            let place = rayon::current_thread_index().unwrap_or(0) % workers.len();
+            let mut worker = workers[place].lock().unwrap_or_else(PoisonError::into_inner);
+            simulate(&mut **worker, &batch, individual)
+        };
+        let local = Local { pool, threads: workers.len(), simulate: &one };
+        let found = others.distribute(&batch, &local, cancel.as_deref());
+        let found = found.unwrap_or_else(|| vec![Simulation::cancelled(&batch); batch.len()]);
+        let mut all = Simulated::none();
+        for Simulation { row, failed, failed_at, .. } in found {
+            all.rows.extend(row);
+            let failure =
+                |failed: Failed| FailedSimulation { cause: failed.cause, time: failed_at };
+            all.failures.push(failed.map(failure));
+        }
+        all
     }
 
     fn check_genomes(&self, genomes: &Genomes) -> Result<(), Fault> {

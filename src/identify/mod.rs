@@ -4,6 +4,7 @@
 pub mod errors;
 pub mod fitness;
 pub mod problem;
+pub mod ranks;
 
 mod evaluation;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
+use super::problem::PortableModel;
 use crate::diag::Fault;
 use crate::sim::{DaeSystem, Settings, SimError};
 
@@ -33,6 +34,14 @@ pub trait Model: Send + Sync {
     /// A system of its own, which observes these variables in this order and whose parameters
     /// `varied` can be set.
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault>;
+    /// The model as data that another process of this version can read.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be sent, in words that follow the model's name.
+    fn portable(&self) -> Result<PortableModel, String> {
+        Err("is not a compiled model".to_owned())
+    }
 }
 
 /// A parameter of a model.

@@ -12,6 +12,7 @@ use super::problem::{
     Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
     SolvedSeries, Stop, conclude, draw_curves, failure_region,
 };
+use super::ranks::Processors;
 use super::recorder::{Best, Recorder};
 use super::study::Compared;
 use super::table::significant;
@@ -56,8 +57,8 @@ pub struct Ending<'a> {
     pub models: Vec<Option<Arc<dyn Model>>>,
     /// Relative error of the simulated values.
     pub noise: f64,
-    /// Threads to use.
-    pub threads: usize,
+    /// What simulates.
+    pub processors: Processors,
     /// What is wanted behind the script's search.
     pub probe: Probe,
     /// Whether the user interrupted the run.
@@ -228,7 +229,7 @@ impl Ending<'_> {
         (problem, experiments): (Problem, Vec<Experiment>),
     ) -> Result<Solution, String> {
         let before = best.sum_of_squares().ok_or("the measured values are unknown")?;
-        let mut run = Run::new(problem, self.threads).map_err(|fault| fault.message)?;
+        let mut run = Run::on(problem, &self.processors).map_err(|fault| fault.message)?;
         let stop = loop {
             if let Some(stop) = run.stop() {
                 break stop;

@@ -1,10 +1,12 @@
 //! Compiled programs as models to identify.
 
+use super::problem::PortableModel;
 use super::{Instance, Model, Parameter};
 use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::Fault;
 use crate::runtime::System;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
+use crate::source::noting_sources;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Output points where the `experiment` annotation gives no interval.
@@ -137,6 +139,15 @@ impl Model for CompiledModel {
 
     fn has_stop_time(&self) -> bool {
         self.program.experiment().stop_time.is_some()
+    }
+
+    fn portable(&self) -> Result<PortableModel, String> {
+        // Messages of simulations name no places, so that the texts may stay here.
+        let (bytes, _) = noting_sources(|| self.program.to_bytes());
+        let Some(program) = bytes else {
+            return Err("calls functions in C, or is too large".to_owned());
+        };
+        Ok(PortableModel { name: self.name.clone(), driven: self.driven.clone(), program })
     }
 
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {

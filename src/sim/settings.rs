@@ -53,7 +53,7 @@ pub struct TimeBudget {
 }
 
 /// When to record.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum OutputGrid {
     /// The interval is divided into so many parts (at least one).
     Intervals(usize),

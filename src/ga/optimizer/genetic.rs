@@ -7,6 +7,7 @@
 //! [Goldberg 1989](crate::bibliography#goldberg-1989).
 
 use super::breeding::{self, Breeding, Chosen};
+use super::islands::{Island, Islands};
 use super::{Answers, Method, Optimizer, Setup, has_failed};
 use crate::diag::Fault;
 use crate::fault;
@@ -15,7 +16,7 @@ use crate::ga::operators::{self, usual};
 use crate::ga::sampling::Sampling;
 use crate::ga::selection::Selection;
 use crate::ga::survival::{Brood, Rated, Survival, Survivor, Wanted};
-use crate::ga::{Gene, Genomes, Mrg32k3a};
+use crate::ga::{Gene, Genomes, Mrg32k3a, order};
 use crate::registry::{BAD_OPTION, Entry, Options};
 use std::sync::Arc;
 
@@ -28,16 +29,24 @@ pub const ENTRY: Entry<dyn Method> = Entry {
     make: |options| Ok(Box::new(Genetic::new(options)?)),
 };
 
+/// The first stream of random numbers of further islands, far from those of other methods.
+const STREAM: u64 = 2_000_003;
+/// Generations between two migrations, unless others are wanted.
+const MIGRATION: f64 = 10.0;
 /// How often a failed individual of the first generation is drawn again.
 const REDRAWS: usize = 10;
 
 #[derive(Clone)]
 struct Genetic {
-    /// 0 for five times the number of genes, from 20 to 100.
+    /// Of each island; 0 for five times the number of genes, from 20 to 100.
     population: usize,
     /// Members of the old generation that compete with the offspring; as many as the population or
     /// more for all of them.
     elites: usize,
+    /// Populations that evolve apart.
+    islands: usize,
+    /// Generations between two migrations.
+    migration: usize,
     sampling: Arc<dyn Sampling>,
     /// For failed individuals of the first generation.
     redrawing: Arc<dyn Sampling>,
@@ -77,6 +86,8 @@ impl Genetic {
         Ok(Genetic {
             population,
             elites,
+            islands: options.take_whole("islands", 1.0..=1e5, 1.0)?,
+            migration: options.take_whole("migration", 1.0..=1e6, MIGRATION)?,
             sampling,
             redrawing,
             selection,
@@ -89,6 +100,34 @@ impl Genetic {
 
 impl Method for Genetic {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
+        if self.islands == 1 {
+            return Ok(Box::new(self.population(setup)?));
+        }
+        let budget = setup.budget.map(|budget| budget / self.islands as u64);
+        let island = |number: usize| {
+            let mut own = Setup { budget, ..setup.clone() };
+            if number > 0 {
+                own.rng = setup.rng.stream(STREAM + number as u64);
+                own.start = None;
+            }
+            Ok(Box::new(self.population(own)?) as Box<dyn Island>)
+        };
+        let islands: Result<Vec<Box<dyn Island>>, Fault> = (0..self.islands).map(island).collect();
+        Ok(Box::new(Islands::new(islands?, self.migration as u64)))
+    }
+
+    fn operators(&self) -> Vec<(&'static str, String)> {
+        let mut chosen = self.chosen.clone();
+        if self.islands > 1 {
+            chosen.push(("islands", format!("{} (migration {})", self.islands, self.migration)));
+        }
+        chosen
+    }
+}
+
+impl Genetic {
+    /// A population of its own.
+    fn population(&self, setup: Setup) -> Result<Search, Fault> {
         let n = setup.genes.len();
         let size = if self.population == 0 { (5 * n).clamp(20, 100) } else { self.population };
         let planned = breeding::planned(&setup, size);
@@ -99,7 +138,7 @@ impl Method for Genetic {
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
-        Ok(Box::new(Search {
+        Ok(Search {
             settings: Genetic { population: size, breeding, ..self.clone() },
             genes,
             rng,
@@ -111,11 +150,7 @@ impl Method for Genetic {
             redraws: REDRAWS,
             course: Course { generation: 0, planned },
             fault: None,
-        }))
-    }
-
-    fn operators(&self) -> Vec<(&'static str, String)> {
-        self.chosen.clone()
+        })
     }
 }
 
@@ -181,6 +216,19 @@ impl Optimizer for Search {
                 let value = &mut genomes.row_mut(k)[gene];
                 *value = (offset + scale * *value).clamp(0.0, 1.0);
             }
+        }
+    }
+}
+
+impl Island for Search {
+    fn best(&self) -> Option<Vec<f64>> {
+        let best = *order(&self.fitness).first()?;
+        Some(self.parents.row(best).to_vec()).filter(|_| !has_failed(self.fitness[best]))
+    }
+
+    fn immigrate(&mut self, genome: &[f64]) {
+        if let Some(last) = self.pending.len().checked_sub(1) {
+            self.pending.row_mut(last).copy_from_slice(genome);
         }
     }
 }

@@ -12,6 +12,7 @@ mod descents;
 mod exchange;
 mod gapilib2006;
 mod genetic;
+mod islands;
 mod levenberg_marquardt;
 mod linear_model;
 mod lshade;

@@ -94,3 +94,21 @@ fn residuals_within_the_errors_of_the_simulation_are_those_of_a_minimum() {
     assert!(test_minimum(&[0.5], &along(1e-9), &jacobian, accuracy).1);
     assert!(!test_minimum(&[0.5], &along(1e-6), &jacobian, accuracy).1);
 }
+
+/// Islands have random numbers of their own; one island is the method as it was.
+#[test]
+fn islands_search_apart_and_find_the_minimum() {
+    let found = |islands: f64, seed: u64| {
+        let mut options = Options::default();
+        options.set("population", 20.0);
+        if islands > 0.0 {
+            options.set("islands", islands);
+        }
+        let method = (super::genetic::ENTRY.make)(&mut options).unwrap();
+        minimum(method.as_ref(), 4, 12_000, seed, false, &rosenbrock)
+    };
+    assert_eq!(found(0.0, 1).to_bits(), found(1.0, 1).to_bits());
+    assert_ne!(found(1.0, 1).to_bits(), found(4.0, 1).to_bits());
+    assert_eq!(found(4.0, 1).to_bits(), found(4.0, 1).to_bits());
+    assert!((0..3).all(|seed| found(4.0, seed) < 2.0), "{}", found(4.0, 0));
+}

@@ -1,14 +1,17 @@
 //! Evaluates populations on all cores. What comes out depends neither on the number of threads
 //! nor on what was evaluated before: equal genes are answered from memory.
 
-use super::{Failed, Linearization, Problem, Simulate};
+use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
+use crate::identify::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -41,6 +44,12 @@ pub struct Evaluation {
     /// `None` where one thread is wanted and the system has no others (browsers).
     pool: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Box<dyn Simulate>>>,
+    /// The simulators of other ranks.
+    others: Option<Prepared>,
+    /// Why there are none although there are ranks.
+    alone: Option<String>,
+    /// The independent parts of what follows the search.
+    pub parts: Parts,
     rows: Vec<f64>,
     memory: Memory,
     cancel: Option<Arc<AtomicBool>>,
@@ -66,13 +75,24 @@ impl Evaluation {
     ///
     /// Those of the simulator's maker; no threads to be had.
     pub fn new(problem: &Problem, threads: usize) -> Result<Evaluation, Fault> {
-        let threads = threads.max(1);
+        Evaluation::on(problem, &Processors::threads(threads))
+    }
+
+    /// Prepares simulators for the threads of this process and for other ranks.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Evaluation::new`]; `ranks-differ` where a rank cannot make the simulator.
+    pub fn on(problem: &Problem, processors: &Processors) -> Result<Evaluation, Fault> {
+        let threads = processors.threads.max(1);
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
             Ok(pool) => Some(pool),
             Err(_) if threads == 1 => None,
             Err(error) => bail!(BAD_OPTION, "cannot start {threads} threads: {error}"),
         };
         let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
+        let workers: Vec<Mutex<Box<dyn Simulate>>> = workers.collect::<Result<_, Fault>>()?;
+        let (others, alone) = processors.prepare(|| locked(&workers[0]).portable())?;
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
         let weights: Vec<f64> = problem.series.iter().flat_map(super::Series::weights).collect();
@@ -81,10 +101,13 @@ impl Evaluation {
         Ok(Evaluation {
             scales,
             n_objectives: problem.objectives.len(),
-            workers: workers.collect::<Result<_, Fault>>()?,
+            workers,
+            others,
+            alone,
             pool,
             measured,
             weights,
+            parts: Parts::default(),
             rows: Vec::new(),
             memory: Memory::default(),
             cancel: None,
@@ -111,6 +134,11 @@ impl Evaluation {
             .map(|(y, s)| elementary::powi(y * s, 2))
             .sum::<f64>()
             .sqrt()
+    }
+
+    /// Why other ranks take no part, in words that follow on "because".
+    pub fn alone(&self) -> Option<&str> {
+        self.alone.as_deref()
     }
 
     /// What differences of the points count.
@@ -232,10 +260,21 @@ impl Evaluation {
         rows.clear();
         rows.resize(wanted.len() * points, f64::NAN);
         let mut outcomes: Vec<(Vec<f64>, Option<Failed>)> = Vec::with_capacity(wanted.len());
-        let evaluate = |(row, &k): (&mut [f64], &usize)| self.one(problem, batch.row(k), row);
-        self.on_threads(|| {
-            rows.par_chunks_mut(points).zip(&wanted).map(evaluate).collect_into_vec(&mut outcomes);
-        });
+        if self.others.is_some() {
+            let places: Vec<Vec<f64>> =
+                wanted.iter().map(|&k| problem.values(batch.row(k))).collect();
+            let found = self.distributed(&places, Asked::Points, self.tolerance);
+            for (own, row) in found.into_iter().zip(rows.chunks_exact_mut(points)) {
+                row.copy_from_slice(&own.row);
+                outcomes.push(self.rate(problem, row, own.failed));
+            }
+        } else {
+            let evaluate = |(row, &k): (&mut [f64], &usize)| self.one(problem, batch.row(k), row);
+            self.on_threads(|| {
+                let rows = rows.par_chunks_mut(points).zip(&wanted);
+                rows.map(evaluate).collect_into_vec(&mut outcomes);
+            });
+        }
         for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
             objectives[k * m..(k + 1) * m].copy_from_slice(&values);
             failed[k] = failure;
@@ -249,6 +288,28 @@ impl Evaluation {
         };
         self.rows = rows;
         answered
+    }
+
+    /// Simulations at several places, spread over all threads and ranks. Where they were cancelled,
+    /// they have failed.
+    fn distributed(&self, places: &[Vec<f64>], asked: Asked, tolerance: f64) -> Vec<Simulation> {
+        let values = places.concat();
+        let parameters = places.first().map_or(1, Vec::len);
+        let points = self.measured.len();
+        let batch = Batch { values: &values, parameters, points, asked, tolerance };
+        let one = |individual: usize| {
+            let mut worker = self.worker();
+            worker.scale_tolerance(tolerance);
+            let found = simulate(worker.as_mut(), &batch, individual);
+            worker.scale_tolerance(self.tolerance);
+            found
+        };
+        if let (Some(others), Some(pool)) = (&self.others, &self.pool) {
+            let local = Local { pool, threads: self.workers.len(), simulate: &one };
+            let found = others.distribute(&batch, &local, self.cancel.as_deref());
+            return found.unwrap_or_else(|| vec![Simulation::cancelled(&batch); batch.len()]);
+        }
+        self.on_threads(|| (0..batch.len()).into_par_iter().map(one).collect())
     }
 
     /// The simulated points of one individual.
@@ -276,15 +337,9 @@ impl Evaluation {
         values: &[Vec<f64>],
         factor: f64,
     ) -> Vec<Result<Vec<f64>, Failed>> {
-        let one = |values: &Vec<f64>| {
-            let mut row = vec![f64::NAN; self.measured.len()];
-            let mut worker = self.worker();
-            worker.scale_tolerance(factor * self.tolerance);
-            let found = worker.simulate(values, &mut row);
-            worker.scale_tolerance(self.tolerance);
-            found.map(|()| row)
-        };
-        self.on_threads(|| values.par_iter().map(one).collect())
+        let tolerance = factor * self.tolerance;
+        let found = self.distributed(values, Asked::Points, tolerance);
+        found.into_iter().map(|own| own.failed.map_or(Ok(own.row), Err)).collect()
     }
 
     /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
@@ -297,7 +352,41 @@ impl Evaluation {
             let mut worker = self.worker();
             job(number, worker.as_mut())
         };
-        self.on_threads(|| (0..count).into_par_iter().map(one).collect())
+        let of_ranks = self.others.as_ref().and_then(|others| {
+            let how = (self.tolerance, self.cancel.as_deref());
+            others.run_jobs(count, &self.workers, &job, how)
+        });
+        of_ranks
+            .unwrap_or_else(|| self.on_threads(|| (0..count).into_par_iter().map(one).collect()))
+    }
+
+    /// The results of jobs that several shards may share, all of which start from `start`; `None`
+    /// where others belong to other shards.
+    pub(super) fn each_part<T: Send + Serialize + DeserializeOwned>(
+        &self,
+        kind: &str,
+        start: &[f64],
+        count: usize,
+        job: impl Fn(usize, &mut dyn Simulate) -> T + Sync,
+    ) -> Option<Vec<T>> {
+        self.parts.all((kind, start), count, |missing| {
+            self.each(missing.len(), |place, simulator| job(missing[place], simulator))
+        })
+    }
+
+    /// The simulated points of several groups of individuals that several shards may share; `None`
+    /// where some belong to other shards.
+    pub(super) fn simulate_groups(
+        &self,
+        kind: &str,
+        groups: &[Vec<Vec<f64>>],
+    ) -> Option<Vec<Vec<Result<Vec<f64>, Failed>>>> {
+        let start: Vec<f64> = groups.iter().flatten().flatten().copied().collect();
+        self.parts.all((kind, &start), groups.len(), |missing| {
+            let values: Vec<Vec<f64>> = missing.iter().flat_map(|k| groups[*k].clone()).collect();
+            let mut rows = self.simulate_all(&values).into_iter();
+            missing.iter().map(|k| rows.by_ref().take(groups[*k].len()).collect()).collect()
+        })
     }
 
     /// Whether simulations have been cancelled.
@@ -307,22 +396,18 @@ impl Evaluation {
 
     /// The simulated points at several places, with derivatives where the simulator has exact ones.
     pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
-        let one = |values: &Vec<f64>| {
-            let (points, n) = (self.measured.len(), values.len());
-            let mut simulated = vec![f64::NAN; points];
-            let mut derivatives = vec![f64::NAN; points * n];
-            let mut worker = self.worker();
-            let exact = worker.sensitivities(values, &mut simulated, &mut derivatives);
-            let exact = exact == Ok(true) && derivatives.iter().all(|value| value.is_finite());
-            let mut refusal = None;
-            if !exact {
-                refusal = worker.sensitivity_refusal().map(str::to_owned);
-                derivatives.clear();
-                worker.simulate(values, &mut simulated)?;
-            }
-            Ok(Linearization { simulated, derivatives, exact, refusal, simulations: 1 })
+        let linearization = |own: Simulation| match own.failed {
+            Some(failed) => Err(failed),
+            None => Ok(Linearization {
+                simulated: own.row,
+                derivatives: own.derivatives,
+                exact: own.exact,
+                refusal: own.refusal,
+                simulations: 1,
+            }),
         };
-        self.on_threads(|| places.par_iter().map(one).collect())
+        let found = self.distributed(places, Asked::DerivativesOrPoints, self.tolerance);
+        found.into_iter().map(linearization).collect()
     }
 
     /// Runs work on the threads of the pool.
@@ -448,6 +533,10 @@ impl Evaluation {
         self.tolerance = factor;
         self.forget();
     }
+}
+
+fn locked(worker: &Mutex<Box<dyn Simulate>>) -> MutexGuard<'_, Box<dyn Simulate>> {
+    worker.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn unrated_by(name: &str) -> Failed {

@@ -1,7 +1,7 @@
 //! Experiments on models: which variables are compared at which points, and the simulator that
 //! runs all of them for one set of parameters.
 
-use super::{Failed, FailureKind, Simulate};
+use super::{Failed, FailureKind, Portable, PortableExperiment, Simulate};
 use crate::diag::Fault;
 use crate::identify::plan::{Plan, plan, with_driver};
 use crate::identify::pointwise::Pointwise;
@@ -9,6 +9,7 @@ use crate::identify::{Instance, Model, Path};
 use crate::sim::{
     Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
 };
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -41,7 +42,7 @@ pub struct Experiment {
 }
 
 /// A variable with the points at which it was measured.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// The variable.
     pub y_name: String,
@@ -51,6 +52,7 @@ pub struct Observation {
 
 /// Runs experiments one after the other.
 pub struct ModelSimulator {
+    experiments: Vec<Experiment>,
     stages: Vec<Stage>,
     simulator: Simulator,
     trajectory: Trajectory,
@@ -89,6 +91,7 @@ impl ModelSimulator {
     pub fn new(experiments: &[Experiment]) -> Result<ModelSimulator, Fault> {
         let stages = experiments.iter().map(Stage::new).collect::<Result<_, Fault>>()?;
         Ok(ModelSimulator {
+            experiments: experiments.to_vec(),
             stages,
             simulator: Simulator::new(),
             trajectory: Trajectory::default(),
@@ -105,12 +108,6 @@ impl ModelSimulator {
     /// Whether the first experiment has no states, so that nothing is integrated.
     pub fn is_static(&mut self) -> bool {
         self.stages[0].instance.system().n_differential() == 0
-    }
-
-    /// When the last simulation failed, in simulated time; `None` where it did not, or where the
-    /// whole simulation is of no use.
-    pub fn failed_at(&self) -> Option<f64> {
-        self.failed_at
     }
 }
 
@@ -170,6 +167,15 @@ impl Simulate for ModelSimulator {
                 retry.tolerance = second;
             }
         }
+    }
+
+    fn failed_at(&self) -> Option<f64> {
+        self.failed_at
+    }
+
+    fn portable(&self) -> Result<Portable, String> {
+        let all: Result<_, String> = self.experiments.iter().map(PortableExperiment::of).collect();
+        Ok(Portable::Experiments(all?))
     }
 
     fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {

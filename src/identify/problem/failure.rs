@@ -1,9 +1,10 @@
 //! Failed simulations: individuals, not ends.
 
 use crate::ga::FAILED_FITNESS;
+use serde::{Deserialize, Serialize};
 
 /// What kind of failure it was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum FailureKind {
     /// The model refuses these values: an assertion, a logarithm of a negative number.
     Model,
@@ -32,7 +33,7 @@ impl FailureKind {
 }
 
 /// A failed simulation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Failed {
     /// What kind.
     pub kind: FailureKind,

@@ -31,6 +31,8 @@ mod minimum_test;
 mod non_identifiable;
 mod nonlinear;
 mod notes;
+mod parts;
+mod portable;
 mod profile;
 mod profiled;
 mod refit;
@@ -43,6 +45,7 @@ mod space;
 mod statistics;
 mod summary;
 mod text;
+mod unpacked;
 
 pub use conclude::conclude;
 pub use conclusion::Conclusion;
@@ -60,12 +63,15 @@ pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use linearization::Linearization;
 pub use non_identifiable::{Form, NonIdentifiable};
+pub use parts::{Parts, Shard, ShardFile, missing_shards};
+pub use portable::{Portable, PortableExperiment, PortableModel, PortableSettings};
 pub use profile::{Profile, Profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
 pub use solution::{ChiSquare, Solution, SolvedParameter, SolvedSeries, Verdict};
 pub use space::Free;
 pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
+pub use unpacked::unpacked;
 
 use super::fitness::Fitness;
 use crate::diag::Fault;
@@ -109,6 +115,19 @@ pub trait Simulate: Send {
     fn scale_tolerance(&mut self, _factor: f64) {}
     /// From now on simulations end when the flag is set; what they answer then is not used.
     fn cancel_by(&mut self, _flag: Option<Arc<AtomicBool>>) {}
+    /// When the last simulation failed, in simulated time; `None` where it did not, or where the
+    /// whole simulation is of no use.
+    fn failed_at(&self) -> Option<f64> {
+        None
+    }
+    /// What another process makes an equal simulator from.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be sent, in words that follow on "because".
+    fn portable(&self) -> Result<Portable, String> {
+        Err("it is a function of the calling program".to_owned())
+    }
 }
 
 /// A measured series.

@@ -49,7 +49,7 @@ impl Solution {
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
         let others = self.other_places();
-        let known = Known { best: &values, reach: &reach, others: &others };
+        let known = Known { best: &values, reach: &reach, others: &others, is_shared: false };
         let Some(found) = profiles(&run.problem, &run.evaluation, &known, &curved)? else {
             return Ok(());
         };

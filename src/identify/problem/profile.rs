@@ -12,7 +12,8 @@ use super::refit::Refit;
 use super::statistics::distributions::{chi_square_quantile, student_quantile};
 use super::{ErrorModel, Evaluation, Free, Problem};
 use crate::diag::Fault;
-use crate::elementary;
+use crate::registry::BAD_OPTION;
+use crate::{bail, elementary};
 use serde::{Deserialize, Serialize};
 
 /// Values on each side of the best before the crossing is looked for.
@@ -73,6 +74,16 @@ pub struct Known<'a> {
     /// Other minima: fits begin there too before a value is said not to fit, and intervals reach
     /// to those that fit as well.
     pub others: &'a [Vec<f64>],
+    /// Whether shards share the parameters among them.
+    pub is_shared: bool,
+}
+
+/// The profile of one parameter with what it took.
+#[derive(Serialize, Deserialize)]
+struct One {
+    profile: Profile,
+    simulations: u64,
+    better: Option<(Vec<f64>, f64)>,
 }
 
 /// Profiles of some parameters about the best values. `None` when the fitness is no sum of squares or
@@ -80,7 +91,7 @@ pub struct Known<'a> {
 ///
 /// # Errors
 ///
-/// Those of the method's maker.
+/// Those of the method's maker; `bad-option` where other shards have a part of them.
 pub fn profiles(
     problem: &Problem,
     evaluation: &Evaluation,
@@ -97,24 +108,48 @@ pub fn profiles(
     walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
     walk.starts.push(best.clone());
     walk.starts.extend(known.others.iter().cloned());
-    let mut profiles = Vec::new();
-    for &k in which {
-        let free = &problem.parameters[k];
-        let mut points = vec![[best[k], smallest]];
-        let first = known.reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
-            (FIRST * half / free.slope(best[k]).abs()).clamp(STEPS[0], STEPS[1])
-        });
-        let (mut interval, mut cut) = ([None; 2], [None; 2]);
-        for (side, step) in [-first, first].into_iter().enumerate() {
-            interval[side] = walk.side(free, k, (&best, smallest), step, &mut points)?;
-            cut[side] = walk.cut.take();
-        }
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let limit = walk.limit;
-        profiles.push(Profile { name: free.name.clone(), points, limit, interval, cut });
+    let begun = walk.refit.simulations;
+    let mut fault = None;
+    let mut some = |places: &[usize]| -> Vec<One> {
+        let one = |place: &usize| walk.one(which[*place], known, (&best, smallest));
+        let all: Result<Vec<One>, Fault> = places.iter().map(one).collect();
+        all.unwrap_or_else(|failed| {
+            fault = Some(failed);
+            Vec::new()
+        })
+    };
+    let every: Vec<usize> = (0..which.len()).collect();
+    let all = match known.is_shared {
+        true => evaluation.parts.all(("profiles", known.best), which.len(), some),
+        false => Some(some(&every)),
+    };
+    if let Some(fault) = fault {
+        return Err(fault);
     }
-    let better = walk.better.filter(|(_, sum)| *sum < smallest * (1.0 - BETTER));
-    Ok(Some(Profiles { profiles, simulations: walk.refit.simulations, better }))
+    let Some(all) = all else {
+        bail!(
+            BAD_OPTION,
+            "A part of the profile likelihoods belongs to other shards: merge them with \
+             `gapi report --merge`"
+        );
+    };
+    Ok(Some(joined(all, begun, smallest)))
+}
+
+/// All profiles; `begun`: simulations before them.
+fn joined(all: Vec<One>, begun: u64, smallest: f64) -> Profiles {
+    let simulations = begun + all.iter().map(|one| one.simulations).sum::<u64>();
+    let mut better: Option<(Vec<f64>, f64)> = None;
+    let mut profiles = Vec::new();
+    for one in all {
+        profiles.push(one.profile);
+        let is_better = |found: &(Vec<f64>, f64)| better.as_ref().is_none_or(|b| found.1 < b.1);
+        if let Some(found) = one.better.filter(is_better) {
+            better = Some(found);
+        }
+    }
+    let better = better.filter(|(_, sum)| *sum < smallest * (1.0 - BETTER));
+    Profiles { profiles, simulations, better }
 }
 
 /// The sum that the 95 % interval of one parameter stays below. Where sigma is known, S rises by
@@ -159,6 +194,29 @@ enum Care {
 }
 
 impl Walk<'_> {
+    /// The profile of parameter `k` about the best values and their sum of squares.
+    fn one(&mut self, k: usize, known: &Known<'_>, best: (&[f64], f64)) -> Result<One, Fault> {
+        let free = self.refit.parameter(k).clone();
+        let before = self.refit.simulations;
+        self.better = None;
+        let mut points = vec![[best.0[k], best.1]];
+        let first = known.reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
+            (FIRST * half / free.slope(best.0[k]).abs()).clamp(STEPS[0], STEPS[1])
+        });
+        let (mut interval, mut cut) = ([None; 2], [None; 2]);
+        for (side, step) in [-first, first].into_iter().enumerate() {
+            interval[side] = self.side(&free, k, best, step, &mut points)?;
+            cut[side] = self.cut.take();
+        }
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let limit = self.limit;
+        Ok(One {
+            profile: Profile { name: free.name.clone(), points, limit, interval, cut },
+            simulations: self.refit.simulations - before,
+            better: self.better.take(),
+        })
+    }
+
     /// Goes from the best to one side until the limit is crossed, and on from other minima that lie
     /// beyond; where the last crossing is.
     fn side(

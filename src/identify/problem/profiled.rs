@@ -43,7 +43,7 @@ impl Solution {
             self = again(run)?;
             self.simulations_for_statistics += simulations;
         }
-        if self.profiles.is_none() {
+        if self.profiles.is_none() && run.evaluation.parts.shard().is_none() {
             self.add_profiles(run);
         }
         self.importance = importance;
@@ -110,7 +110,7 @@ impl Solution {
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
         let others = self.other_places();
-        let known = Known { best: &best.values, reach: &reach, others: &others };
+        let known = Known { best: &best.values, reach: &reach, others: &others, is_shared: true };
         let all: Vec<usize> = (0..reach.len()).collect();
         let found = profiles(&run.problem, &run.evaluation, &known, &all)?;
         let found = found.ok_or_else(|| {

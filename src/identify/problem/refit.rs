@@ -1,6 +1,6 @@
 //! Least squares of some parameters from a known point, the others held.
 
-use super::{Best, Evaluation, Problem, Run};
+use super::{Best, Evaluation, Free, Problem, Run};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
@@ -26,6 +26,11 @@ impl<'a> Refit<'a> {
     pub fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
         evaluation.scales()?;
         Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
+    }
+
+    /// A parameter of the problem.
+    pub fn parameter(&self, k: usize) -> &'a Free {
+        &self.problem.parameters[k]
     }
 
     /// The best values from `start`, parameter `held` standing still; `None` where `start` cannot

@@ -7,6 +7,7 @@ use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
 };
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
+use crate::identify::ranks::Processors;
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
 use indexmap::IndexMap;
@@ -85,7 +86,16 @@ impl Run {
     ///
     /// Problems without parameters, points or objectives; a method that cannot solve this one;
     /// whatever the simulator's maker refuses.
-    pub fn new(mut problem: Problem, threads: usize) -> Result<Run, Fault> {
+    pub fn new(problem: Problem, threads: usize) -> Result<Run, Fault> {
+        Run::on(problem, &Processors::threads(threads))
+    }
+
+    /// Prepares a run on the threads of this process and on other ranks.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Run::new`]; `ranks-differ` where a rank cannot make the simulator.
+    pub fn on(mut problem: Problem, processors: &Processors) -> Result<Run, Fault> {
         if problem.parameters.is_empty() || problem.n_points() == 0 || problem.objectives.is_empty()
         {
             bail!(BAD_OPTION, "there are no parameters, no points or no fitness functions");
@@ -97,7 +107,7 @@ impl Run {
         if problem.stop == Stop::default() {
             problem.stop.evaluations = Some(EVALUATIONS);
         }
-        let evaluation = Evaluation::new(&problem, threads)?;
+        let evaluation = Evaluation::on(&problem, processors)?;
         if problem.method.needs_residuals() && !evaluation.has_residuals() {
             bail!(BAD_OPTION, "`{}` needs a sum of squares, which `{}` is not", problem.method_name, problem.objectives[0].0; help: "use `nelder_mead` or a genetic method");
         }

@@ -125,6 +125,15 @@ impl Checkpoint {
         }
     }
 
+    /// Writes what was collected, and makes it safe on the disk: the run ends.
+    pub(super) fn secure(&mut self, session: &mut Session, now: f64) {
+        self.flush(session, now);
+        if self.broken.is_none() && session.world.exists(&self.path) {
+            // What cannot be made safe has been written all the same.
+            let _ = session.world.sync(&self.path);
+        }
+    }
+
     /// Writes behind what the file holds, all of it where the file has gone.
     fn append(&mut self, session: &mut Session, now: f64) -> io::Result<()> {
         let folder = self.path.parent().unwrap_or(Path::new(""));

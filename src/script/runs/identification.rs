@@ -4,13 +4,14 @@
 use super::tracing;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
-use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
 use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
 use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
+use crate::script::errors::INTERRUPTED;
 use crate::script::models::{simulation, static_curve};
 use crate::script::{Reporting, Session};
 use crate::source::Span;
@@ -146,7 +147,12 @@ impl Session {
                 known
             }
             None => {
+                evaluator.cancel_by(self.world.interrupt_flag());
                 let simulated = evaluator.evaluate(genomes)?;
+                if evaluator.is_cancelled() {
+                    // The population is simulated again by whoever resumes the run.
+                    return Err(Fault::new(INTERRUPTED, "interrupted").into());
+                }
                 self.journal(&request, &evaluator.settings_text(), genomes, &simulated);
                 simulated
             }
@@ -201,11 +207,21 @@ impl Session {
         Ok(())
     }
 
+    /// Says why other ranks take no part, if that is so.
+    pub(super) fn note_idle_ranks(&mut self, reason: Option<&str>) {
+        if let Some(reason) = reason {
+            let text = format!("the other ranks take no part in the simulations, because {reason}");
+            self.note(RANKS_IDLE, text);
+        }
+    }
+
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
         self.load_model_of(request)?;
         let model = self.model_of(request)?;
-        let threads = self.world.threads();
-        Ok(Evaluator::new(Arc::new(model), request.question.clone(), threads)?)
+        let processors = self.world.processors();
+        let evaluator = Evaluator::on(Arc::new(model), request.question.clone(), &processors)?;
+        self.note_idle_ranks(evaluator.alone());
+        Ok(evaluator)
     }
 }
 
@@ -274,7 +290,7 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
-    let (threads, probe) = (session.world.threads(), session.options.probe);
+    let (processors, probe) = (session.world.processors(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
@@ -302,7 +318,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
             own.evaluator.model().clone()
         }));
     }
-    let ending = Ending { recorder: &recorder, models, noise, threads, probe, interrupted };
+    let ending = Ending { recorder: &recorder, models, noise, processors, probe, interrupted };
     let Some(solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
     for (measured, study) in compared {

@@ -252,7 +252,7 @@ fn close(session: &mut Session) -> Result<(), Diagnostic> {
     let has_errors = session.output.messages.unread_errors() > 0;
     if session.is_interrupted() || (has_errors && is_written) {
         let now = session.world.monotonic_seconds();
-        checkpoint.flush(session, now);
+        checkpoint.secure(session, now);
         session.world.eprint("resume the run from here with --resume\n");
     } else if is_written {
         // What cannot be removed does no harm.

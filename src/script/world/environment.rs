@@ -1,6 +1,7 @@
 //! Clocks, the process, its environment variables, and requests to stop.
 
 use crate::external::c::CCompiler;
+use crate::identify::ranks::{Processors, Ranks};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;
@@ -65,4 +66,12 @@ pub trait Environment {
     }
     /// Number of threads to use, at least 1.
     fn threads(&self) -> usize;
+    /// Other processes that simulate.
+    fn ranks(&self) -> Option<Arc<Ranks>> {
+        None
+    }
+    /// What simulates.
+    fn processors(&self) -> Processors {
+        Processors { threads: self.threads(), ranks: self.ranks() }
+    }
 }

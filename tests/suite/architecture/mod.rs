@@ -116,6 +116,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "singular_values",
             "registry",
             "name",
+            "source",
             "diag",
         ],
     ),

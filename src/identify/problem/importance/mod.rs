@@ -44,7 +44,8 @@ pub struct ParameterImportance {
 
 /// A way to find out how much parameters matter.
 pub trait Analysis {
-    /// Analyses a problem with `samples` base samples; 0 for the usual number.
+    /// Analyses a problem with `samples` base samples; 0 for the usual number. `None` where some
+    /// belong to other shards.
     ///
     /// # Errors
     ///
@@ -54,7 +55,7 @@ pub trait Analysis {
         problem: &Problem,
         evaluation: &Evaluation,
         samples: usize,
-    ) -> Result<Importance, Fault>;
+    ) -> Result<Option<Importance>, Fault>;
 }
 
 /// All ways.

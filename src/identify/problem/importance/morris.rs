@@ -32,19 +32,22 @@ impl Analysis for Morris {
         problem: &Problem,
         evaluation: &Evaluation,
         samples: usize,
-    ) -> Result<Importance, Fault> {
+    ) -> Result<Option<Importance>, Fault> {
         let n = problem.parameters.len();
         let mut rng = Mrg32k3a::new(&problem.seed)?.stream(2);
         let trajectories = if samples == 0 { TRAJECTORIES } else { samples };
         let delta = LEVELS as f64 / (2.0 * (LEVELS as f64 - 1.0));
         let mut effects: Vec<Vec<f64>> = vec![Vec::new(); n];
         let mut failed = 0;
-        for _ in 0..trajectories {
-            let (places, order) = trajectory(n, delta, &mut rng);
-            let points: Vec<Vec<f64>> = places.iter().map(|p| values(problem, p)).collect();
-            let rows = evaluation.simulate_all(&points);
+        let walks: Vec<_> = (0..trajectories).map(|_| trajectory(n, delta, &mut rng)).collect();
+        let points = |places: &Vec<Vec<f64>>| places.iter().map(|p| values(problem, p)).collect();
+        let groups: Vec<Vec<Vec<f64>>> = walks.iter().map(|(places, _)| points(places)).collect();
+        let Some(simulated) = evaluation.simulate_groups(ENTRY.name, &groups) else {
+            return Ok(None);
+        };
+        for (rows, (_, order)) in simulated.iter().zip(&walks) {
             failed += rows.iter().filter(|row| row.is_err()).count() as u64;
-            for (pair, &k) in rows.windows(2).zip(&order) {
+            for (pair, &k) in rows.windows(2).zip(order) {
                 if let [Ok(a), Ok(b)] = pair {
                     effects[k].push(evaluation.distance(a, b) / delta);
                 }
@@ -60,13 +63,13 @@ impl Analysis for Morris {
                 errors: [error, None],
             }
         };
-        Ok(Importance {
+        Ok(Some(Importance {
             method: ENTRY.name.to_owned(),
             headings: ["mean effect", "spread of the effect"].map(str::to_owned),
             parameters: problem.parameters.iter().zip(&effects).map(parameter).collect(),
             simulations: (trajectories * (n + 1)) as u64,
             failed,
-        })
+        }))
     }
 }
 

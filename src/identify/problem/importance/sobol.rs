@@ -55,7 +55,7 @@ impl Analysis for Sobol {
         problem: &Problem,
         evaluation: &Evaluation,
         samples: usize,
-    ) -> Result<Importance, Fault> {
+    ) -> Result<Option<Importance>, Fault> {
         let n = problem.parameters.len();
         let samples = if samples == 0 { SAMPLES } else { samples };
         let places = sobol(2 * n, samples, &mut Mrg32k3a::new(&problem.seed)?.stream(2));
@@ -67,24 +67,30 @@ impl Analysis for Sobol {
             square: vec![0.0; points],
             failed: 0,
         };
+        let mut is_whole = true;
         for first in (0..samples).step_by(AT_ONCE) {
             let block = block(problem, &places, first..(first + AT_ONCE).min(samples));
-            for rows in evaluation.simulate_all(&block).chunks_exact(n + 2) {
-                sums.add(evaluation, rows);
+            let groups: Vec<Vec<Vec<f64>>> = block.chunks_exact(n + 2).map(<[_]>::to_vec).collect();
+            match evaluation.simulate_groups(ENTRY.name, &groups) {
+                Some(all) => all.iter().for_each(|rows| sums.add(evaluation, rows)),
+                None => is_whole = false,
             }
+        }
+        if !is_whole {
+            return Ok(None);
         }
         // The distance of two points is that of the mean over all of them.
         let weights = evaluation.weights();
         let weighted = sums.square.iter().zip(weights).map(|(s, w)| s * w * w);
         let variance = weighted.sum::<f64>() / (sums.count - 1.0).max(1.0) / points as f64;
         let parameters = problem.parameters.iter().zip(&sums.distances);
-        Ok(Importance {
+        Ok(Some(Importance {
             method: ENTRY.name.to_owned(),
             headings: ["first order", "total"].map(str::to_owned),
             parameters: parameters.map(|(free, all)| shares(&free.name, all, variance)).collect(),
             simulations: (samples * (n + 2)) as u64,
             failed: sums.failed,
-        })
+        }))
     }
 }
 

@@ -56,7 +56,7 @@ fn analysed(
         simulator: Box::new(move || Ok(Box::new(Formula(formula)))),
     };
     let evaluation = Evaluation::new(&problem, 2).unwrap();
-    analysis(name).unwrap().importance(&problem, &evaluation, 0).unwrap()
+    analysis(name).unwrap().importance(&problem, &evaluation, 0).unwrap().unwrap()
 }
 
 /// Shares of sin a + 7 sin² b + 0.1 c⁴ sin a over −π..π, integrated in closed form.

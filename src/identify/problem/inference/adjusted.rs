@@ -5,11 +5,14 @@
 //! deviation (the maximum a posteriori estimate), log-normal data are compared by their
 //! logarithms, and a point that violates a constraint is refused before it is simulated.
 
-use super::Constraint;
+use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
-use crate::identify::problem::{ErrorModel, Failed, FailureKind, Problem, Series, Sigma, Simulate};
+use crate::identify::problem::{
+    ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate,
+};
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -18,7 +21,7 @@ use std::sync::atomic::AtomicBool;
 pub const PRIOR: &str = "(prior)";
 
 /// What is known of a parameter without the data.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Distribution {
     /// Normal.
     Normal {
@@ -40,7 +43,7 @@ pub enum Distribution {
 }
 
 /// The prior of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prior {
     /// The place of the parameter.
     pub parameter: usize,
@@ -181,6 +184,29 @@ struct Shared {
     constraints: Vec<Constraint>,
 }
 
+/// [`Shared`] as another process can read it.
+#[derive(Serialize, Deserialize)]
+struct PortableAdjustments {
+    points: usize,
+    logarithmic: Vec<Range<usize>>,
+    priors: Vec<Prior>,
+    constraints: Vec<PortableConstraint>,
+}
+
+/// The simulator `inner` with the adjustments that another process has written.
+///
+/// # Errors
+///
+/// `bad-option` where these are not such bytes.
+pub fn adjusted_from(inner: Box<dyn Simulate>, bytes: &[u8]) -> Result<Box<dyn Simulate>, Fault> {
+    let read: PortableAdjustments = postcard::from_bytes(bytes)
+        .map_err(|error| fault!(BAD_OPTION, "the adjustments cannot be read: {error}"))?;
+    let PortableAdjustments { points, logarithmic, priors, constraints } = read;
+    let constraints = constraints.into_iter().map(Constraint::from).collect();
+    let shared = Arc::new(Shared { points, logarithmic, priors, constraints });
+    Ok(Box::new(Adjusted { inner, shared }))
+}
+
 /// A simulator with priors behind its points.
 struct Adjusted {
     inner: Box<dyn Simulate>,
@@ -228,6 +254,21 @@ impl Shared {
     }
 }
 
+impl Shared {
+    fn to_bytes(&self) -> Result<Vec<u8>, String> {
+        let portable = |own: &Constraint| {
+            own.portable().ok_or_else(|| format!("the constraint `{}` is a function", own.text))
+        };
+        let form = PortableAdjustments {
+            points: self.points,
+            logarithmic: self.logarithmic.clone(),
+            priors: self.priors.clone(),
+            constraints: self.constraints.iter().map(portable).collect::<Result<_, _>>()?,
+        };
+        postcard::to_allocvec(&form).map_err(|error| error.to_string())
+    }
+}
+
 impl Simulate for Adjusted {
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
         self.shared.check(parameters)?;
@@ -267,6 +308,15 @@ impl Simulate for Adjusted {
 
     fn scale_tolerance(&mut self, factor: f64) {
         self.inner.scale_tolerance(factor);
+    }
+
+    fn failed_at(&self) -> Option<f64> {
+        self.inner.failed_at()
+    }
+
+    fn portable(&self) -> Result<Portable, String> {
+        let inner = Box::new(self.inner.portable()?);
+        Ok(Portable::Adjusted { inner, adjustments: self.shared.to_bytes()? })
     }
 
     fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {

@@ -11,12 +11,13 @@
 //! 13 and 14; [Davison & Hinkley 1997](crate::bibliography#davison-hinkley-1997), chapter 6.
 
 use super::least_squares::Data;
+use super::other_shards;
 use super::{Local, PRIOR};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
 use crate::identify::problem::distributions::{normal_below, normal_quantile};
-use crate::identify::problem::{Problem, Run};
+use crate::identify::problem::{Problem, Run, Simulate};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
 
@@ -101,7 +102,7 @@ pub fn bootstrap(
     let problem = &run.problem;
     let measured: Vec<f64> = problem.series.iter().flat_map(|series| series.y.clone()).collect();
     let source = Mrg32k3a::new(&problem.seed)?.stream(STREAM);
-    let fits = run.evaluation.each(settings.samples, |number, simulator| {
+    let job = |number: usize, simulator: &mut dyn Simulate| {
         let mut rng = source.substream(number as u64);
         let (data, scales) = drawn(problem, settings.resampling, local, &measured, &mut rng);
         let data = Data {
@@ -111,7 +112,12 @@ pub fn bootstrap(
             noise: problem.noise,
         };
         data.fit(simulator, &local.values).filter(|fit| fit.converged).map(|fit| fit.values)
-    });
+    };
+    let fits = run.evaluation.each_part("bootstrap", &local.values, settings.samples, job);
+    let Some(fits) = fits else {
+        refusals.push(other_shards("bootstrap"));
+        return Ok(None);
+    };
     if run.evaluation.is_cancelled() {
         return Ok(None);
     }

@@ -18,18 +18,20 @@ mod local;
 mod posterior;
 mod predictions;
 mod prior_data;
+mod term;
 
-pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust};
+pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust, adjusted_from};
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Nested, compare};
-pub use constraint::{Constraint, Sides};
+pub use constraint::{Constraint, PortableConstraint, Sides};
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
 pub use likelihood::Likelihood;
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
+pub use term::{Function, Operator, Term};
 
 use super::{FindingKind, Run, Solution};
 use crate::diag::Fault;
@@ -148,6 +150,11 @@ impl Solution {
         let curved = self.parameters.iter().find(|own| own.by_profile && own.deviation.is_none());
         curved.map(|own| format!("the derivative by {} vanishes at the best values", own.name))
     }
+}
+
+/// What is said where other shards have a part of it.
+fn other_shards(what: &str) -> String {
+    format!("A part of the {what} belongs to other shards: merge them with `gapi report --merge`.")
 }
 
 impl Inference {

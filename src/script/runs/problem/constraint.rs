@@ -2,36 +2,14 @@
 //! expressions as in Modelica.
 
 use crate::diag::{Fault, suggest};
-use crate::identify::problem::inference::Constraint;
+use crate::identify::problem::inference::{Constraint, Function, Operator, Term};
 use crate::registry::BAD_OPTION;
 use crate::source::SourceId;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
 };
 use crate::syntax::parse_expression;
-use crate::{bail, elementary, fault};
-use std::sync::Arc;
-
-/// An arithmetic expression of the parameters.
-#[derive(Debug, Clone)]
-enum Term {
-    Number(f64),
-    Parameter(usize),
-    Negative(Box<Term>),
-    Binary(BinaryOperator, Box<Term>, Box<Term>),
-    Function(fn(f64) -> f64, Box<Term>),
-}
-
-type Elementary = fn(f64) -> f64;
-
-/// Functions of one argument.
-const FUNCTIONS: &[(&str, Elementary)] = &[
-    ("abs", f64::abs),
-    ("exp", crate::elementary::exp),
-    ("log", crate::elementary::ln),
-    ("log10", crate::elementary::log10),
-    ("sqrt", f64::sqrt),
-];
+use crate::{bail, fault};
 
 /// Reads an inequality of these parameters.
 ///
@@ -57,8 +35,7 @@ pub(super) fn constraint(text: &str, parameters: &[String]) -> Result<Constraint
         ),
         _ => return Err(not_an_inequality(text)),
     };
-    let sides = move |parameters: &[f64]| [smaller.value(parameters), larger.value(parameters)];
-    Ok(Constraint::new(text, Arc::new(sides)))
+    Ok(Constraint::of_terms(text, [smaller, larger]))
 }
 
 fn not_an_inequality(text: &str) -> Fault {
@@ -78,16 +55,18 @@ fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Te
         ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => {
             Ok(Term::Negative(inner(operand)?))
         }
-        ExpressionKind::Binary { operator, left, right } if is_arithmetic(*operator) => {
-            Ok(Term::Binary(*operator, inner(left)?, inner(right)?))
-        }
+        ExpressionKind::Binary { operator, left, right } => match arithmetic(*operator) {
+            Some(operator) => Ok(Term::Binary(operator, inner(left)?, inner(right)?)),
+            None => Err(more_than_arithmetic(text)),
+        },
         ExpressionKind::Call { function, arguments } => {
             let name = written(function);
-            let known = FUNCTIONS.iter().find(|(own, _)| *own == name);
-            match (known, arguments.positional.as_slice(), arguments.named.as_slice()) {
-                (Some((_, function)), [argument], []) => {
-                    Ok(Term::Function(*function, inner(argument)?))
-                }
+            match (
+                Function::named(&name),
+                arguments.positional.as_slice(),
+                arguments.named.as_slice(),
+            ) {
+                (Some(function), [argument], []) => Ok(Term::Function(function, inner(argument)?)),
                 _ => {
                     bail!(BAD_OPTION, "the constraint `{text}` calls `{name}`"; help: "use + - * / ^ abs exp log log10 sqrt")
                 }
@@ -98,16 +77,23 @@ fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Te
             [Some(only)] => term(text, only, parameters),
             _ => Err(not_an_inequality(text)),
         },
-        _ => {
-            bail!(BAD_OPTION, "the constraint `{text}` contains more than \
-                               arithmetic"; help: "write a separate inequality for each condition")
-        }
+        _ => Err(more_than_arithmetic(text)),
     }
 }
 
-fn is_arithmetic(operator: BinaryOperator) -> bool {
-    use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
-    matches!(operator, Add | Subtract | Multiply | Divide | Power)
+fn more_than_arithmetic(text: &str) -> Fault {
+    fault!(BAD_OPTION, "the constraint `{text}` contains more than arithmetic"; help: "write a separate inequality for each condition")
+}
+
+fn arithmetic(operator: BinaryOperator) -> Option<Operator> {
+    Some(match operator {
+        BinaryOperator::Add => Operator::Add,
+        BinaryOperator::Subtract => Operator::Subtract,
+        BinaryOperator::Multiply => Operator::Multiply,
+        BinaryOperator::Divide => Operator::Divide,
+        BinaryOperator::Power => Operator::Power,
+        _ => return None,
+    })
 }
 
 fn written(reference: &ComponentReference) -> String {
@@ -129,27 +115,6 @@ fn parameter(
             "the constraint `{text}` names `{name}`, which is not an estimated parameter"
         )
         .help_if(suggest::did_you_mean(&name, parameters.iter().map(String::as_str)))),
-    }
-}
-
-impl Term {
-    fn value(&self, parameters: &[f64]) -> f64 {
-        match self {
-            Term::Number(value) => *value,
-            Term::Parameter(place) => parameters[*place],
-            Term::Negative(term) => -term.value(parameters),
-            Term::Function(function, term) => function(term.value(parameters)),
-            Term::Binary(operator, left, right) => {
-                let (a, b) = (left.value(parameters), right.value(parameters));
-                match operator {
-                    BinaryOperator::Add => a + b,
-                    BinaryOperator::Subtract => a - b,
-                    BinaryOperator::Multiply => a * b,
-                    BinaryOperator::Divide => a / b,
-                    _ => elementary::powf(a, b),
-                }
-            }
-        }
     }
 }
 

@@ -24,6 +24,7 @@ mod places;
 mod record;
 mod search;
 mod series;
+mod shards;
 mod sigma;
 
 use super::checkpoint::{self, Checkpoint, keep_old};
@@ -39,6 +40,7 @@ use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, draft};
+pub use shards::{Division, read_shards};
 
 use build::Built;
 use search::Search;
@@ -74,6 +76,8 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
+    /// Whether the study is divided into shards.
+    pub division: Division,
 }
 
 /// The user has named this problem file: the data and the models that it names may be read.
@@ -155,18 +159,20 @@ fn solve_text(
     }
     let every =
         (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
-    solve_built(session, built, options, every).map_err(one)
+    solve_built(session, (path, built), options, every).map_err(one)
 }
 
 fn solve_built(
     session: &mut Session,
-    built: Built,
+    (path, built): (&Path, Built),
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
     let Built { problem, experiments, validation, origins, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
-    let mut run = Run::new(problem, session.world.threads())?;
+    let mut run = Run::on(problem, &session.world.processors())?;
+    run.evaluation.parts = options.division.parts();
+    session.note_idle_ranks(run.evaluation.alone());
     let importance = analysed(session, &run, &folder, options)?;
     let checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
@@ -187,6 +193,10 @@ fn solve_built(
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution, run.seconds)?;
+    if !is_interrupted {
+        let files = (path, checkpoint.path(), folder.as_path());
+        shards::keep(session, &run, files, (&origins, options))?;
+    }
     close(session, &checkpoint, is_interrupted);
     Ok(solution)
 }
@@ -222,6 +232,10 @@ fn analysed(
     let Some(name) = &options.sensitivity else { return Ok(None) };
     let analysis = solving::analysis(name)?;
     let found = analysis.importance(&run.problem, &run.evaluation, options.samples)?;
+    let Some(found) = found else {
+        session.print("\nA part of the sensitivity analysis belongs to other shards.\n");
+        return Ok(None);
+    };
     session.print(&found.text());
     session.write_file(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
     Ok(Some(found))
@@ -246,8 +260,12 @@ fn open(
         );
     }
     let mut bytes = solving::header(origins);
-    if options.resume && exists {
-        let old = session.read_bytes(&path)?;
+    let known = match options.division.journal() {
+        Some(journal) => Some(journal.to_vec()),
+        None if options.resume && exists => Some(session.read_bytes(&path)?),
+        None => None,
+    };
+    if let Some(old) = known {
         let Some(journal) = solving::decode(&old) else {
             bail!(BAD_OPTION, "`{}` is not a checkpoint", path.display(); help: "start again with `--fresh`")
         };

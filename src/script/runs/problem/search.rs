@@ -89,7 +89,7 @@ impl Search {
         };
         session.world.end_view();
         self.run.evaluation.cancel_by(None);
-        self.checkpoint.flush(session, self.run.seconds);
+        self.checkpoint.secure(session, self.run.seconds);
         Ok(ending)
     }
 

@@ -20,8 +20,9 @@ use crate::ga::Mrg32k3a;
 use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate};
 use crate::identify::table::significant;
 use nalgebra::DMatrix;
-use sampler::Chain;
+use sampler::{Chain, Drawn};
 use serde::{Deserialize, Serialize};
+use std::sync::{Mutex, PoisonError};
 
 /// The stream of random numbers, far from those of the search and of the bootstrap.
 const STREAM: u64 = 1_000_033;
@@ -104,33 +105,74 @@ pub fn posterior(
         chain.warm_up(WARM_UP, &mut target);
         Some(chain)
     };
+    let refused =
+        "There is no posterior: the covariance at the best point is not positive definite.";
+    if run.evaluation.parts.are_divided() {
+        let chain = |number: usize, simulator: &mut dyn Simulate| {
+            let mut chain = begin(number, simulator)?;
+            for count in rounds(settings.samples) {
+                chain.draw(count, &mut |u| density.at(simulator, u));
+            }
+            Some(chain.drawn)
+        };
+        let all = run.evaluation.each_part("posterior", &local.values, CHAINS, chain);
+        let Some(all) = all else {
+            refusals.push(super::other_shards("posterior"));
+            return Ok(None);
+        };
+        let Some(all) = all.into_iter().collect::<Option<Vec<Drawn>>>() else {
+            refusals.push(refused.to_owned());
+            return Ok(None);
+        };
+        return Ok((!run.evaluation.is_cancelled()).then(|| merged(problem, &all)));
+    }
     let begun: Option<Vec<Chain>> = run.evaluation.each(CHAINS, begin).into_iter().collect();
     let Some(chains) = begun else {
-        refusals.push(
-            "There is no posterior: the covariance at the best point is not positive definite."
-                .to_owned(),
-        );
+        refusals.push(refused.to_owned());
         return Ok(None);
     };
-    let chains: Vec<std::sync::Mutex<Chain>> =
-        chains.into_iter().map(std::sync::Mutex::new).collect();
-    let mut drawn = 0;
-    loop {
-        let count = FIRST.max(drawn).min(settings.samples - drawn);
+    let chains: Vec<Mutex<Chain>> = chains.into_iter().map(Mutex::new).collect();
+    let mut last = None;
+    for count in rounds(settings.samples) {
         run.evaluation.each(CHAINS, |number, simulator| {
-            let mut chain =
-                chains[number].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut chain = chains[number].lock().unwrap_or_else(PoisonError::into_inner);
             chain.draw(count, &mut |u| density.at(simulator, u));
         });
         if run.evaluation.is_cancelled() {
             return Ok(None);
         }
-        drawn += count;
-        let posterior = summary(problem, &chains);
-        if posterior.converged || drawn >= settings.samples {
-            return Ok(Some(posterior));
+        let chains: Vec<_> =
+            chains.iter().map(|c| c.lock().unwrap_or_else(PoisonError::into_inner)).collect();
+        let drawn: Vec<&Drawn> = chains.iter().map(|chain| &chain.drawn).collect();
+        let posterior = summary(problem, &drawn);
+        let converged = posterior.converged;
+        last = Some(posterior);
+        if converged {
+            break;
         }
     }
+    Ok(last)
+}
+
+/// Draws of each round: as many as all before, until there are `most`.
+fn rounds(most: usize) -> impl Iterator<Item = usize> {
+    let mut drawn = 0;
+    std::iter::from_fn(move || {
+        let count = FIRST.max(drawn).min(most - drawn);
+        drawn += count;
+        (count > 0).then_some(count)
+    })
+}
+
+/// The posterior of chains that were drawn to the end, cut where they agree.
+fn merged(problem: &Problem, chains: &[Drawn]) -> Posterior {
+    let of_round = |round: usize| -> Posterior {
+        let cut: Vec<Drawn> = chains.iter().map(|chain| chain.up_to(round)).collect();
+        summary(problem, &cut.iter().collect::<Vec<_>>())
+    };
+    let rounds = chains.iter().map(|chain| chain.rounds.len()).min().unwrap_or(1);
+    let early = (0..rounds.saturating_sub(1)).map(of_round).find(|found| found.converged);
+    early.unwrap_or_else(|| of_round(rounds.saturating_sub(1)))
 }
 
 /// The covariance in the unit cube; the diagonal where a direction is open.
@@ -215,14 +257,10 @@ impl<'a> Density<'a> {
     }
 }
 
-fn summary(problem: &Problem, chains: &[std::sync::Mutex<Chain>]) -> Posterior {
-    let chains: Vec<_> = chains
-        .iter()
-        .map(|chain| chain.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
-        .collect();
+fn summary(problem: &Problem, chains: &[&Drawn]) -> Posterior {
     let parameter = |k: usize| {
         let free = &problem.parameters[k];
-        let draws = |chain: &Chain| chain.draws.iter().map(|u| free.value(u[k])).collect();
+        let draws = |chain: &Drawn| chain.draws.iter().map(|u| free.value(u[k])).collect();
         let values: Vec<Vec<f64>> = chains.iter().map(|chain| draws(chain)).collect();
         sampled(&free.name, &values)
     };

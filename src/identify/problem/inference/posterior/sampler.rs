@@ -11,6 +11,7 @@
 use crate::elementary;
 use crate::ga::Mrg32k3a;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use serde::{Deserialize, Serialize};
 
 /// Width of the second proposal by that of the first.
 const SECOND: f64 = 0.2;
@@ -32,12 +33,40 @@ pub(in super::super) struct Chain {
     density: f64,
     /// The points of warm-up, from which the covariance adapts.
     past: Vec<DVector<f64>>,
-    /// Draws kept, one row each.
-    pub(super) draws: Vec<Vec<f64>>,
-    /// Logarithms of the density there.
-    pub(super) densities: Vec<f64>,
+    /// What was drawn.
+    pub(in super::super) drawn: Drawn,
     accepted: u64,
     tried: u64,
+}
+
+/// What a chain has drawn after its warm-up.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(in super::super) struct Drawn {
+    /// Draws, one row each.
+    pub draws: Vec<Vec<f64>>,
+    /// Logarithms of the density there.
+    pub densities: Vec<f64>,
+    /// After each round: draws, and steps that moved.
+    pub rounds: Vec<(usize, u64)>,
+}
+
+impl Drawn {
+    /// What was drawn up to the end of this round.
+    pub fn up_to(&self, round: usize) -> Drawn {
+        let rounds = self.rounds[..=round.min(self.rounds.len().saturating_sub(1))].to_vec();
+        let count = rounds.last().map_or(0, |(count, _)| *count);
+        Drawn {
+            draws: self.draws[..count].to_vec(),
+            densities: self.densities[..count].to_vec(),
+            rounds,
+        }
+    }
+
+    /// Share of the steps that moved.
+    pub fn acceptance(&self) -> f64 {
+        let (tried, accepted) = self.rounds.last().copied().unwrap_or_default();
+        accepted as f64 / tried.max(1) as f64
+    }
 }
 
 impl Chain {
@@ -63,18 +92,8 @@ impl Chain {
             point = centre;
         }
         let scaled = Chain::scaled(covariance)?;
-        let (past, draws, densities) = (Vec::new(), Vec::new(), Vec::new());
-        Some(Chain {
-            rng,
-            root: scaled,
-            point,
-            density,
-            past,
-            draws,
-            densities,
-            accepted: 0,
-            tried: 0,
-        })
+        let (past, drawn) = (Vec::new(), Drawn::default());
+        Some(Chain { rng, root: scaled, point, density, past, drawn, accepted: 0, tried: 0 })
     }
 
     fn scaled(covariance: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
@@ -103,14 +122,10 @@ impl Chain {
     pub(in super::super) fn draw(&mut self, count: usize, target: &mut dyn FnMut(&[f64]) -> f64) {
         for _ in 0..count {
             self.step(target);
-            self.draws.push(self.point.as_slice().to_vec());
-            self.densities.push(self.density);
+            self.drawn.draws.push(self.point.as_slice().to_vec());
+            self.drawn.densities.push(self.density);
         }
-    }
-
-    /// Share of the steps that moved.
-    pub fn acceptance(&self) -> f64 {
-        self.accepted as f64 / self.tried.max(1) as f64
+        self.drawn.rounds.push((self.tried as usize, self.accepted));
     }
 
     fn step(&mut self, target: &mut dyn FnMut(&[f64]) -> f64) {

@@ -18,8 +18,8 @@ fn chains(
         let mut chain = Chain::new(&vec![0.0; n], covariance, rng, &mut target).unwrap();
         chain.warm_up(WARM_UP, &mut target);
         chain.draw(draws, &mut target);
-        assert!((0.1..0.9).contains(&chain.acceptance()), "{}", chain.acceptance());
-        chain.draws
+        assert!((0.1..0.9).contains(&chain.drawn.acceptance()), "{}", chain.drawn.acceptance());
+        chain.drawn.draws
     };
     (0..CHAINS as u64).map(one).collect()
 }

@@ -1,0 +1,152 @@
+//! MPI jobs: rank 0 runs the command, the others simulate for it.
+
+use super::args::{Cli, Command};
+use super::options::Limits;
+use super::signals;
+use super::{limits, terminal};
+use crate::identify::ranks::{About, Connection, Ranks, Service, serve};
+use clap::Parser as _;
+use mpi::Threading;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator as _, Destination as _, MatchedReceiveVec as _, Source as _};
+use std::collections::VecDeque;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
+
+/// The other ranks, once they are known.
+static RANKS: OnceLock<Arc<Ranks>> = OnceLock::new();
+
+/// The other ranks, where this is rank 0 of a job.
+pub(super) fn ranks() -> Option<Arc<Ranks>> {
+    RANKS.get().cloned()
+}
+
+/// Joins the job: runs `command` on rank 0, and serves it on the others.
+pub(super) fn join(command: impl FnOnce() -> ExitCode) -> ExitCode {
+    let refused = |message: &str| {
+        terminal::eprint(&format!("error: {message}\n"));
+        ExitCode::FAILURE
+    };
+    let Some((universe, threading)) = mpi::initialize_with_threading(Threading::Serialized) else {
+        return refused("MPI is already initialized");
+    };
+    if threading < Threading::Serialized {
+        return refused("this MPI library does not support threads (MPI_THREAD_SERIALIZED)");
+    }
+    let world = universe.world();
+    let link = Link { size: world.size() as usize, inbox: Mutex::default() };
+    let code = match world.rank() {
+        0 => lead(link, command),
+        _ => {
+            follow(&link);
+            ExitCode::SUCCESS
+        }
+    };
+    // Ends MPI, together with the other ranks.
+    drop(universe);
+    code
+}
+
+fn lead(link: Link, command: impl FnOnce() -> ExitCode) -> ExitCode {
+    match Ranks::connect(Box::new(link), &about(1)) {
+        Ok(ranks) => {
+            let ranks = RANKS.get_or_init(|| ranks);
+            let code = command();
+            ranks.end();
+            code
+        }
+        Err(fault) => {
+            terminal::eprint(&format!("error[{}]: {}\n", fault.code.slug, fault.message));
+            fault.helps.iter().for_each(|help| terminal::eprint(&format!("  help: {help}\n")));
+            // Ranks that run another program understand no message: the job cannot end in order.
+            SimpleCommunicator::world().abort(1)
+        }
+    }
+}
+
+fn follow(link: &Link) {
+    let stop = Arc::new(AtomicBool::new(false));
+    signals::catch_all(&stop);
+    let (threads, limits) = wanted();
+    // The time is that of rank 0, which saves what it has found before it ends all ranks.
+    let limits = Limits { time_limit: None, ..limits };
+    let Ok(_watch) = limits::enforce(&limits) else { return };
+    serve(&Service { connection: link, about: about(threads), clock: seconds, stop: &stop });
+}
+
+/// Threads and limits by the command line, which is the same for all ranks; rank 0 says what is wrong
+/// with it.
+fn wanted() -> (usize, Limits) {
+    let (threads, limits) = match Cli::try_parse().map(|cli| cli.command) {
+        Ok(Command::Run(own)) => (own.threads, own.freedom.limits),
+        Ok(Command::Identify(own)) => (own.threads, own.limits),
+        _ => (None, Limits::default()),
+    };
+    (threads.map_or(1, usize::from), limits)
+}
+
+fn about(threads: usize) -> About {
+    let host = mpi::environment::processor_name().unwrap_or_default();
+    About { version: version(), host, threads }
+}
+
+/// Version and checksum of the program: messages are understood by the same build alone.
+fn version() -> String {
+    let name = env!("CARGO_PKG_VERSION");
+    let program = std::env::current_exe().and_then(std::fs::read);
+    let mut checksum = flate2::Crc::new();
+    checksum.update(&program.unwrap_or_default());
+    format!("{name} (build {:08x})", checksum.sum())
+}
+
+fn seconds() -> f64 {
+    static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
+    STARTED.elapsed().as_secs_f64()
+}
+
+/// The messages of `MPI_COMM_WORLD`. One thread calls MPI at a time.
+struct Link {
+    size: usize,
+    /// What arrived while something was sent.
+    inbox: Mutex<VecDeque<(usize, Vec<u8>)>>,
+}
+
+impl Connection for Link {
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Two ranks may send to each other at once: while the other one does not receive, this one does.
+    fn send(&self, rank: usize, message: &[u8]) {
+        let mut inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner);
+        let world = SimpleCommunicator::world();
+        let other = world.process_at_rank(rank as i32);
+        mpi::request::scope(|scope| {
+            let mut request = other.immediate_send(scope, message);
+            while let Err(pending) = request.test() {
+                request = pending;
+                match arrived(&world) {
+                    Some(message) => inbox.push_back(message),
+                    None => std::thread::yield_now(),
+                }
+            }
+        });
+    }
+
+    fn receive(&self) -> Option<(usize, Vec<u8>)> {
+        let mut inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner);
+        inbox.pop_front().or_else(|| arrived(&SimpleCommunicator::world()))
+    }
+
+    fn seconds(&self) -> f64 {
+        seconds()
+    }
+}
+
+fn arrived(world: &SimpleCommunicator) -> Option<(usize, Vec<u8>)> {
+    let (bytes, status) =
+        world.any_process().immediate_matched_probe()?.matched_receive_vec::<u8>();
+    Some((status.source_rank() as usize, bytes))
+}

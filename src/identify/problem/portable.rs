@@ -1,0 +1,148 @@
+//! Simulators as data: what one process writes and another one of the same version reads.
+//!
+//! Models go as compiled programs, so that the other process needs none of their files.
+
+use super::{Experiment, Observation};
+use crate::diag::Fault;
+use crate::identify::Model;
+use crate::sim::{OutputGrid, Settings, TimeBudget, find_integrator};
+use serde::{Deserialize, Serialize};
+
+/// A simulator.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum Portable {
+    /// Experiments, one after the other.
+    Experiments(Vec<PortableExperiment>),
+    /// Another one with priors, constraints and logarithms.
+    Adjusted {
+        /// The simulator below.
+        inner: Box<Portable>,
+        /// What [`adjusted_from`](super::inference::adjusted_from) reads.
+        adjustments: Vec<u8>,
+    },
+}
+
+/// A compiled model.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct PortableModel {
+    /// Its name, with its modification.
+    pub name: String,
+    /// See [`Model::driven`].
+    pub driven: Option<(String, String)>,
+    /// [`Program::to_bytes`](crate::codegen::Program::to_bytes).
+    pub program: Vec<u8>,
+}
+
+/// An [`Experiment`].
+#[derive(Debug, Serialize, Deserialize)]
+pub struct PortableExperiment {
+    pub(super) name: String,
+    pub(super) model: PortableModel,
+    pub(super) settings: PortableSettings,
+    pub(super) second_attempt: bool,
+    pub(super) x_name: String,
+    pub(super) observations: Vec<Observation>,
+    pub(super) parameters: Vec<(usize, String)>,
+}
+
+/// The [`Settings`] of a simulation: the method by its name, the budget of time without its clock.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct PortableSettings {
+    start: f64,
+    stop: f64,
+    output: OutputGrid,
+    tolerance: f64,
+    method: String,
+    step: Option<f64>,
+    initial_step: Option<f64>,
+    max_step: f64,
+    treats_chattering: bool,
+    max_steps: u64,
+    max_total_steps: u64,
+    counts_effort: bool,
+    time_budget: Option<f64>,
+}
+
+impl PortableExperiment {
+    /// The experiment as data.
+    ///
+    /// # Errors
+    ///
+    /// Why its model cannot be sent.
+    pub fn of(experiment: &Experiment) -> Result<PortableExperiment, String> {
+        let Experiment { name, model, settings, second_attempt, x_name, observations, parameters } =
+            experiment;
+        Ok(PortableExperiment {
+            name: name.clone(),
+            model: portable_model(model.as_ref())?,
+            settings: PortableSettings::of(settings),
+            second_attempt: *second_attempt,
+            x_name: x_name.clone(),
+            observations: observations.clone(),
+            parameters: parameters.clone(),
+        })
+    }
+}
+
+fn portable_model(model: &dyn Model) -> Result<PortableModel, String> {
+    model.portable().map_err(|reason| format!("`{}` {reason}", model.name()))
+}
+
+impl PortableSettings {
+    fn of(settings: &Settings) -> PortableSettings {
+        // Named one by one, so that a new setting is not forgotten here.
+        let Settings {
+            start,
+            stop,
+            output,
+            tolerance,
+            method,
+            step,
+            initial_step,
+            max_step,
+            treats_chattering,
+            max_steps,
+            max_total_steps,
+            counts_effort,
+            time_budget,
+            cancel: _,
+            reached: _,
+        } = settings;
+        PortableSettings {
+            start: *start,
+            stop: *stop,
+            output: output.clone(),
+            tolerance: *tolerance,
+            method: method.name.to_owned(),
+            step: *step,
+            initial_step: *initial_step,
+            max_step: *max_step,
+            treats_chattering: *treats_chattering,
+            max_steps: *max_steps,
+            max_total_steps: *max_total_steps,
+            counts_effort: *counts_effort,
+            time_budget: time_budget.as_ref().map(|budget| budget.seconds),
+        }
+    }
+
+    /// The settings, with a clock for the budget of time.
+    pub(super) fn settings(self, clock: fn() -> f64) -> Result<Settings, Fault> {
+        Ok(Settings {
+            start: self.start,
+            stop: self.stop,
+            output: self.output,
+            tolerance: self.tolerance,
+            method: find_integrator(&self.method)?,
+            step: self.step,
+            initial_step: self.initial_step,
+            max_step: self.max_step,
+            treats_chattering: self.treats_chattering,
+            max_steps: self.max_steps,
+            max_total_steps: self.max_total_steps,
+            counts_effort: self.counts_effort,
+            time_budget: self.time_budget.map(|seconds| TimeBudget { seconds, clock }),
+            cancel: None,
+            reached: None,
+        })
+    }
+}

@@ -1,0 +1,149 @@
+//! A population on all processors: the threads of this process and the lanes of the other ranks take
+//! individuals from one queue.
+
+use super::chunk;
+use super::coordinator::{Arrived, Patience, Prepared, State};
+use super::message::Work;
+use super::simulation::{Batch, Simulation};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// The threads of this process that simulate.
+pub struct Local<'a> {
+    /// The threads.
+    pub pool: &'a rayon::ThreadPool,
+    /// How many of them simulate.
+    pub threads: usize,
+    /// Simulates one individual.
+    pub simulate: &'a (dyn Fn(usize) -> Simulation + Sync),
+}
+
+/// Individuals that have no processor yet.
+struct Queue {
+    next: AtomicUsize,
+    end: usize,
+}
+
+impl Queue {
+    fn remaining(&self) -> usize {
+        self.end.saturating_sub(self.next.load(Ordering::Relaxed))
+    }
+
+    fn take(&self, count: usize) -> Option<std::ops::Range<usize>> {
+        let first = self.next.fetch_add(count, Ordering::Relaxed);
+        (first < self.end).then(|| first..(first + count).min(self.end))
+    }
+}
+
+/// Answers with their indices.
+type Answers = Vec<(usize, Simulation)>;
+
+impl Prepared {
+    /// Simulates a batch; `None` where it was cancelled.
+    pub fn distribute(
+        &self,
+        batch: &Batch<'_>,
+        local: &Local<'_>,
+        cancel: Option<&AtomicBool>,
+    ) -> Option<Vec<Simulation>> {
+        let is_cancelled = || cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        let queue = Queue { next: AtomicUsize::new(0), end: batch.len() };
+        let found: Mutex<Answers> = Mutex::new(Vec::with_capacity(batch.len()));
+        let work = || {
+            let mut own = Vec::new();
+            let began = self.ranks.seconds();
+            while !is_cancelled()
+                && let Some(individuals) = queue.take(1)
+            {
+                own.extend(individuals.map(|k| (k, (local.simulate)(k))));
+            }
+            self.measured(own.len(), self.ranks.seconds() - began);
+            found.lock().unwrap_or_else(PoisonError::into_inner).append(&mut own);
+        };
+        let mut remote = Vec::new();
+        local.pool.in_place_scope(|scope| {
+            for _ in 0..local.threads {
+                scope.spawn(|_| work());
+            }
+            if let Some(mut state) = self.ranks.free_state()
+                && chunk::is_worth_distributing(&self.times(&state), batch.len(), local.threads)
+            {
+                remote = self.hand_out(&mut state, batch, &queue, local.threads, &is_cancelled);
+            }
+        });
+        if is_cancelled() {
+            return None;
+        }
+        let mut found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+        found.append(&mut remote);
+        Some(in_order(found, batch))
+    }
+
+    /// Gives chunks to free lanes until none remains, and collects the answers.
+    fn hand_out(
+        &self,
+        state: &mut State,
+        batch: &Batch<'_>,
+        queue: &Queue,
+        threads: usize,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Answers {
+        let (mut answers, mut patience) = (Vec::new(), Patience::new());
+        self.ranks.take_reports(state);
+        // Answers that came too late for an earlier batch.
+        state.arrived.clear();
+        let mut under_way: Vec<u64> = Vec::new();
+        loop {
+            for lane in 0..state.lanes.len() {
+                if state.lanes[lane].work.is_some() || queue.remaining() == 0 {
+                    continue;
+                }
+                let processors = state.lanes.len() + threads;
+                let size = chunk::size(&self.times(state), queue.remaining(), processors);
+                let Some(individuals) = queue.take(size) else { break };
+                let work = part(batch, individuals.clone());
+                self.send(state, lane, individuals.start, work);
+                under_way.extend(state.lanes[lane].work.map(|sent| sent.ticket));
+            }
+            if is_cancelled() {
+                self.ranks.cancel(state);
+                return answers;
+            }
+            if under_way.is_empty() {
+                return answers;
+            }
+            match self.ranks.take_reports(state) {
+                true => patience.reset(),
+                false => patience.wait(),
+            }
+            for Arrived { sent, seconds, simulations, .. } in state.arrived.drain(..) {
+                let Some(place) = under_way.iter().position(|own| *own == sent.ticket) else {
+                    continue;
+                };
+                under_way.swap_remove(place);
+                self.measured(simulations.len(), seconds);
+                answers.extend((sent.first..sent.first + sent.count).zip(simulations));
+            }
+        }
+    }
+}
+
+fn part(batch: &Batch<'_>, individuals: std::ops::Range<usize>) -> Work {
+    let n = batch.parameters;
+    Work {
+        ticket: 0,
+        number: 0,
+        values: batch.values[individuals.start * n..individuals.end * n].to_vec(),
+        parameters: n,
+        points: batch.points,
+        asked: batch.asked,
+        tolerance: batch.tolerance,
+    }
+}
+
+fn in_order(found: Answers, batch: &Batch<'_>) -> Vec<Simulation> {
+    let mut all: Vec<Simulation> = Vec::new();
+    all.resize_with(batch.len(), Simulation::default);
+    found.into_iter().for_each(|(place, answer)| all[place] = answer);
+    all
+}

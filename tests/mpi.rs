@@ -1,0 +1,262 @@
+//! `gapi` as an MPI job: the files of one process for any number of ranks, also where a rank is killed
+//! or the scheduler ends the job, and another number of ranks resumes it.
+//!
+//! Needs `mpirun`, and that ranks may share cores.
+#![cfg(target_os = "linux")]
+#![allow(clippy::disallowed_methods, reason = "expectations of tests")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const MODEL: &str = "model Oscillator
+  parameter Real mu = 1;
+  parameter Real w = 1;
+  parameter Real d = 0.1;
+  Real x(start = 2, fixed = true);
+  Real v(start = 0, fixed = true);
+equation
+  der(x) = w*v;
+  der(v) = mu*(1 - x^2)*v - w*x - d*v;
+  annotation(experiment(StopTime = 10, Tolerance = 1e-8));
+end Oscillator;
+";
+
+const PROBLEM: &str = "model = \"Oscillator\"
+files = [\"Oscillator.mo\"]
+constraints = [\"d < 2*mu\"]
+[parameters]
+mu = { min = 0.2, max = 3 }
+w = { min = 0.5, max = 2 }
+d = { min = 0, max = 1 }
+[[experiment]]
+data = \"d.csv\"
+x = \"time\"
+outputs = { x = { column = \"x\", sigma = 0.05 } }
+[method]
+name = \"genetic\"
+population = 24
+[stop]
+generations = 60
+[checkpoint]
+seconds = 0.01
+[bootstrap]
+samples = 100
+";
+
+const SCRIPT: &str = "openModel(\"Oscillator.mo\")
+Parameters = {\"mu\", \"w\", \"d\"};
+Seed = [1, 2, 3, 4, 5, 6];
+(Read, Sizes, x, measured) = Exp_Adq_SISO(\"d.csv\", \"time\", \"x\");
+for generation in 1:12 loop
+  New_Generation = zeros(30, 3);
+  for k in 1:30 loop
+    (Ram_list, Seed) = Ram_Gen_ARENA(Seed, 3);
+    New_Generation[k, :] = {0.3, 0.5, 0} + Ram_list[1, :];
+  end for;
+  y = Eval(\"\", \"Oscillator\", x, New_Generation, Parameters, \"time\", \"x\");
+  fitness = Fit(y, measured);
+end for;
+";
+
+/// Columns of time and x that no parameters fit exactly.
+fn data() -> String {
+    let point = |k: i32| {
+        let time = 0.5 * f64::from(k);
+        let x = 1.9 * (0.93 * time).cos() + 0.04 * f64::from(k % 5 - 2);
+        format!("{time},{x:.4}\n")
+    };
+    (1..20).map(point).fold("time,x\n".to_owned(), |text, row| text + &row)
+}
+
+fn here() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let files =
+        [("Oscillator.mo", MODEL), ("p.toml", PROBLEM), ("d.csv", &data()), ("job.mos", SCRIPT)];
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+/// `gapi` alone, or as so many ranks.
+fn command(folder: &Path, ranks: usize, arguments: &[&str]) -> Command {
+    let gapi = env!("CARGO_BIN_EXE_gapi");
+    let mut command = match ranks {
+        0 => Command::new(gapi),
+        ranks => {
+            let mut command = Command::new("mpirun");
+            command.args(["-n", &ranks.to_string(), gapi]);
+            command
+        }
+    };
+    // Open MPI asks twice whether the user `root` means it, and whether ranks may share cores.
+    command
+        .envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")])
+        .envs([("OMPI_MCA_rmaps_base_oversubscribe", "1")])
+        .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
+        .args(arguments)
+        .current_dir(folder);
+    command
+}
+
+fn ended(command: &mut Command) -> (Option<i32>, String) {
+    let Output { status, stdout, stderr } = command.output().expect("`mpirun` is installed");
+    (status.code(), String::from_utf8_lossy(&[stdout, stderr].concat()).into_owned())
+}
+
+/// The files of a run; not those that say when and by whom it was made.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let named = entries.map(|path| {
+        (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(path).unwrap())
+    });
+    named.filter(|(name, _)| name != "timing.json" && name != "run.lock").collect()
+}
+
+fn same_files(a: &Path, b: &Path) {
+    let (a, b) = (files(a), files(b));
+    assert!(a.contains_key("result.json") || a.contains_key("history.csv"), "{:?}", a.keys());
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    for (name, bytes) in &a {
+        assert!(bytes == &b[name], "`{name}` differs");
+    }
+}
+
+const IDENTIFY: [&str; 5] = ["identify", "p.toml", "--profile", "--out", "out"];
+const RUN: [&str; 6] = ["run", "job.mos", "--checkpoint", "0.01", "--out", "out"];
+
+/// The files that one process alone writes.
+fn reference(arguments: &[&str]) -> TempDir {
+    let alone = here();
+    let (code, text) = ended(&mut command(alone.path(), 0, arguments));
+    assert_eq!(code, Some(0), "{text}");
+    alone
+}
+
+#[test]
+fn the_files_are_those_of_one_process() {
+    for arguments in [&IDENTIFY[..], &RUN] {
+        let alone = reference(arguments);
+        for (ranks, threads) in [(1, "2"), (2, "1"), (3, "1"), (2, "2")] {
+            let here = here();
+            let arguments = [arguments, &["--threads", threads]].concat();
+            let (code, text) = ended(&mut command(here.path(), ranks, &arguments));
+            assert_eq!(code, Some(0), "{ranks} ranks: {text}");
+            same_files(&alone.path().join("out"), &here.path().join("out"));
+        }
+    }
+}
+
+/// Starts a job and waits until it has a checkpoint.
+fn started(here: &Path, ranks: usize, arguments: &[&str], journal: &str) -> Child {
+    let mut child = command(here, ranks, arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("`mpirun` is installed");
+    let begun = Instant::now();
+    let journal = here.join("out").join(journal);
+    while fs::metadata(&journal).map_or(0, |found| found.len()) < 2000 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        assert!(begun.elapsed() < Duration::from_secs(60), "not a checkpoint");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+/// The process of a rank.
+fn process_of(rank: usize, job: &Child) -> String {
+    let id = job.id();
+    let children = fs::read_to_string(format!("/proc/{id}/task/{id}/children")).unwrap();
+    let wanted = [format!("OMPI_COMM_WORLD_RANK={rank}"), format!("PMI_RANK={rank}")];
+    let is_it = |child: &&str| {
+        let environment = fs::read(format!("/proc/{child}/environ")).unwrap_or_default();
+        let mut variables = environment.split(|byte| *byte == 0);
+        variables.any(|own| wanted.iter().any(|wanted| own == wanted.as_bytes()))
+    };
+    children.split_whitespace().find(is_it).expect("the rank runs").to_owned()
+}
+
+fn send(signal: &str, process: &str) {
+    assert!(Command::new("kill").args([signal, process]).status().unwrap().success());
+}
+
+const RUNS: [(&[&str], &str); 2] = [(&IDENTIFY, "run.journal"), (&RUN, "script.journal")];
+
+#[test]
+fn a_job_that_lost_a_rank_is_resumed_by_another_number_of_ranks() {
+    for (arguments, journal) in RUNS {
+        let alone = reference(arguments);
+        for (killed, ranks, then) in [(1, 3, 2), (0, 2, 3), (1, 2, 0)] {
+            let here = here();
+            let mut job = started(here.path(), ranks, arguments, journal);
+            send("-KILL", &process_of(killed, &job));
+            assert!(!job.wait().unwrap().success(), "the job ended without an error");
+            assert!(here.path().join("out").join(journal).exists());
+            let again = [arguments, &["--resume"]].concat();
+            let (code, text) = ended(&mut command(here.path(), then, &again));
+            assert_eq!(code, Some(0), "{text}");
+            assert!(text.contains("resumed"), "{text}");
+            same_files(&alone.path().join("out"), &here.path().join("out"));
+        }
+    }
+}
+
+#[test]
+fn a_job_that_the_scheduler_ends_is_resumed() {
+    for (arguments, journal) in RUNS {
+        let alone = reference(arguments);
+        let here = here();
+        let mut job = started(here.path(), 3, arguments, journal);
+        send("-TERM", &job.id().to_string());
+        assert!(!job.wait().unwrap().success());
+        let again = [arguments, &["--resume"]].concat();
+        let (code, text) = ended(&mut command(here.path(), 2, &again));
+        assert_eq!(code, Some(0), "{text}");
+        same_files(&alone.path().join("out"), &here.path().join("out"));
+    }
+}
+
+#[test]
+fn a_rank_that_is_asked_to_end_ends_the_job_in_order() {
+    let here = here();
+    let mut job = started(here.path(), 3, &IDENTIFY, "run.journal");
+    send("-TERM", &process_of(2, &job));
+    assert_eq!(job.wait().unwrap().code(), Some(130));
+    assert!(here.path().join("out/run.journal").exists());
+}
+
+#[test]
+fn what_is_wrong_is_said_once() {
+    let here = here();
+    let (code, text) = ended(&mut command(here.path(), 3, &["identify", "nothing.toml"]));
+    assert_eq!(code, Some(1), "{text}");
+    assert_eq!(text.matches("error[").count(), 1, "{text}");
+    let (code, text) = ended(&mut command(here.path(), 3, &["identify", "--no-such-option"]));
+    assert_eq!(code, Some(2), "{text}");
+    assert_eq!(text.matches("unexpected argument").count(), 1, "{text}");
+}
+
+#[test]
+fn a_model_with_functions_in_c_is_simulated_by_rank_0_alone() {
+    let here = here();
+    let function = "  parameter Real d = 0.1;
+  function twice
+    input Real x;
+    output Real y;
+    external \"C\" y = twice(x)
+      annotation(Include = \"static double twice(double x) { return 2*x; }\");
+  end twice;
+";
+    let model = MODEL.replace("  parameter Real d = 0.1;\n", function);
+    let model = model.replace("mu*(1", "twice(mu)/2*(1");
+    fs::write(here.path().join("Oscillator.mo"), model).unwrap();
+    let arguments = ["identify", "p.toml", "--allow-external", "--evaluations", "50"];
+    let (code, text) = ended(&mut command(here.path(), 2, &arguments));
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("take no part") && text.contains("functions in C"), "{text}");
+}
