@@ -563,3 +563,31 @@ fn libraries_beside_a_library_are_found() {
     let (code, out, errors) = gapi(&here, &by_option);
     assert!(code == 0 && out.contains("x = 7"), "{out}{errors}");
 }
+
+/// The library that the references are about and the one that it uses, by `MODELICAPATH` alone.
+#[test]
+fn verify_finds_the_libraries_of_the_references() {
+    let here = folder(&[]);
+    for (name, text) in [
+        (
+            "A",
+            "package A model M Real x = B.k; end M; annotation(uses(B(version = \"1\"))); end A;",
+        ),
+        ("B", "package B constant Real k = 7; end B;"),
+    ] {
+        fs::create_dir_all(here.path().join("libs").join(name)).unwrap();
+        fs::write(here.path().join("libs").join(name).join("package.mo"), text).unwrap();
+    }
+    fs::create_dir_all(here.path().join("references/A/M")).unwrap();
+    let good = "time,x\n0,7\n1,7\n";
+    fs::write(here.path().join("references/A/M/M.csv"), good).unwrap();
+    let verify = || {
+        let mut command = command(here.path(), &["verify", "--references", "references"]);
+        let output = command.env("MODELICAPATH", here.path().join("libs")).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (code, out) = verify();
+    assert!(code == Some(0) && out.contains("1 agreed"), "{out}");
+    fs::write(here.path().join("references/A/M/M.csv"), good.replace('7', "8")).unwrap();
+    assert_eq!(verify().0, Some(1));
+}

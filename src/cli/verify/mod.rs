@@ -102,7 +102,7 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
 }
 
 /// Loads the libraries that the collection is about, if they are found by name: what a folder or a
-/// file in it is called begins with theirs.
+/// file in it is called begins with theirs; and those that they use.
 fn load_named(session: &mut Session, references: &Path) -> Result<(), Vec<Diagnostic>> {
     let mut names = BTreeSet::new();
     // A folder that cannot be read is named where its cases are looked for.
@@ -114,7 +114,7 @@ fn load_named(session: &mut Session, references: &Path) -> Result<(), Vec<Diagno
     for name in names {
         session.autoload(&Name::parse(&name))?;
     }
-    Ok(())
+    session.load_used()
 }
 
 fn write(session: &mut Session, path: &Path, rows: &[Row]) -> Result<(), Fault> {

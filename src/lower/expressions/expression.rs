@@ -203,8 +203,11 @@ impl<T: Target> Lowering<'_, T> {
             self.target.end_if(branch, &[]);
             return match self.target.settle(condition) {
                 Some(holds) => Ok(if holds != 0.0 { first } else { second }),
-                None => Err(fault!(NO_CONSTANT_VALUE, "the branches have different sizes, and \
-                    which of them holds is not known at translation")
+                None => Err(fault!(
+                    NO_CONSTANT_VALUE,
+                    "the branches have different sizes, and \
+                    which of them holds is not known at translation"
+                )
                 .at(span)),
             };
         };

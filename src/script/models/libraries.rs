@@ -143,6 +143,21 @@ impl Session {
         }
     }
 
+    /// Loads the libraries that the `uses` annotations of loaded ones name, as far as they are found:
+    /// for those who hand the classes on to where nothing is loaded any more.
+    pub fn load_used(&mut self) -> Result<(), Vec<Diagnostic>> {
+        loop {
+            let used: Vec<Ident> = self.classes.versions.keys().copied().collect();
+            let mut is_loaded = false;
+            for name in used {
+                is_loaded |= self.autoload(&Name::from(name))?;
+            }
+            if !is_loaded {
+                return Ok(());
+            }
+        }
+    }
+
     /// The `version` annotation of a loaded package; empty without.
     pub(in crate::script) fn class_version(&self, name: &Name) -> Result<String, Fault> {
         let definition = self.classes.library.definition(name);
