@@ -49,14 +49,17 @@ impl ModelCheck {
                     return errors;
                 }
             };
-        if let Some(imbalance) = imbalance {
-            return vec![causalize::explain_imbalance(&flattened.model, imbalance)];
-        }
-        let mut found = flattened.warnings;
-        // What has open connectors is no system by itself.
+        // What has open connectors is no system by itself: its local balance counts.
         let is_component = flattened.balance.and_then(|balance| balance.of_component()).is_some();
+        let mut found = flattened.warnings;
+        if let Some(imbalance) = imbalance {
+            if !is_component {
+                return vec![causalize::explain_imbalance(&flattened.model, imbalance)];
+            }
+            return found;
+        }
         let is_wrong = |error: &Diagnostic| match error.code.slug {
-            "singular-system" => !is_component,
+            "singular-system" | "unbalanced-model" | "clock-conflict" => !is_component,
             slug => slug != VALUE_LEFT_OPEN,
         };
         found.extend(causalize::causalize(&flattened.model).err().filter(is_wrong));
