@@ -27,7 +27,7 @@ mod table;
 mod uncertainty;
 
 pub use evaluation::{Evaluator, FailedSimulation, Question, Simulated};
-pub use model::{Instance, Model, Parameter};
+pub use model::{Instance, Model, Parameter, PortableModel};
 pub use objective::Objective;
 pub use points::{Path, time_of};
 pub use probe::{Ending, Probe};

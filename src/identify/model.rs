@@ -1,8 +1,8 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
-use super::problem::PortableModel;
 use crate::diag::Fault;
 use crate::sim::{DaeSystem, Settings, SimError};
+use serde::{Deserialize, Serialize};
 
 /// A model that can be simulated many times with different parameter values.
 pub trait Model: Send + Sync {
@@ -59,6 +59,17 @@ pub struct Parameter {
     pub tunable: bool,
     /// Whether it stands directly in the model.
     pub top_level: bool,
+}
+
+/// A compiled model as data.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct PortableModel {
+    /// Its name, with its modification.
+    pub name: String,
+    /// See [`Model::driven`].
+    pub driven: Option<(String, String)>,
+    /// [`Program::to_bytes`](crate::codegen::Program::to_bytes).
+    pub program: Vec<u8>,
 }
 
 /// A system with settable parameters.

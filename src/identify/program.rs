@@ -1,7 +1,6 @@
 //! Compiled programs as models to identify.
 
-use super::problem::PortableModel;
-use super::{Instance, Model, Parameter};
+use super::{Instance, Model, Parameter, PortableModel};
 use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::Fault;
 use crate::runtime::System;

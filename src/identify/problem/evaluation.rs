@@ -34,6 +34,9 @@ pub struct Answered {
     pub simulations: u64,
 }
 
+/// The simulated points of an individual, or why there are none.
+type Row = Result<Vec<f64>, Failed>;
+
 /// Simulators on several threads, and the memory of equal genes.
 pub struct Evaluation {
     measured: Vec<f64>,
@@ -380,7 +383,7 @@ impl Evaluation {
         &self,
         kind: &str,
         groups: &[Vec<Vec<f64>>],
-    ) -> Option<Vec<Vec<Result<Vec<f64>, Failed>>>> {
+    ) -> Option<Vec<Vec<Row>>> {
         let start: Vec<f64> = groups.iter().flatten().flatten().copied().collect();
         self.parts.all((kind, &start), groups.len(), |missing| {
             let values: Vec<Vec<f64>> = missing.iter().flat_map(|k| groups[*k].clone()).collect();

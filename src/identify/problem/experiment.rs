@@ -1,7 +1,7 @@
 //! Experiments on models: which variables are compared at which points, and the simulator that
 //! runs all of them for one set of parameters.
 
-use super::{Failed, FailureKind, Portable, PortableExperiment, Simulate};
+use super::{Failed, FailureKind, Portable, PortableExperiment, PortableSettings, Simulate};
 use crate::diag::Fault;
 use crate::identify::plan::{Plan, plan, with_driver};
 use crate::identify::pointwise::Pointwise;
@@ -9,7 +9,6 @@ use crate::identify::{Instance, Model, Path};
 use crate::sim::{
     Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
 };
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -42,7 +41,7 @@ pub struct Experiment {
 }
 
 /// A variable with the points at which it was measured.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// The variable.
     pub y_name: String,
@@ -80,6 +79,23 @@ struct Stage {
     pointwise: Option<Pointwise>,
     /// When the first attempt failed, in simulated time.
     failed_at: Option<f64>,
+}
+
+impl Experiment {
+    fn portable(&self) -> Result<PortableExperiment, String> {
+        let Experiment { name, model, settings, second_attempt, x_name, observations, parameters } =
+            self;
+        let of = |observation: &Observation| (observation.y_name.clone(), observation.x.clone());
+        Ok(PortableExperiment {
+            name: name.clone(),
+            model: model.portable().map_err(|reason| format!("`{}` {reason}", model.name()))?,
+            settings: PortableSettings::of(settings),
+            second_attempt: *second_attempt,
+            x_name: x_name.clone(),
+            observations: observations.iter().map(of).collect(),
+            parameters: parameters.clone(),
+        })
+    }
 }
 
 impl ModelSimulator {
@@ -174,7 +190,7 @@ impl Simulate for ModelSimulator {
     }
 
     fn portable(&self) -> Result<Portable, String> {
-        let all: Result<_, String> = self.experiments.iter().map(PortableExperiment::of).collect();
+        let all: Result<_, String> = self.experiments.iter().map(Experiment::portable).collect();
         Ok(Portable::Experiments(all?))
     }
 

@@ -9,6 +9,7 @@
 //! All numbers are little-endian.
 
 use super::evaluation::Answered;
+use super::frame::{first_frame, frame};
 use super::{Failed, FailureKind, Origins};
 
 const MAGIC: &[u8; 8] = b"GAPIRUN3";
@@ -74,23 +75,6 @@ pub fn encode(record: &Record) -> Vec<u8> {
     frame(&payload)
 }
 
-/// A payload with its length and its checksum before it.
-pub fn frame(payload: &[u8]) -> Vec<u8> {
-    let mut bytes = (payload.len() as u64).to_le_bytes().to_vec();
-    bytes.extend(checksum(payload).to_le_bytes());
-    bytes.extend(payload);
-    bytes
-}
-
-/// The first frame's payload and what follows it; `None` where it is damaged or not finished.
-pub fn first_frame(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
-    let mut reader = Reader { bytes };
-    let length = usize::try_from(reader.integer()?).ok()?;
-    let sum = u32::from_le_bytes(reader.take(4)?.try_into().ok()?);
-    let payload = reader.take(length)?;
-    (checksum(payload) == sum).then_some((payload, reader.bytes))
-}
-
 /// Reads a journal as far as it is whole; `None` when it is none at all.
 pub fn decode(bytes: &[u8]) -> Option<Journal> {
     let mut reader = Reader { bytes };
@@ -134,12 +118,6 @@ fn record(reader: &mut Reader<'_>) -> Option<Record> {
         record.answered.failures.push((k, Failed { kind, cause, progress }));
     }
     reader.bytes.is_empty().then_some(record)
-}
-
-fn checksum(bytes: &[u8]) -> u32 {
-    let mut crc = flate2::Crc::new();
-    crc.update(bytes);
-    crc.sum()
 }
 
 fn put_count(bytes: &mut Vec<u8>, count: usize) {

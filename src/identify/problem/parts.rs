@@ -144,6 +144,11 @@ impl Parts {
     }
 }
 
+/// What is said where other shards have a part of it.
+pub(super) fn other_shards(what: &str) -> String {
+    format!("A part of the {what} belongs to other shards: merge them with `gapi report --merge`.")
+}
+
 /// Which of `count` shards these files leave out.
 pub fn missing_shards(files: &[ShardFile], count: usize) -> Vec<usize> {
     (1..=count).filter(|number| files.iter().all(|file| file.shard.number != *number)).collect()

@@ -2,9 +2,8 @@
 //!
 //! Models go as compiled programs, so that the other process needs none of their files.
 
-use super::{Experiment, Observation};
 use crate::diag::Fault;
-use crate::identify::Model;
+use crate::identify::PortableModel;
 use crate::sim::{OutputGrid, Settings, TimeBudget, find_integrator};
 use serde::{Deserialize, Serialize};
 
@@ -22,18 +21,7 @@ pub enum Portable {
     },
 }
 
-/// A compiled model.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct PortableModel {
-    /// Its name, with its modification.
-    pub name: String,
-    /// See [`Model::driven`].
-    pub driven: Option<(String, String)>,
-    /// [`Program::to_bytes`](crate::codegen::Program::to_bytes).
-    pub program: Vec<u8>,
-}
-
-/// An [`Experiment`].
+/// An [`Experiment`](super::Experiment).
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PortableExperiment {
     pub(super) name: String,
@@ -41,7 +29,8 @@ pub struct PortableExperiment {
     pub(super) settings: PortableSettings,
     pub(super) second_attempt: bool,
     pub(super) x_name: String,
-    pub(super) observations: Vec<Observation>,
+    /// Variables with X of their points.
+    pub(super) observations: Vec<(String, Vec<f64>)>,
     pub(super) parameters: Vec<(usize, String)>,
 }
 
@@ -63,33 +52,9 @@ pub struct PortableSettings {
     time_budget: Option<f64>,
 }
 
-impl PortableExperiment {
-    /// The experiment as data.
-    ///
-    /// # Errors
-    ///
-    /// Why its model cannot be sent.
-    pub fn of(experiment: &Experiment) -> Result<PortableExperiment, String> {
-        let Experiment { name, model, settings, second_attempt, x_name, observations, parameters } =
-            experiment;
-        Ok(PortableExperiment {
-            name: name.clone(),
-            model: portable_model(model.as_ref())?,
-            settings: PortableSettings::of(settings),
-            second_attempt: *second_attempt,
-            x_name: x_name.clone(),
-            observations: observations.clone(),
-            parameters: parameters.clone(),
-        })
-    }
-}
-
-fn portable_model(model: &dyn Model) -> Result<PortableModel, String> {
-    model.portable().map_err(|reason| format!("`{}` {reason}", model.name()))
-}
-
 impl PortableSettings {
-    fn of(settings: &Settings) -> PortableSettings {
+    /// The settings as data.
+    pub(super) fn of(settings: &Settings) -> PortableSettings {
         // Named one by one, so that a new setting is not forgotten here.
         let Settings {
             start,

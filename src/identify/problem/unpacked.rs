@@ -1,12 +1,12 @@
 //! Simulators made from what another process has written.
 
 use super::inference::adjusted_from;
-use super::portable::{Portable, PortableExperiment, PortableModel};
-use super::{Experiment, ModelSimulator, Simulate};
+use super::portable::{Portable, PortableExperiment};
+use super::{Experiment, ModelSimulator, Observation, Simulate};
 use crate::codegen::Program;
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::{CompiledModel, Model};
+use crate::identify::{CompiledModel, Model, PortableModel};
 use crate::registry::BAD_OPTION;
 use std::sync::Arc;
 
@@ -36,7 +36,11 @@ fn experiment(portable: PortableExperiment, clock: fn() -> f64) -> Result<Experi
         settings: portable.settings.settings(clock)?,
         second_attempt: portable.second_attempt,
         x_name: portable.x_name,
-        observations: portable.observations,
+        observations: portable
+            .observations
+            .into_iter()
+            .map(|(y_name, x)| Observation { y_name, x })
+            .collect(),
         parameters: portable.parameters,
     })
 }

@@ -1,7 +1,7 @@
 //! Rank 0's knowledge of the others: who they are, what they work on, how long it takes.
 
-use super::Connection;
 use super::chunk::Times;
+use super::connection::Connection;
 use super::message::{About, Order, Report, Work, decode, encode};
 use super::simulation::Simulation;
 use crate::diag::Fault;

@@ -1,6 +1,6 @@
 //! What every rank but the first does: it waits for orders, and its threads simulate.
 
-use super::Connection;
+use super::connection::Connection;
 use super::coordinator::Patience;
 use super::message::{About, Order, Report, Work, decode, encode};
 use super::simulation::{Simulation, simulate};

@@ -11,13 +11,12 @@
 //! 13 and 14; [Davison & Hinkley 1997](crate::bibliography#davison-hinkley-1997), chapter 6.
 
 use super::least_squares::Data;
-use super::other_shards;
 use super::{Local, PRIOR};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
 use crate::identify::problem::distributions::{normal_below, normal_quantile};
-use crate::identify::problem::{Problem, Run, Simulate};
+use crate::identify::problem::{Problem, Run, Simulate, other_shards};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
 

@@ -152,11 +152,6 @@ impl Solution {
     }
 }
 
-/// What is said where other shards have a part of it.
-fn other_shards(what: &str) -> String {
-    format!("A part of the {what} belongs to other shards: merge them with `gapi report --merge`.")
-}
-
 impl Inference {
     fn is_empty(&self) -> bool {
         !self.bands && self.priors.is_empty() && !self.more_than_bands()

@@ -17,7 +17,7 @@ use super::{Distribution, Local};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate};
+use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate, other_shards};
 use crate::identify::table::significant;
 use nalgebra::DMatrix;
 use sampler::{Chain, Drawn};
@@ -40,6 +40,10 @@ const ENOUGH: f64 = 400.0;
 const OPEN: f64 = 0.3;
 /// Rows of `posterior.csv` at most.
 const ROWS: usize = 4000;
+
+/// What is said where chains have no proposal.
+const NOT_DEFINITE: &str =
+    "There is no posterior: the covariance at the best point is not positive definite.";
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,30 +109,12 @@ pub fn posterior(
         chain.warm_up(WARM_UP, &mut target);
         Some(chain)
     };
-    let refused =
-        "There is no posterior: the covariance at the best point is not positive definite.";
     if run.evaluation.parts.are_divided() {
-        let chain = |number: usize, simulator: &mut dyn Simulate| {
-            let mut chain = begin(number, simulator)?;
-            for count in rounds(settings.samples) {
-                chain.draw(count, &mut |u| density.at(simulator, u));
-            }
-            Some(chain.drawn)
-        };
-        let all = run.evaluation.each_part("posterior", &local.values, CHAINS, chain);
-        let Some(all) = all else {
-            refusals.push(super::other_shards("posterior"));
-            return Ok(None);
-        };
-        let Some(all) = all.into_iter().collect::<Option<Vec<Drawn>>>() else {
-            refusals.push(refused.to_owned());
-            return Ok(None);
-        };
-        return Ok((!run.evaluation.is_cancelled()).then(|| merged(problem, &all)));
+        return Ok(in_shards(run, settings, local, (&density, &begin), refusals));
     }
     let begun: Option<Vec<Chain>> = run.evaluation.each(CHAINS, begin).into_iter().collect();
     let Some(chains) = begun else {
-        refusals.push(refused.to_owned());
+        refusals.push(NOT_DEFINITE.to_owned());
         return Ok(None);
     };
     let chains: Vec<Mutex<Chain>> = chains.into_iter().map(Mutex::new).collect();
@@ -153,6 +139,36 @@ pub fn posterior(
     }
     Ok(last)
 }
+
+/// The posterior where shards have chains: each draws its own to the end.
+fn in_shards(
+    run: &Run,
+    settings: &PosteriorSettings,
+    local: &Local,
+    (density, begin): (&Density<'_>, &Begin<'_>),
+    refusals: &mut Vec<String>,
+) -> Option<Posterior> {
+    let chain = |number: usize, simulator: &mut dyn Simulate| {
+        let mut chain = begin(number, simulator)?;
+        for count in rounds(settings.samples) {
+            chain.draw(count, &mut |u| density.at(simulator, u));
+        }
+        Some(chain.drawn)
+    };
+    let all = run.evaluation.each_part("posterior", &local.values, CHAINS, chain);
+    let Some(all) = all else {
+        refusals.push(other_shards("posterior"));
+        return None;
+    };
+    let Some(all) = all.into_iter().collect::<Option<Vec<Drawn>>>() else {
+        refusals.push(NOT_DEFINITE.to_owned());
+        return None;
+    };
+    (!run.evaluation.is_cancelled()).then(|| merged(&run.problem, &all))
+}
+
+/// Begins a chain.
+type Begin<'a> = dyn Fn(usize, &mut dyn Simulate) -> Option<Chain> + Sync + 'a;
 
 /// Draws of each round: as many as all before, until there are `most`.
 fn rounds(most: usize) -> impl Iterator<Item = usize> {
