@@ -7,7 +7,8 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Seconds from sending a chunk to its answer without the simulations, and of rank 0's work for each:
-/// measured with two ranks on one machine, which wait by sleeping.
+/// assumed, for ranks that wait by sleeping and have a core each. Two ranks on two cores that ten other
+/// processes shared took 1.3 ms and 0.4 ms.
 const MESSAGE: f64 = 1.5e-4;
 const HANDLING: f64 = 1e-5;
 

@@ -1,6 +1,6 @@
 //! How many individuals a message to a rank holds.
 //!
-//! A chunk must be worth its message: the time to simulate it is [`WORTH`] times what the message
+//! A chunk must be worth its message: the time to simulate it is `WORTH` times what the message
 //! takes, and all chunks under way together keep the ranks busy while rank 0 handles one message after
 //! the other. Towards the end of a population chunks shrink to a part of what remains (guided
 //! self-scheduling), so that all processors finish at about the same time. Where one simulation takes
