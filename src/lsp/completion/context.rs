@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn dotted_names_are_followed_back() {
         let found = context("x = 1;\n  y = a.b[1, c].  de");
-        assert_eq!((found.path.as_slice(), found.start), (&["a".into(), "b".into()][..], 26));
+        assert_eq!((found.path.as_slice(), found.start), (&["a".into(), "b".into()][..], 25));
         assert_eq!(context("a.b;c").path, Vec::<String>::new());
         assert_eq!(context("model M Modelica.").path, ["Modelica"]);
     }
