@@ -17,6 +17,7 @@ if os.name == "nt" or not shutil.which("bash") or not shutil.which("sha256sum"):
     pytest.skip("the steps need bash and sha256sum", allow_module_level=True)
 
 ACTION = Path(__file__).resolve().parents[3] / ".github" / "actions" / "test" / "action.yml"
+CHAPTER = Path(__file__).resolve().parents[3] / "docs" / "src" / "python.md"
 ARCHIVE = "gapi-0.1.0-x86_64-linux.tar.gz"
 
 
@@ -102,3 +103,17 @@ def test_a_program_that_is_there_is_used(runner):
     found = run(runner, "Install gapi")
     assert (found.returncode, found.stdout) == (0, "here --version\n")
     assert not (runner / "asked").exists()
+
+
+def test_the_example_of_the_guide_has_inputs_of_the_action(runner):
+    [example] = re.findall(r"```yaml.*?\n(.*?)```", CHAPTER.read_text(encoding="utf-8"), re.S)
+    [step] = yaml.safe_load(example)
+    folder = ACTION.parent.relative_to(ACTION.parents[3]).as_posix()
+    assert step["uses"].split("@")[0] == f"OWNER/NAME/{folder}"
+    action = yaml.safe_load(ACTION.read_text(encoding="utf-8"))
+    assert set(step["with"]) <= set(action["inputs"])
+    assert run(runner, "Install gapi").returncode == 0
+    (runner / "tests").mkdir()
+    (runner / "a.mos").rename(runner / "tests" / "a.mos")
+    assert run(runner, "Run gapi test", **step["with"]).returncode == 0
+    assert (runner / "report.xml").exists()

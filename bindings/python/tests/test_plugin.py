@@ -1,9 +1,15 @@
 """The plugin for pytest, run by pytest."""
 
+import re
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 pytest_plugins = ["pytester"]
 
+CHAPTER = Path(__file__).resolve().parents[3] / "docs" / "src" / "python.md"
 GOOD = 'a = 6*7;\nprint(String(a));\n'
 EMBEDDED = """a := 1;
 a + 1;
@@ -28,9 +34,6 @@ def run(pytester):
 
 def record(pytester, name):
     """Writes the transcript of a script."""
-    import subprocess
-    import sys
-
     command = [sys.executable, "-m", "gapilib", "test", name, "--accept"]
     subprocess.run(command, cwd=pytester.path, check=True, capture_output=True)
 
@@ -100,3 +103,15 @@ def test_options_are_those_of_the_command(pytester, run):
 def test_pytest_starts_without_the_compiled_module(pytester):
     pytester.makepyfile("import sys\ndef test_it(): assert 'gapilib' not in sys.modules")
     pytester.runpytest_subprocess("-p", "pytest_gapilib", "-p", "no:cacheprovider").assert_outcomes(passed=1)
+
+
+def test_the_settings_of_the_guide(pytester, run):
+    [settings] = re.findall(r"```ini.*?\n(.*?)```", CHAPTER.read_text(encoding="utf-8"), re.S)
+    (pytester.path / "pytest.ini").write_text(settings)
+    (pytester.path / "data.txt").write_text("measured\n")
+    reading = 'Modelica.Utilities.Streams.readLine("{}", 1);\n\n// Result:\n// ("measured",false)\n// endResult\n'
+    # Its own folder and that of the settings can be read.
+    script(pytester, "tests/fit.mos", reading.format("../data.txt"))
+    script(pytester, "examples/other.mos", GOOD)
+    run().assert_outcomes(passed=1)
+    run("-o", "gapi_options=--time-limit").assert_outcomes(failed=1)

@@ -6,7 +6,7 @@ line, or match a pattern of the option ``gapi_files``::
 
     [pytest]
     gapi_files = tests/*.mos
-    gapi_options = --allow-read=data
+    gapi_options = --time-limit 60
 
 The package is separate from `gapilib`: pytest imports its plugins at every start, and the compiled module
 takes longer to load than this file.
