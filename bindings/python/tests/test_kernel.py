@@ -10,10 +10,13 @@ from conftest import DECAY  # noqa: E402
 
 
 @pytest.fixture
-def notebook(tmp_path, monkeypatch):
+def kernel_spec(tmp_path, monkeypatch):
     monkeypatch.setenv("JUPYTER_PATH", str(tmp_path / "share" / "jupyter"))
     kernel.install(str(tmp_path))
 
+
+@pytest.fixture
+def notebook(kernel_spec):
     def execute(*cells, **options):
         notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
         client = nbclient.NotebookClient(notebook, kernel_name="gapilib", **{"timeout": 60, **options})
@@ -64,3 +67,30 @@ def test_completion_and_completeness():
     assert "simulateModel" in found["matches"] and found["cursor_start"] == 4
     assert quiet.do_is_complete("f(1,")["status"] == "incomplete"
     assert quiet.do_is_complete("a = 1;")["status"] == "complete"
+
+
+def test_a_cell_is_interrupted_and_the_next_one_runs(kernel_spec):
+    import queue
+
+    from jupyter_client.manager import start_new_kernel
+
+    manager, client = start_new_kernel(kernel_name="gapilib", startup_timeout=60)
+    try:
+        identity = client.execute('print("begun"); i = 0; while true loop i = i + 1; end while;')
+        # The kernel is interrupted while the loop runs, not before.
+        while client.get_iopub_msg(timeout=60)["content"].get("text") != "begun\n":
+            pass
+        with pytest.raises(queue.Empty):
+            client.get_shell_msg(timeout=0.5)
+        manager.interrupt_kernel()
+        reply = client.get_shell_msg(timeout=60)
+        assert reply["parent_header"]["msg_id"] == identity
+        assert reply["content"]["status"] == "error"
+        assert reply["content"]["ename"] == "KeyboardInterrupt"
+        # The session is the same: its variable has the value that the loop has reached.
+        printed = []
+        client.execute_interactive("print(String(i > 0));", timeout=60, output_hook=printed.append)
+        assert "true\n" in [message["content"].get("text") for message in printed]
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
