@@ -7,8 +7,8 @@ use super::execution::Execution;
 use super::function::{CallResults, Instances};
 use crate::flatten::FlatModel;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
-use indexmap::IndexSet;
-use rustc_hash::FxHashMap;
+use indexmap::{IndexMap, IndexSet};
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::sync::Arc;
 
 /// The most statements that the functions of one model may carry out when it is compiled.
@@ -44,7 +44,7 @@ pub(super) struct Scalars {
     pub(super) folding: Vec<Folding>,
     pub(super) derivatives: FxHashMap<VarId, VarId>,
     /// `pre` of every variable that needs it.
-    pub(super) previous: FxHashMap<VarId, VarId>,
+    pub(super) previous: IndexMap<VarId, VarId, FxBuildHasher>,
     /// Discrete variables that hold conditions.
     pub(super) conditions: FxHashMap<Expr, VarId>,
     /// Variables that hold relations.
@@ -114,7 +114,7 @@ impl Scalars {
             first: Vec::new(),
             folding: vec![Folding::Unvisited; variables],
             derivatives: FxHashMap::default(),
-            previous: FxHashMap::default(),
+            previous: IndexMap::default(),
             conditions: FxHashMap::default(),
             relations: FxHashMap::default(),
         }
