@@ -206,10 +206,19 @@ impl Instantiation<'_> {
         }
         // The last iterator is the outer one (MLS §10.4.1).
         sizes.reverse();
+        sizes.extend(self.element_shape(element, indices)?);
+        Some(sizes)
+    }
+
+    /// The sizes of an element that is computed for every value of iterators.
+    pub fn element_shape(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+    ) -> Option<Vec<usize>> {
         let mut element = element.clone();
         Iterators(indices).expression(&mut element);
-        sizes.extend(self.shape_of(&element)?);
-        Some(sizes)
+        self.shape_of(&element)
     }
 
     /// The sizes of the branches; where they differ, those of the branch that parameters choose.

@@ -15,6 +15,8 @@ pub(super) struct Execution {
     pub(super) values: IndexMap<VarId, Expr>,
     /// Conditions of the branches around the statement.
     pub(super) guards: Vec<Expr>,
+    /// Conditions of the branches of the expression.
+    pub(super) branches: Vec<Expr>,
     /// What when-statements assign.
     pub(super) in_when: FxHashSet<VarId>,
     /// What when-clauses and algorithms of the model assign.

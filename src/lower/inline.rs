@@ -494,6 +494,18 @@ impl Target for Call<'_, '_> {
         self.builder.apply(function, arguments, true, span)
     }
 
+    fn enter(&mut self, condition: Expr, holds: bool) {
+        self.builder.enter(condition, holds);
+    }
+
+    fn leave(&mut self) {
+        self.builder.leave();
+    }
+
+    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
+        self.builder.connective(is_and, a, b)
+    }
+
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
         self.builder.begin_if(condition)
     }

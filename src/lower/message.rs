@@ -13,7 +13,9 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, RelationOperator};
-use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind};
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, Comment, Expression, ExpressionKind, Statement, StatementKind,
+};
 use std::sync::Arc;
 
 /// The parts of a text: what is known when compiling, and numbers that are not.
@@ -128,6 +130,9 @@ impl Builder<'_> {
         let Some(user) = Target::function(self, &name) else {
             return Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span));
         };
+        if acts && prints(&user) && self.has_numbers(nth(arguments, 0, "string"), loops) {
+            return self.writing(call, loops);
+        }
         if acts {
             return self.effect(&user, arguments, call.span, loops);
         }
@@ -181,12 +186,47 @@ impl Builder<'_> {
         if !user.impure && self.calls.written.is_empty() {
             self.unused(&outputs, span);
         }
+        self.carry_out(span);
+        Ok(())
+    }
+
+    /// Whether numbers of the simulation are in a text.
+    fn has_numbers(
+        &mut self,
+        text: Option<&Expression>,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> bool {
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        message_text(&mut lowering, text).contains(UNKNOWN_TEXT)
+    }
+
+    /// A call that writes a text with numbers of the simulation to a file: it is a function of what
+    /// it reads, which puts the text together when it is carried out.
+    fn writing(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        let kind = StatementKind::Call(call.clone());
+        let statement = Statement { kind, comment: Comment::default(), span: call.span };
+        self.calls.written.clear();
+        self.calls.functions.may_write = true;
+        let called = self.call_of_statement(&statement, &loops.to_vec());
+        self.calls.functions.may_write = false;
+        called?;
+        self.carry_out(call.span);
+        Ok(())
+    }
+
+    /// What was found to write is carried out where its statement is.
+    fn carry_out(&mut self, span: Span) {
         let parts: Vec<Part> = self.calls.written.drain(..).map(Part::Number).collect();
         if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
         }
-        Ok(())
     }
 }
 

@@ -24,6 +24,7 @@ mod events;
 mod execution;
 mod expressions;
 mod function;
+mod guarded;
 mod inline;
 mod inputs;
 mod message;

@@ -62,18 +62,23 @@ impl Builder<'_> {
             if *is_previous {
                 value = self.previous_values(path, &reference)?;
             }
-            let Lowered::Array(array) = &value else {
-                return Err(fault!(NOT_SUPPORTED, "`{path}` in this kind of statement").at(s.span));
+            let dims = match &value {
+                Lowered::Array(array) => array.dims.clone(),
+                Lowered::Text(_) => Vec::new(),
+                _ => {
+                    let error = fault!(NOT_SUPPORTED, "`{path}` in this kind of statement");
+                    return Err(error.at(s.span));
+                }
             };
             let input = match assigned.contains(name) {
                 true => Ident::new(&format!("{name} before")),
                 false => *name,
             };
-            inputs.push(component(input, value_type.clone(), &array.dims, None, s.span));
+            inputs.push(component(input, value_type.clone(), &dims, None, s.span));
             if input != *name {
                 let before = ExpressionKind::Reference(reference_to(input, s.span));
                 let before = Some(Expression::new(before, s.span));
-                outputs.push(component(*name, value_type, &array.dims, before, s.span));
+                outputs.push(component(*name, value_type, &dims, before, s.span));
             }
             arguments.push(value);
         }

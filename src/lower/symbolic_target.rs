@@ -71,6 +71,7 @@ impl Target for Builder<'_> {
         if !self.varies(a) && !self.varies(b) {
             return relation;
         }
+        let [a, b] = self.guarded_sides(a, b);
         let key = (operator, a, b);
         let variable = match self.scalars.relations.get(&key) {
             Some(variable) => *variable,
@@ -101,6 +102,18 @@ impl Target for Builder<'_> {
             true => self.rounding_function(function, arguments, span),
             false => Ok(self.dae.pool.apply(function, arguments)),
         }
+    }
+
+    fn enter(&mut self, condition: Expr, holds: bool) {
+        self.enter_branch(condition, holds);
+    }
+
+    fn leave(&mut self) {
+        self.leave_branch();
+    }
+
+    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
+        Builder::connective(self, is_and, a, b)
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {

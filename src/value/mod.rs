@@ -64,13 +64,19 @@ pub struct EnumerationValue {
     pub ordinal: i64,
 }
 
-/// An enumeration type.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+/// An enumeration type. The same literals in the same order make the same type (MLS §6.7).
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct EnumerationDefinition {
     /// Its full name.
     pub name: Name,
     /// Its literals in order.
     pub literals: Vec<Ident>,
+}
+
+impl PartialEq for EnumerationDefinition {
+    fn eq(&self, other: &EnumerationDefinition) -> bool {
+        self.literals == other.literals
+    }
 }
 
 impl EnumerationValue {

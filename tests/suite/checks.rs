@@ -220,7 +220,7 @@ fn conditions_are_boolean_and_enumerations_no_numbers() {
     refused("model M parameter Integer i = 1; Real x = if i then 1 else 2; end M;", code);
     refused("model M type E = enumeration(a, b); Boolean x = E.a == 1; end M;", code);
     refused(
-        "model M type E = enumeration(a); type F = enumeration(a); Boolean x = E.a == F.a; end M;",
+        "model M type E = enumeration(a); type F = enumeration(b); Boolean x = E.a == F.b; end M;",
         code,
     );
 }

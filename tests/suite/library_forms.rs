@@ -671,3 +671,88 @@ fn defaults_of_inputs_may_ask_for_the_instance_that_calls() {
         model M Part part; Real x = part.n; end M;";
     assert_eq!(at_end(text), 6.0);
 }
+
+/// MLS §6.7: enumerations with the same literals in the same order are one type.
+#[test]
+fn relations_and_modifiers_accept_enumerations_with_the_same_literals() {
+    let types = |literals: &str| {
+        format!(
+            "package A type E = enumeration(low, high); end A; \
+             package B type E = enumeration({literals}); end B; \
+             model Part parameter A.E kind = A.E.low; Real y = if kind == B.E.high then 2 else 1; \
+             end Part; model M Part part(kind = B.E.high); Real x = part.y; end M;"
+        )
+    };
+    assert_eq!(at_end(&types("low, high")), 2.0);
+    let other = attempted(&types("high, low")).expect_err("other types");
+    assert_eq!(other[0].code.slug, "type-mismatch");
+    let in_functions = "type D = enumeration(low, high); type E = enumeration(low, high); \
+        function f input D d; input Real t; output Real y; algorithm \
+        y := if d == E.high then 3*t else t; end f; \
+        model M E e = E.high; Real x = f(e, time); end M;";
+    assert_eq!(at_end(in_functions), 3.0);
+}
+
+/// IDEAS: `22*.ones(n)`, the name of a function of the language in the global scope.
+#[test]
+fn functions_of_the_language_stand_in_the_global_scope() {
+    assert_eq!(at_end("model M Real v[2] = 3*.ones(2) .+ .cos(0); Real x = sum(v); end M;"), 8.0);
+    let other = "function cos input Real u; output Real y = 5*u; end cos; \
+        model M Real x = .cos(0); end M;";
+    assert!(attempted(other).is_err(), "the global scope has no such class");
+}
+
+/// MLS §10.3.4.1: the sum of arrays is an array, even if these have no elements, if there are no
+/// arrays, or if only numbers can choose them.
+#[test]
+fn sums_of_arrays_are_arrays() {
+    let of_none = "model M parameter Integer n = 0; Real v[n, 3]; \
+        Real y[3] = {1, 2, 3} + sum(v[i, :] .* {1, 2, 3} for i in 1:n); Real x = y[3]; end M;";
+    assert_eq!(at_end(of_none), 3.0);
+    let manifold = |substances: u8| {
+        format!(
+            "connector C parameter Integer n = {substances}; Real p; flow Real m; stream Real X[n]; \
+             end C; model Manifold C a; C b[2]; equation b[1].m = -a.m/2; b[2].m = b[1].m; \
+             b[1].p = a.p; for i in 1:2 loop inStream(a.X) = b[i].X; end for; \
+             a.X = sum(inStream(b[i].X) for i in 1:2)/2; end Manifold; \
+             model Source C a; equation a.m = -1; a.X = fill(0.25, a.n); end Source; \
+             model Sink C a; parameter Real X0 = 0; equation a.p = 1; a.X = fill(X0, a.n); end Sink; \
+             model M Source s; Manifold q; Sink d[2](X0 = {{0.5, 1.5}}); \
+             Real x = 3 + sum(inStream(s.a.X)); equation connect(s.a, q.a); connect(q.b, d.a); end M;"
+        )
+    };
+    assert_eq!(at_end(&manifold(0)), 3.0);
+    assert_eq!(at_end(&manifold(1)), 4.0);
+    assert_eq!(at_end(&manifold(2)), 5.0);
+}
+
+/// MLS §3.3: branches are evaluated only where their condition holds; the same is expected of `and`
+/// and `or`. What divides by p, or takes its logarithm, is evaluated at p = 0 in none of these.
+#[test]
+fn what_a_condition_excludes_is_not_evaluated() {
+    let p = "Real p = max(0, time - 0.5); Real x = ";
+    for guarded in [
+        "if p > 0 and 1/p < 3 then 1 else 0",
+        "if p <= 0 or 1/p >= 3 then 0 else 1",
+        "if p > 0 then (if 1/p < 3 then 1 else 0) else 0",
+        "if noEvent(p > 0 and 1/p < 3) then 1 else 0",
+        "if p > 0 and log(p) > -1 then 1 else 0",
+        "f(p)",
+    ] {
+        let f = "function f input Real p; output Real y; algorithm y := 0; \
+            if p > 0 and 1/p < 3 then y := 1; end if; end f;";
+        assert_eq!(
+            both_ends(&format!("{f} model M {p} {guarded}; end M;")),
+            [0.0, 1.0],
+            "{guarded}"
+        );
+    }
+    let sampled = "model M discrete Real p(start = 0, fixed = true); \
+        Integer n(start = 0, fixed = true); Real x = n; algorithm when sample(0, 0.25) then \
+        p := if time > 0.3 then time else 0; \
+        if p > 0 and 1/p < 3 then n := pre(n) + 1; end if; end when; end M;";
+    assert_eq!(at_end(sampled), 3.0);
+    let nothing = "model M parameter Integer n = 0; Real v[n] = fill(time, n); \
+        Real x = if n > 0 and v[1] > 0.5 then 1 else 2; end M;";
+    assert_eq!(at_end(nothing), 2.0);
+}

@@ -101,6 +101,42 @@ fn after_writer(model: &str, then: &str) -> (u8, String, String) {
     (status.code, streams.output(), streams.errors())
 }
 
+/// The numbers of a text that goes into a file are those of the event, in the forms of `String`
+/// (MLS §3.7.1).
+#[test]
+fn numbers_of_an_event_are_printed_into_files() {
+    let model = "model W
+  impure function tell
+    input String text;
+    input String file;
+    external \"C\" ModelicaInternal_print(text, file);
+  end tell;
+  parameter String file = \"log.txt\";
+  parameter String separator = \";\";
+  Real u = 2*time;
+  Integer n(start = 0, fixed = true);
+  Boolean late = time > 0.75;
+algorithm
+  when sample(0, 0.5) then
+    n := pre(n) + 1234567;
+    tell(String(time) + separator + String(u/3, significantDigits = 3) + separator + String(n)
+      + separator + String(late, minimumLength = 6) + separator + String(u, format = \"8.3f\"), file);
+  end when;
+equation
+  when time > 0.25 then
+    tell(\"u is \" + String(u/3, significantDigits = 10), \"other.txt\");
+  end when;
+end W;";
+    let then = "Modelica.Utilities.Streams.readFile(\"log.txt\")\n\
+                Modelica.Utilities.Streams.readFile(\"other.txt\")";
+    let (code, output, errors) = after_writer(model, then);
+    assert_eq!(code, 0, "{output}{errors}");
+    let lines = ["0;0;1234567;false ;   0.000", "0.5;0.333;2469134;false ;   1.000"];
+    assert!(output.contains(&format!("{{\"{}\", \"{}\", ", lines[0], lines[1])), "{output}");
+    assert!(output.contains("\"1;0.667;3703701;true  ;   2.000\"}"), "{output}");
+    assert!(output.contains("{\"u is 0.1666666667\"}"), "{output}");
+}
+
 #[test]
 fn files_that_a_model_writes_are_there_behind_the_simulation_and_written_once() {
     let then =

@@ -122,13 +122,15 @@ fn operators_lie_in_records(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
             _ => continue,
         };
         let name = nested.class.name;
-        errors.push(
+        let error =
             fault!(CLASS_RESTRICTION, "the {what} `{}` is declared in `{}`, which is not an \
-                                       operator record",
-                name.node, class.name();
-                help: "move it into the operator record that it operates on")
-            .at(name.span),
-        );
+                                               operator record",
+            name.node, class.name();
+            help: "move it into the operator record that it operates on")
+            .at(name.span);
+        // Libraries forget the prefix `operator` of a record; then nothing is overloaded.
+        let is_tolerated = class.restriction() == Restriction::Record && !class.library.is_strict();
+        errors.push(if is_tolerated { error.warning() } else { error });
     }
 }
 

@@ -84,7 +84,7 @@ impl Walk<'_, '_> {
         let (Some(declared), Some(found)) = (kind_of(component), self.kind(value)) else { return };
         let has_enumeration =
             [declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)));
-        if has_enumeration && declared != found {
+        if has_enumeration && !self.same(declared, found) {
             let name = component.name();
             self.mismatch(value, &format!("`{name}` is {}", self.name(declared)), found);
         }
@@ -151,10 +151,31 @@ impl Walk<'_, '_> {
 
     fn relation(&mut self, left: &Expression, right: &Expression) {
         if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
-            && a != b
+            && !self.same(a, b)
         {
             let message = format!("the other side of the relation is {}", self.name(a));
             self.mismatch(right, &message, b);
+        }
+    }
+
+    /// Whether two types are one: enumerations are told apart by their literals and the order of
+    /// these, not by their names (MLS §6.7).
+    fn same(&self, a: Kind, b: Kind) -> bool {
+        match (a, b) {
+            (Kind::Enumeration(a), Kind::Enumeration(b)) if a != b => {
+                let (a, b) = (self.literals(a), self.literals(b));
+                a.is_some() && a == b
+            }
+            _ => a == b,
+        }
+    }
+
+    fn literals(&self, enumeration: ClassId) -> Option<Vec<Ident>> {
+        match &self.class.of(enumeration).definition().specifier {
+            ClassSpecifier::Enumeration(known) => {
+                Some(known.literals.as_ref()?.iter().map(|one| one.name.node).collect())
+            }
+            _ => None,
         }
     }
 

@@ -25,12 +25,28 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
+        let bare;
+        let function = match self.is_global_builtin(function, context)? {
+            true => {
+                bare = ComponentReference { global: false, ..function.clone() };
+                &bare
+            }
+            false => function,
+        };
         let special = self.special_call(span, function, arguments, context, local)?;
         if let Some(value) = special {
             return Ok(value);
         }
+        let written = arguments;
         let arguments = self.arguments(arguments, context, local)?;
-        if function.as_ident().is_some_and(|name| name == "sum")
+        let is_sum = function.as_ident().is_some_and(|name| name == "sum");
+        if is_sum
+            && !has_open_names(&arguments, local)
+            && let Some(sum) = self.sum_of_arrays(written, &arguments, span)
+        {
+            return Ok(sum);
+        }
+        if is_sum
             && let ([argument], true) = (&arguments.positional[..], arguments.iterators.is_empty())
             && let Some(sum) = self.overloaded_sum(argument, local, span)?
         {
@@ -54,6 +70,19 @@ impl Instantiation<'_> {
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// Whether it is the name of a function of the language with a dot before it, `.ones`, as
+    /// libraries write it by mistake for `*.`; no class of this name is in sight.
+    fn is_global_builtin(
+        &mut self,
+        function: &ComponentReference,
+        context: ScopeId,
+    ) -> Result<bool, Diagnostic> {
+        let [part] = function.parts.as_slice() else { return Ok(false) };
+        Ok(function.global
+            && crate::functions::is_builtin(part.name.as_str())
+            && self.classes.lookup(context, &Name::from(part.name))?.is_none())
     }
 
     /// The name of the instance of a model that a scope belongs to.
@@ -158,10 +187,12 @@ fn is_builtin(name: &Name, local: &Local) -> bool {
     })
 }
 
-/// Whether one of the arguments needs a local name that has no value.
+/// Whether one of the arguments, or of the ranges, needs a local name that has no value.
 fn has_open_names(arguments: &Arguments, local: &Local) -> bool {
     let named = arguments.named.iter().map(|argument| &argument.value);
-    arguments.positional.iter().chain(named).any(|argument| local.is_open_in(argument))
+    let ranges = arguments.iterators.iter().filter_map(|index| index.range.as_ref());
+    let mut all = arguments.positional.iter().chain(named).chain(ranges);
+    all.any(|argument| local.is_open_in(argument))
 }
 
 impl Classes<'_> {

@@ -11,11 +11,17 @@ use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::literal;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Arguments, Expression, ExpressionKind, ForIndex};
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
+};
 use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
 use std::rc::Rc;
+
+/// The most arrays that are added one by one, in expressions nested as deep.
+const MAX_SUMMANDS: usize = 1000;
 
 /// The most elements that are written out.
 const MAX_ELEMENTS: usize = 100_000;
@@ -78,6 +84,48 @@ impl Instantiation<'_> {
             },
         };
         Ok(Arguments { positional: vec![element], named: Vec::new(), iterators })
+    }
+
+    /// `sum(e for i in …)` of arrays e where its elements had to be written out, or where there are
+    /// none: the arrays are added one by one (MLS §10.3.4.1). `None` for other sums.
+    pub fn sum_of_arrays(
+        &mut self,
+        written: &Arguments,
+        resolved: &Arguments,
+        span: Span,
+    ) -> Option<Expression> {
+        let ([element], false) = (&resolved.positional[..], written.iterators.is_empty()) else {
+            return None;
+        };
+        if let (ExpressionKind::Array(elements), true) =
+            (&element.kind, resolved.iterators.is_empty())
+        {
+            let (first, rest) = elements.split_first()?;
+            if rest.len() > MAX_SUMMANDS || self.shape_of(first)?.is_empty() {
+                return None;
+            }
+            let add = |left: Expression, right: &Expression| {
+                let (left, right) = (Box::new(left), Box::new(right.clone()));
+                let kind = ExpressionKind::Binary { operator: BinaryOperator::Add, left, right };
+                Expression::new(kind, span)
+            };
+            return Some(rest.iter().fold(first.clone(), add));
+        }
+        let mut ranges = resolved.iterators.iter().filter_map(|index| index.range.as_ref());
+        let is_empty = |range| self.shape_of(range).is_some_and(|dims| dims == [0]);
+        if !ranges.any(is_empty) {
+            return None;
+        }
+        let dims = self.element_shape(element, &resolved.iterators)?;
+        if dims.is_empty() {
+            return None;
+        }
+        let size = |size: usize| Expression::new(ExpressionKind::Integer(size as i64), span);
+        let zero = Expression::new(ExpressionKind::Real(0.0), span);
+        let positional = std::iter::once(zero).chain(dims.into_iter().map(size)).collect();
+        let function = ComponentReference::from_name(&Name::from(Ident::new("fill")), span);
+        let arguments = Box::new(Arguments { positional, ..Arguments::default() });
+        Some(Expression::new(ExpressionKind::Call { function, arguments }, span))
     }
 
     fn iterated(

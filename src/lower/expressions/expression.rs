@@ -175,11 +175,12 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         let mut branch = self.target.begin_if(condition);
-        let first = self.lower(value)?;
+        let first = self.branch(condition, true, |own| own.lower(value))?;
         let mut scalars = Vec::new();
         first.append_scalars(&mut scalars);
         self.target.begin_else(&mut branch, &scalars);
-        let second = self.if_expression(rest, otherwise, span)?;
+        let second =
+            self.branch(condition, false, |own| own.if_expression(rest, otherwise, span))?;
         if matches!(first, Lowered::Text(_) | Lowered::Numbered(_))
             || matches!(second, Lowered::Text(_) | Lowered::Numbered(_))
         {
@@ -205,6 +206,19 @@ impl<T: Target> Lowering<'_, T> {
         second.append_scalars(&mut scalars);
         let values = self.target.end_if(branch, &scalars);
         Ok(Lowered::from_scalars(&shape, &mut values.into_iter()))
+    }
+
+    /// What is evaluated only where a condition holds, or does not.
+    pub(super) fn branch<R>(
+        &mut self,
+        condition: T::Scalar,
+        holds: bool,
+        lower: impl FnOnce(&mut Self) -> R,
+    ) -> R {
+        self.target.enter(condition, holds);
+        let result = lower(self);
+        self.target.leave();
+        result
     }
 
     /// One of two Strings.

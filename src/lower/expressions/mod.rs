@@ -69,6 +69,17 @@ pub(crate) trait Target {
         live: bool,
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic>;
+    /// What follows is evaluated only where a condition holds, or does not, up to
+    /// [`Target::leave`].
+    fn enter(&mut self, condition: Self::Scalar, holds: bool) {
+        let _ = (condition, holds);
+    }
+    /// Ends what [`Target::enter`] began.
+    fn leave(&mut self) {}
+    /// `a and b`, or `a or b`, of scalars.
+    fn connective(&mut self, is_and: bool, a: Self::Scalar, b: Self::Scalar) -> Self::Scalar {
+        self.binary(if is_and { Binary::And } else { Binary::Or }, a, b)
+    }
     /// Begins the first branch of an if-expression.
     fn begin_if(&mut self, condition: Self::Scalar) -> Branch<Self::Scalar>;
     /// Ends the first branch, with these values, and begins the second.

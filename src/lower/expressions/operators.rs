@@ -35,11 +35,11 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Array(a) => a,
             Lowered::Record(_) | Lowered::Texts(_) => self.array(left)?,
         };
-        if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
-            && a.dims.is_empty()
-            && self.target.short_circuits()
-        {
-            return self.short_circuit(operator, a.elements[0], right);
+        if matches!(operator, BinaryOperator::And | BinaryOperator::Or) && a.dims.is_empty() {
+            return match self.target.short_circuits() {
+                true => self.short_circuit(operator, a.elements[0], right),
+                false => self.guarded(operator, a.elements[0], right, span),
+            };
         }
         let b = self.array(right)?;
         let array = match operator {
@@ -95,6 +95,34 @@ impl<T: Target> Lowering<'_, T> {
         let second = if is_and { decided } else { self.scalar(right)? };
         let values = self.target.end_if(branch, &[second]);
         Ok(Lowered::scalar(values[0]))
+    }
+
+    /// `a and b`, `a or b` of a model: b may be what has a value only where a does not decide, as
+    /// in `n > 0 and v[1] > 2`.
+    fn guarded(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let is_and = operator == BinaryOperator::And;
+        let decides = |a: Option<f64>| a.is_some_and(|a| (a != 0.0) != is_and);
+        if decides(self.target.as_constant(a)) {
+            return Ok(Lowered::scalar(a));
+        }
+        let b = match self.branch(a, is_and, |own| own.array(right)) {
+            Ok(b) => b,
+            Err(error) => {
+                let known = self.target.settle(a);
+                return if decides(known) { Ok(Lowered::scalar(a)) } else { Err(error) };
+            }
+        };
+        if let ([b], true) = (b.elements.as_slice(), b.dims.is_empty()) {
+            return Ok(Lowered::scalar(self.target.connective(is_and, a, *b)));
+        }
+        let operation = if is_and { Binary::And } else { Binary::Or };
+        self.same_size(operation, Array::scalar(a), b, span).map(Lowered::Array)
     }
 
     /// Two texts joined, which may be unknown in parts, or a relation of two that are known.

@@ -86,7 +86,8 @@ impl ModelFiles {
             }
             folder = inner;
         }
-        Ok(normalized(&folder.join(file)))
+        // `modelica://Package//path`: the path does not start at the root of the disk.
+        Ok(normalized(&folder.join(file.trim_start_matches('/'))))
     }
 
     fn has_entries(&self, path: &Path) -> bool {
