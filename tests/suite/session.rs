@@ -188,3 +188,18 @@ fn a_working_directory_changed_by_a_model_is_kept() {
     assert_eq!(code, 0);
     assert_eq!(session.world.current_dir(), Path::new("/memory/sub"));
 }
+
+/// A flat model with more than 10,000 equations is given back once the model is translated; `checkModel`
+/// asks for it afterwards.
+#[test]
+fn a_large_flat_model_is_made_again_where_it_is_asked_for() {
+    let model = "model Chain\n  parameter Integer n = 10001;\n  Real x[n](each start = 1);\n  Real y;\n\
+                 equation\n  y = x[1];\n  for i in 1:n loop\n    der(x[i]) = -x[i];\n  end for;\nend Chain;";
+    let world = MemoryWorld::new().with_file("Chain.mo", model);
+    let script = "openModel(\"Chain.mo\");\nprint(checkModel(Chain));\nprint(checkModel(Chain));";
+    let (_, output, _) = run(world, Options::default(), script);
+    let checked = "Check of Chain completed successfully.\n\
+                   Class Chain has 10002 equation(s) and 10002 variable(s).\n\
+                   1 of these are trivial equation(s).\n";
+    assert_eq!(output, format!("{checked}{checked}"));
+}
