@@ -299,3 +299,26 @@ fn a_folder_of_the_workspace_uses_the_libraries_of_another() {
     assert!(found.len() == 1 && found[0].contains("None"), "{found:?}");
     assert_eq!(client.shut_down(), 0);
 }
+
+#[test]
+fn what_is_not_supported_is_a_warning() {
+    let here = folder(&[]);
+    let mut client = Client::start(here.path());
+    let path = here.path().join("M.mo");
+    let text = "\
+model M
+  function f
+    input Real u;
+    output Real y = u;
+  algorithm
+    Modelica.Utilities.Streams.print(\"u\");
+  end f;
+  Real x = f(time);
+end M;
+";
+    client.open(&path, text);
+    let found = client.published(&path, 1);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!((&found[0]["code"], &found[0]["severity"]), (&json!("not-supported"), &json!(2)));
+    assert_eq!(client.shut_down(), 0);
+}
