@@ -129,9 +129,13 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
 
 /// What is missing if only values of parameters are, which whoever uses the class gives.
 fn values_left_open(errors: &[Diagnostic]) -> Option<String> {
-    let is_open = |error: &Diagnostic| error.code.slug == "parameter-without-value";
+    let is_open =
+        |error: &Diagnostic| ["parameter-without-value", "value-needed"].contains(&error.code.slug);
     let first = errors.first().filter(|_| errors.iter().all(is_open))?;
-    Some(first.message.replace("has no value", "must have a value"))
+    let missing = first.message.replace(", but its value is needed here", "");
+    Some(
+        missing.replace("has no value", "must have a value").replace("is unknown", "must be known"),
+    )
 }
 
 /// Prints a model as flat Modelica.

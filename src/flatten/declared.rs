@@ -45,6 +45,11 @@ impl Library {
         self.scope_of(class).name()
     }
 
+    /// Whether a class is declared `replaceable` in the class around it.
+    pub fn is_replaceable(&self, class: ClassId) -> bool {
+        self.class(class).prefixes().replaceable
+    }
+
     /// The text of a class.
     pub fn definition_of(&self, class: ClassId) -> &Arc<ClassDefinition> {
         self.class(class).definition()

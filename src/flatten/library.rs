@@ -293,8 +293,8 @@ impl Library {
             Origin::Head(definition, _) => definition.span.source != source,
             Origin::File(..) => true,
         };
-        let own = &self.class(id).children;
-        let children = self.class(former).children.iter();
+        let own = &self.read(id).children;
+        let children = self.read(former).children.iter();
         let kept: Vec<(Ident, ClassId)> = children
             .filter(|(name, child)| !own.contains_key(*name) && elsewhere(**child))
             .map(|(name, child)| (*name, *child))
@@ -307,6 +307,8 @@ impl Library {
         if let Some(class) = self.class_mut(id) {
             class.children.extend(read_again.iter().copied());
         }
+        // What was converted before does not have them.
+        self.conversions = Arc::default();
         // Those in a folder are found again; what was put into a package by itself is not.
         for ((_, child), (_, new)) in kept.into_iter().zip(read_again) {
             let slot = self.slot(child);

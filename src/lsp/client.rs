@@ -1,5 +1,6 @@
 //! What the client of a session understands, and where it wants libraries to be looked for.
 
+use super::uri;
 use lsp_types::{
     ClientCapabilities, Documentation, HoverContents, InitializeParams, MarkupContent, MarkupKind,
     TextDocumentEdit, WorkspaceEdit,
@@ -14,6 +15,8 @@ use std::path::PathBuf;
 pub struct Client {
     /// Folders with libraries, besides those of the command line: `initializationOptions.libraries`.
     pub libraries: Vec<PathBuf>,
+    /// The folders that the editor shows.
+    pub folders: Vec<PathBuf>,
     /// Hovers may be Markdown.
     markdown_hover: bool,
     /// Documentation of completions may be Markdown; `None` if it has to be a string.
@@ -33,6 +36,7 @@ impl Client {
         let all = &params.capabilities;
         Client {
             libraries,
+            folders: folders_of(params),
             markdown_hover: hover_formats(all).is_some_and(is_markdown),
             markdown_completion: completion_formats(all).map(is_markdown),
             versioned_changes: versioned_changes(all).unwrap_or(false),
@@ -70,6 +74,15 @@ impl Client {
         }
         WorkspaceEdit { changes: Some(by_name), ..WorkspaceEdit::default() }
     }
+}
+
+/// The folders of the workspace, or the one that older editors know.
+fn folders_of(params: &InitializeParams) -> Vec<PathBuf> {
+    let several = params.workspace_folders.iter().flatten().map(|folder| &folder.uri);
+    let folders: Vec<PathBuf> = several.filter_map(uri::path).collect();
+    #[allow(deprecated, reason = "editors that know no workspace folders send it")]
+    let single = params.root_uri.as_ref().and_then(uri::path);
+    if folders.is_empty() { single.into_iter().collect() } else { folders }
 }
 
 fn is_markdown(formats: &[MarkupKind]) -> bool {

@@ -435,7 +435,7 @@ fn an_attribute_gives_the_size_of_an_array() {
         library(&model("Real x[:](each nominal = 2, start = positive({-2, 1, 0, 4, 2}))"));
     let flat = flatten(&library, &Name::parse("M"), &[]).expect("flattens").model;
     assert_eq!(flat.variables["x"].dims, [3]);
-    refused(&model("Real x[:](each start = 2)"), "not-constant");
+    refused(&model("Real x[:](each start = 2)"), "value-needed");
 }
 
 #[test]

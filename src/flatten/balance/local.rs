@@ -12,8 +12,9 @@ use super::super::instantiate::instance::Leaf;
 use super::super::instantiate::instance::MemberState;
 use super::super::instantiate::instance::NodeKind;
 use super::super::{BaseType, FlatModel, Part, Variability};
-use super::{plural, scalars_of, size, targets};
+use super::{path, plural, scalars_of, size, targets};
 use crate::diag::Diagnostic;
+use crate::eval::ValueType;
 use crate::fault;
 use crate::flatten::connections::sets::Connections;
 use crate::flatten::connections::sets::ConnectorSide;
@@ -23,7 +24,9 @@ use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::lookup::classes::Classes;
 use crate::name::Name;
 use crate::source::Span;
-use crate::syntax::ast::{CausalityPrefix, ConnectionPrefix, Restriction};
+use crate::syntax::ast::{
+    CausalityPrefix, ConnectionPrefix, EquationKind, Expression, ExpressionKind, Restriction,
+};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
@@ -150,7 +153,14 @@ impl Instantiation<'_> {
     fn local_equations(&mut self, part: &Part, model: &FlatModel) -> Option<usize> {
         let mut count = 0;
         for equation in &model.equations[part.equations.clone()] {
-            count += size(equation, &mut |e| self.shape_of(e))?;
+            count += match &equation.kind {
+                EquationKind::Equal { left, right }
+                    if self.is_of_records(left) || self.is_of_records(right) =>
+                {
+                    return None;
+                }
+                _ => size(equation, &mut |e| self.shape_of(e))?,
+            };
         }
         for statements in &model.algorithms[part.algorithms.clone()] {
             let mut assigned = BTreeSet::new();
@@ -158,6 +168,27 @@ impl Instantiation<'_> {
             count += scalars_of(&assigned, model);
         }
         Some(count)
+    }
+
+    /// Whether the value is a record, or an array of records: its shape is not its number of scalars.
+    fn is_of_records(&self, e: &Expression) -> bool {
+        match &e.kind {
+            ExpressionKind::Reference(reference) => {
+                let name = path(reference);
+                name != "time" && !self.classes.tree.variable_of.contains_key(name.as_str())
+            }
+            ExpressionKind::Call { function, .. } => {
+                let function = self.functions.table.get(&function.name()).and_then(Option::as_ref);
+                let output = function.and_then(|function| function.outputs.first());
+                output.is_some_and(|output| matches!(output.value_type, ValueType::Record(..)))
+            }
+            ExpressionKind::Unary { operand, .. } => self.is_of_records(operand),
+            ExpressionKind::Array(elements) => {
+                elements.first().is_some_and(|first| self.is_of_records(first))
+            }
+            ExpressionKind::Subscripted { base, .. } => self.is_of_records(base),
+            _ => false,
+        }
     }
 }
 
@@ -194,6 +225,9 @@ impl Classes<'_> {
             };
             for one in nodes {
                 let mut inner = Place { public: place.public && !hidden, ..place };
+                if self.is_open_overdetermined(one, inner) {
+                    self.mark_unclear(place.owner, counts);
+                }
                 let NodeKind::Composite(composite) = &self.tree.nodes[one.0].kind else {
                     owners.insert(one, place.owner);
                     self.count_variable(one, inner, model, counts);
@@ -215,6 +249,13 @@ impl Classes<'_> {
                 self.count_variables(one, inner, model, counts, owners);
             }
         }
+    }
+
+    /// Whether the outside decides which equations an overdetermined type in a connector of the model
+    /// gets. In components the connections show it.
+    fn is_open_overdetermined(&mut self, node: NodeId, place: Place) -> bool {
+        let is_open = place.in_connector && place.public && place.owner == self.tree.root;
+        is_open && self.is_overdetermined(node).unwrap_or(false)
     }
 
     fn mark_unclear(&self, owner: NodeId, counts: &mut IndexMap<NodeId, Counts>) {
@@ -248,6 +289,10 @@ impl Classes<'_> {
         let is_flow = leaf.connection == Some(ConnectionPrefix::Flow) && place.in_connector;
         let is_input = leaf.causality == Some(CausalityPrefix::Input) && place.public;
         let is_open_input = is_input && !given_inside;
+        if is_input && given_inside && (place.in_connector || leaf.connector) {
+            // It determines what its binding names if it is connected; otherwise it is determined by it.
+            self.mark_unclear(place.owner, counts);
+        }
         let Some(count) = counts.get_mut(&place.owner) else { return };
         count.unknowns += n;
         // The outside determines flows and inputs; a flow that nobody sees outside is zero.

@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
 use crate::external::Outside;
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH, VALUE_NEEDED};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
@@ -108,7 +108,7 @@ impl Instantiation<'_> {
         let bound = leaf.modifier.binding.clone();
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
             return Err(
-                fault!(NOT_CONSTANT, "`{name}` has no value, but its value is needed here";
+                fault!(VALUE_NEEDED, "`{name}` has no value, but its value is needed here";
                 help: "give it a value in its declaration or by a modifier")
                 .at(span),
             );

@@ -5,7 +5,9 @@ use super::instance::{Declaration, MemberState};
 use super::own_sizes::with_own_sizes;
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::errors::{
+    CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH, VALUE_NEEDED,
+};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
@@ -161,7 +163,7 @@ impl Instantiation<'_> {
         let of_attributes = attributes.filter_map(|one| one.binding.as_ref()).find(of_array);
         let bound = expanded.modifier.binding.as_ref().or(of_attributes);
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b.clone())) else {
-            return Err(fault!(NOT_CONSTANT, "the size of `{}` is unknown", declared.name;
+            return Err(fault!(VALUE_NEEDED, "the size of `{}` is unknown", declared.name;
                 help: "declare its size, or give it a value")
             .at(span));
         };

@@ -9,7 +9,9 @@ use super::instance::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::flatten::errors::{ILLEGAL_PREFIX, PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
+use crate::flatten::errors::{
+    ILLEGAL_PREFIX, MISSING_INNER, PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME,
+};
 use crate::flatten::ids::NodeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
@@ -107,7 +109,7 @@ impl Instantiation<'_> {
                 "" => "the model".to_owned(),
                 path => format!("`{path}`"),
             };
-            fault!(UNKNOWN_NAME, "there is no enclosing `inner` component for the `outer` \
+            fault!(MISSING_INNER, "there is no enclosing `inner` component for the `outer` \
                                   component `{name}` in {holder}";
                 help: "declare `inner {} {name};` in the model", declared.type_specifier.name)
             .at(declared.span)

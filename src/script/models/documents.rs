@@ -6,6 +6,7 @@ use crate::diag::Diagnostic;
 use crate::flatten::{self, ClassId, Library};
 use crate::name::{Ident, Name};
 use crate::script::Session;
+use crate::script::models::left_open::LeftOpen;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::BTreeSet;
@@ -30,7 +31,8 @@ pub struct CheckedModel {
 }
 
 impl ModelCheck {
-    /// Finds out what is wrong with the model down to its causalization: what `gapi check` finds.
+    /// Finds out what is wrong with the model down to its causalization: what `gapi check` finds,
+    /// without what is wrong only because the model leaves something to whoever uses it.
     pub fn run(self) -> CheckedModel {
         let mut found = self.found();
         let problems = self.library.take_problems();
@@ -41,34 +43,32 @@ impl ModelCheck {
     }
 
     fn found(&self) -> Vec<Diagnostic> {
+        let open = LeftOpen::of(&self.library, self.library.find(&self.model));
         let (flattened, imbalance) =
             match flatten::flatten_unbalanced(&self.library, &self.model, &[]) {
                 Ok(flattened) => flattened,
-                Err(mut errors) => {
-                    errors.retain(|error| error.code.slug != VALUE_LEFT_OPEN);
-                    return errors;
-                }
+                Err(errors) => return open.faults(errors),
             };
-        // What has open connectors is no system by itself: its local balance counts.
-        let is_component = flattened.balance.and_then(|balance| balance.of_component()).is_some();
+        // What has open connectors is no system by itself: its local balance counts, if it is known.
+        let is_component = match &flattened.balance {
+            Some(balance) => balance.of_component().is_some(),
+            None => open.is_component(),
+        };
         let mut found = flattened.warnings;
         if let Some(imbalance) = imbalance {
             if !is_component {
                 return vec![causalize::explain_imbalance(&flattened.model, imbalance)];
             }
-            return found;
+            return open.faults(found);
         }
-        let is_wrong = |error: &Diagnostic| match error.code.slug {
-            "singular-system" | "unbalanced-model" | "clock-conflict" => !is_component,
-            slug => slug != VALUE_LEFT_OPEN,
+        let is_of_system = |error: &Diagnostic| {
+            ["singular-system", "unbalanced-model", "clock-conflict"].contains(&error.code.slug)
         };
-        found.extend(causalize::causalize(&flattened.model).err().filter(is_wrong));
-        found
+        let error = causalize::causalize(&flattened.model).err();
+        found.extend(error.filter(|error| !is_component || !is_of_system(error)));
+        open.faults(found)
     }
 }
-
-/// Whoever uses a model gives its parameters values.
-const VALUE_LEFT_OPEN: &str = "parameter-without-value";
 
 impl Session {
     /// Loads the classes of a text instead of those of its file, with the package that it belongs to

@@ -10,6 +10,7 @@ pub mod constant_cache;
 mod continuation;
 pub mod documents;
 pub mod hardest;
+mod left_open;
 mod libraries;
 pub mod library_files;
 pub(in crate::script) mod linearization;

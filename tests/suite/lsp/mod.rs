@@ -2,6 +2,7 @@
 
 mod client;
 mod features;
+mod libraries;
 
 use crate::cli::folder;
 use client::{Client, uri};
