@@ -1,6 +1,7 @@
 //! MPI jobs: rank 0 runs the command, the others simulate for it.
 
 use super::args::{Cli, Command};
+use super::launcher::{self, Launched};
 use super::options::Limits;
 use super::signals;
 use super::{limits, terminal};
@@ -24,7 +25,7 @@ pub(super) fn ranks() -> Option<Arc<Ranks>> {
 }
 
 /// Joins the job: runs `command` on rank 0, and serves it on the others.
-pub(super) fn join(command: impl FnOnce() -> ExitCode) -> ExitCode {
+pub(super) fn join(job: Launched, command: impl FnOnce() -> ExitCode) -> ExitCode {
     let refused = |message: &str| {
         terminal::eprint(&format!("error: {message}\n"));
         ExitCode::FAILURE
@@ -36,6 +37,10 @@ pub(super) fn join(command: impl FnOnce() -> ExitCode) -> ExitCode {
         return refused("this MPI library does not support threads (MPI_THREAD_SERIALIZED)");
     }
     let world = universe.world();
+    // The library of another launcher finds each process alone.
+    if world.size() == 1 {
+        return launcher::refuse(job);
+    }
     let link = Link { size: world.size() as usize, inbox: Mutex::default() };
     let code = match world.rank() {
         0 => lead(link, command),
@@ -72,8 +77,30 @@ fn follow(link: &Link) {
     let (threads, limits) = wanted();
     // The time is that of rank 0, which saves what it has found before it ends all ranks.
     let limits = Limits { time_limit: None, ..limits };
-    let Ok(_watch) = limits::enforce(&limits) else { return };
-    serve(&Service { connection: link, about: about(threads), clock: seconds, stop: &stop });
+    let _in_order = InOrder;
+    match limits::enforce(&limits) {
+        Ok(_watch) => {
+            serve(&Service {
+                connection: link,
+                about: about(threads),
+                clock: seconds,
+                stop: &stop,
+            });
+        }
+        // Rank 0 would wait for this one.
+        Err(_) => SimpleCommunicator::world().abort(2),
+    }
+}
+
+/// A rank that panics ends the job: rank 0 would wait for its answers.
+struct InOrder;
+
+impl Drop for InOrder {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            SimpleCommunicator::world().abort(101);
+        }
+    }
 }
 
 /// Threads and limits by the command line, which is the same for all ranks; rank 0 says what is wrong
