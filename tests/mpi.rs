@@ -93,15 +93,17 @@ fn command(folder: &Path, ranks: usize, arguments: &[&str]) -> Command {
             command
         }
     };
-    // Open MPI asks twice whether the user `root` means it, and whether ranks may share cores.
-    command
-        .envs([("OMPI_ALLOW_RUN_AS_ROOT", "1"), ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")])
-        .envs([("OMPI_MCA_rmaps_base_oversubscribe", "1")])
-        .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
-        .args(arguments)
-        .current_dir(folder);
+    command.envs(ALLOWED).args(arguments).current_dir(folder);
     command
 }
+
+/// Open MPI asks twice whether the user `root` means it, and whether ranks may share cores.
+const ALLOWED: [(&str, &str); 4] = [
+    ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
+    ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
+    ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
+    ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
+];
 
 fn ended(command: &mut Command) -> (Option<i32>, String) {
     let Output { status, stdout, stderr } = command.output().expect("`mpirun` is installed");
@@ -147,17 +149,24 @@ fn the_files_are_those_of_one_process() {
             let (code, text) = ended(&mut command(here.path(), ranks, &arguments));
             assert_eq!(code, Some(0), "{ranks} ranks: {text}");
             same_files(&alone.path().join("out"), &here.path().join("out"));
+            // What its messages took is said beside the results.
+            if arguments[0] == "identify" {
+                let timing = fs::read_to_string(here.path().join("out/timing.json")).unwrap();
+                let tells = timing.contains(&format!("\"ranks\": {ranks},"));
+                assert_eq!(tells, ranks > 1, "{timing}");
+            }
         }
     }
 }
 
 /// Starts a job and waits until it has a checkpoint.
 fn started(here: &Path, ranks: usize, arguments: &[&str], journal: &str) -> Child {
-    let mut child = command(here, ranks, arguments)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("`mpirun` is installed");
+    begun(here, &mut command(here, ranks, arguments), journal)
+}
+
+fn begun(here: &Path, command: &mut Command, journal: &str) -> Child {
+    let mut child =
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("`mpirun` is installed");
     let begun = Instant::now();
     let journal = here.join("out").join(journal);
     while fs::metadata(&journal).map_or(0, |found| found.len()) < 2000 {
@@ -221,6 +230,26 @@ fn a_job_that_the_scheduler_ends_is_resumed() {
     }
 }
 
+/// The job for Slurm, ended by the scheduler and submitted again as it was.
+#[test]
+fn a_batch_job_that_is_submitted_again_resumes() {
+    let alone = reference(&IDENTIFY);
+    let here = here();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/cluster/mpi.sbatch");
+    let job = || {
+        let mut job = Command::new("bash");
+        job.args([script, "p.toml", "--profile"]).current_dir(here.path());
+        job.env("GAPI", env!("CARGO_BIN_EXE_gapi")).env("OUT", "out").envs(ALLOWED);
+        job
+    };
+    let mut first = begun(here.path(), &mut job(), "run.journal");
+    send("-TERM", &first.id().to_string());
+    assert!(!first.wait().unwrap().success());
+    let (code, text) = ended(&mut job());
+    assert_eq!(code, Some(0), "{text}");
+    same_files(&alone.path().join("out"), &here.path().join("out"));
+}
+
 #[test]
 fn a_rank_that_is_asked_to_end_ends_the_job_in_order() {
     let here = here();
@@ -239,6 +268,22 @@ fn what_is_wrong_is_said_once() {
     let (code, text) = ended(&mut command(here.path(), 3, &["identify", "--no-such-option"]));
     assert_eq!(code, Some(2), "{text}");
     assert_eq!(text.matches("unexpected argument").count(), 1, "{text}");
+}
+
+/// The launcher of another library: this one finds each process alone, and all would do the same.
+#[test]
+fn processes_that_do_not_find_each_other_are_refused() {
+    for (rank, messages) in [("0", 1), ("2", 0)] {
+        let here = here();
+        let mut command = command(here.path(), 0, &IDENTIFY);
+        command.envs([("SLURM_STEP_NUM_TASKS", "3"), ("SLURM_PROCID", rank)]);
+        let (code, text) = ended(&mut command);
+        assert_eq!(code, Some(2), "{text}");
+        assert_eq!(text.matches("has started 3 processes").count(), messages, "{text}");
+        assert!(!here.path().join("out").exists());
+        let (code, text) = ended(command.env("GAPI_MPI", "0"));
+        assert_eq!(code, Some(0), "{text}");
+    }
 }
 
 #[test]

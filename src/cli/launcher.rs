@@ -1,16 +1,20 @@
 //! Whether a launcher of MPI jobs (`mpirun`, `mpiexec`, `srun`) has started several processes
 //! together, told from the variables that it sets.
 
+use super::terminal;
+use std::process::ExitCode;
+
 /// Set to 0, the process takes no part in a job: for programs that are MPI jobs themselves and call
 /// this one.
 const SWITCH: &str = "GAPI_MPI";
 
 /// Variables with the size of the job and the rank of the process: Open MPI; MPICH, Intel MPI and
-/// Slurm's PMI; Slurm's PMIx, whose size is that of the step.
+/// Slurm's PMI; a step of Slurm, also one that was started without any of them (`--mpi=none`, the
+/// setting of many clusters). Batch scripts, which run once, have no variables of a step.
 const VARIABLES: [[&str; 2]; 3] = [
     ["OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"],
     ["PMI_SIZE", "PMI_RANK"],
-    ["SLURM_STEP_NUM_TASKS", "PMIX_RANK"],
+    ["SLURM_STEP_NUM_TASKS", "SLURM_PROCID"],
 ];
 
 /// The place of this process in a job.
@@ -38,14 +42,32 @@ fn of(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
     (job.size > 1).then_some(job)
 }
 
-/// What a process says that cannot take part.
+/// What the processes have in common that cannot take part in the job.
 #[cfg(not(feature = "mpi"))]
-pub(super) fn refusal(job: Launched) -> String {
+const CAUSE: &str = "this `gapi` is built without MPI";
+#[cfg(feature = "mpi")]
+const CAUSE: &str = "the MPI library of this `gapi` finds one alone";
+#[cfg(not(feature = "mpi"))]
+const REMEDY: &str = "build it with `cargo build --release --features mpi`, or start it without the \
+     launcher";
+#[cfg(feature = "mpi")]
+const REMEDY: &str = "start it with the launcher of the library that it was built with (`mpirun` of \
+     Open MPI or MPICH; `srun` with the `--mpi` that the library asks for), or build it with the \
+     library of the launcher";
+
+/// Ends a process that cannot take part; the first one says why.
+pub(super) fn refuse(job: Launched) -> ExitCode {
+    if job.rank == 0 {
+        terminal::eprint(&refusal(job));
+    }
+    ExitCode::from(2)
+}
+
+fn refusal(job: Launched) -> String {
     format!(
-        "error: an MPI launcher has started {} processes, but this `gapi` is built without MPI, so \
-         that each of them would do the same\n  help: build it with `cargo build --release \
-         --features mpi`, or start it without the launcher; `gapi identify --shard 1/{}` divides a \
-         study without MPI\n  help: if each process is to run alone, set {SWITCH}=0\n",
+        "error: a launcher of parallel jobs has started {} processes, but {CAUSE}, so that each of \
+         them would do the same\n  help: {REMEDY}; `gapi identify --shard 1/{}` divides a study \
+         without MPI\n  help: if each process is to run alone, set {SWITCH}=0\n",
         job.size, job.size
     )
 }
@@ -63,7 +85,7 @@ mod tests {
         let third = Some(Launched { size: 4, rank: 2 });
         assert_eq!(with(&[("OMPI_COMM_WORLD_SIZE", "4"), ("OMPI_COMM_WORLD_RANK", "2")]), third);
         assert_eq!(with(&[("PMI_SIZE", "4"), ("PMI_RANK", "2")]), third);
-        assert_eq!(with(&[("SLURM_STEP_NUM_TASKS", "4"), ("PMIX_RANK", "2")]), third);
+        assert_eq!(with(&[("SLURM_STEP_NUM_TASKS", "4"), ("SLURM_PROCID", "2")]), third);
     }
 
     #[test]

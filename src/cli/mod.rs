@@ -66,15 +66,9 @@ pub fn main() -> ExitCode {
     match launcher::launched() {
         None => command(),
         #[cfg(feature = "mpi")]
-        Some(_) => mpi::join(command),
+        Some(job) => mpi::join(job, command),
         #[cfg(not(feature = "mpi"))]
-        Some(job) => {
-            // Once is enough.
-            if job.rank == 0 {
-                terminal::eprint(&launcher::refusal(job));
-            }
-            ExitCode::from(2)
-        }
+        Some(job) => launcher::refuse(job),
     }
 }
 

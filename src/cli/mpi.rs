@@ -1,6 +1,7 @@
 //! MPI jobs: rank 0 runs the command, the others simulate for it.
 
 use super::args::{Cli, Command};
+use super::launcher::{self, Launched};
 use super::options::Limits;
 use super::signals;
 use super::{limits, terminal};
@@ -8,12 +9,12 @@ use crate::identify::ranks::{About, Connection, Ranks, Service, serve};
 use clap::Parser as _;
 use mpi::Threading;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator as _, Destination as _, MatchedReceiveVec as _, Source as _};
+use mpi::traits::{Communicator as _, Destination as _, Equivalence as _, Source as _};
 use std::collections::VecDeque;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The other ranks, once they are known.
 static RANKS: OnceLock<Arc<Ranks>> = OnceLock::new();
@@ -24,7 +25,7 @@ pub(super) fn ranks() -> Option<Arc<Ranks>> {
 }
 
 /// Joins the job: runs `command` on rank 0, and serves it on the others.
-pub(super) fn join(command: impl FnOnce() -> ExitCode) -> ExitCode {
+pub(super) fn join(job: Launched, command: impl FnOnce() -> ExitCode) -> ExitCode {
     let refused = |message: &str| {
         terminal::eprint(&format!("error: {message}\n"));
         ExitCode::FAILURE
@@ -36,6 +37,10 @@ pub(super) fn join(command: impl FnOnce() -> ExitCode) -> ExitCode {
         return refused("this MPI library does not support threads (MPI_THREAD_SERIALIZED)");
     }
     let world = universe.world();
+    // The library of another launcher finds each process alone.
+    if world.size() == 1 {
+        return launcher::refuse(job);
+    }
     let link = Link { size: world.size() as usize, inbox: Mutex::default() };
     let code = match world.rank() {
         0 => lead(link, command),
@@ -53,6 +58,7 @@ fn lead(link: Link, command: impl FnOnce() -> ExitCode) -> ExitCode {
     match Ranks::connect(Box::new(link), &about(1)) {
         Ok(ranks) => {
             let ranks = RANKS.get_or_init(|| ranks);
+            Wanted::here().warn_of_binding();
             let code = command();
             ranks.end();
             code
@@ -69,22 +75,64 @@ fn lead(link: Link, command: impl FnOnce() -> ExitCode) -> ExitCode {
 fn follow(link: &Link) {
     let stop = Arc::new(AtomicBool::new(false));
     signals::catch_all(&stop);
-    let (threads, limits) = wanted();
+    let Wanted { threads, limits, .. } = Wanted::here();
     // The time is that of rank 0, which saves what it has found before it ends all ranks.
     let limits = Limits { time_limit: None, ..limits };
-    let Ok(_watch) = limits::enforce(&limits) else { return };
-    serve(&Service { connection: link, about: about(threads), clock: seconds, stop: &stop });
+    let _in_order = InOrder;
+    match limits::enforce(&limits) {
+        Ok(_watch) => {
+            serve(&Service {
+                connection: link,
+                about: about(threads),
+                clock: seconds,
+                stop: &stop,
+            });
+        }
+        // Rank 0 would wait for this one.
+        Err(_) => SimpleCommunicator::world().abort(2),
+    }
 }
 
-/// Threads and limits by the command line, which is the same for all ranks; rank 0 says what is wrong
-/// with it.
-fn wanted() -> (usize, Limits) {
-    let (threads, limits) = match Cli::try_parse().map(|cli| cli.command) {
-        Ok(Command::Run(own)) => (own.threads, own.freedom.limits),
-        Ok(Command::Identify(own)) => (own.threads, own.limits),
-        _ => (None, Limits::default()),
-    };
-    (threads.map_or(1, usize::from), limits)
+/// A rank that panics ends the job: rank 0 would wait for its answers.
+struct InOrder;
+
+impl Drop for InOrder {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            SimpleCommunicator::world().abort(101);
+        }
+    }
+}
+
+/// What the command line wants of a rank; it is the same for all, and rank 0 says what is wrong with it.
+struct Wanted {
+    threads: usize,
+    limits: Limits,
+    quiet: bool,
+}
+
+impl Wanted {
+    fn here() -> Wanted {
+        let (threads, limits, quiet) = match Cli::try_parse().map(|cli| cli.command) {
+            Ok(Command::Run(own)) => (own.threads, own.freedom.limits, own.quiet),
+            Ok(Command::Identify(own)) => (own.threads, own.limits, own.quiet),
+            _ => (None, Limits::default(), true),
+        };
+        Wanted { threads: threads.map_or(1, usize::from), limits, quiet }
+    }
+
+    /// Launchers bind ranks to cores, Open MPI up to two of them to one core each.
+    fn warn_of_binding(&self) {
+        let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+        if self.threads > cores && !self.quiet {
+            let (threads, s) = (self.threads, if cores == 1 { "" } else { "s" });
+            terminal::eprint(&format!(
+                "warning: this rank may use {cores} core{s}, but is to have {threads} threads\n  \
+                 help: start it with `mpirun --bind-to none`, or with as many cores for each rank \
+                 as it has threads\n"
+            ));
+        }
+    }
 }
 
 fn about(threads: usize) -> About {
@@ -105,6 +153,9 @@ fn seconds() -> f64 {
     static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
     STARTED.elapsed().as_secs_f64()
 }
+
+/// Between two looks at a message under way.
+const NAP: Duration = Duration::from_micros(10);
 
 /// The messages of `MPI_COMM_WORLD`. One thread calls MPI at a time.
 struct Link {
@@ -129,7 +180,7 @@ impl Connection for Link {
                 request = pending;
                 match arrived(&world) {
                     Some(message) => inbox.push_back(message),
-                    None => std::thread::yield_now(),
+                    None => std::thread::sleep(NAP),
                 }
             }
         });
@@ -145,8 +196,17 @@ impl Connection for Link {
     }
 }
 
+/// The library's own waiting gives the core away for a whole time slice, or keeps it from the thread
+/// that simulates.
 fn arrived(world: &SimpleCommunicator) -> Option<(usize, Vec<u8>)> {
-    let (bytes, status) =
-        world.any_process().immediate_matched_probe()?.matched_receive_vec::<u8>();
+    let (message, status) = world.any_process().immediate_matched_probe()?;
+    let mut bytes = vec![0; usize::try_from(status.count(u8::equivalent_datatype())).ok()?];
+    mpi::request::scope(|scope| {
+        let mut request = message.immediate_matched_receive_into(scope, &mut bytes[..]);
+        while let Err(pending) = request.test() {
+            request = pending;
+            std::thread::sleep(NAP);
+        }
+    });
     Some((status.source_rank() as usize, bytes))
 }

@@ -248,3 +248,53 @@ fn a_rank_that_is_asked_to_end_stops_the_run() {
     ranks.end();
     servant.join().unwrap();
 }
+
+/// Its clock panics, and with it the thread that simulates.
+struct Broken(Post);
+
+impl Connection for Broken {
+    fn size(&self) -> usize {
+        self.0.size()
+    }
+
+    fn send(&self, rank: usize, message: &[u8]) {
+        self.0.send(rank, message);
+    }
+
+    fn receive(&self) -> Option<(usize, Vec<u8>)> {
+        self.0.receive()
+    }
+
+    fn seconds(&self) -> f64 {
+        panic!("no clock");
+    }
+}
+
+#[test]
+fn a_rank_whose_thread_has_panicked_serves_no_longer() {
+    let mut posts = posts(2);
+    let (other, post) = (Broken(posts.pop().unwrap()), posts.pop().unwrap());
+    let servant = std::thread::spawn(move || {
+        let (about, stop) = (about("1", 1), AtomicBool::new(false));
+        serve(&Service { connection: &other, about, clock: seconds, stop: &stop });
+    });
+    let ranks = Ranks::connect(Box::new(post), &about("1", 1)).unwrap();
+    // What waits for its answer is ended by whoever watches over the processes.
+    let over = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&over);
+    let run = std::thread::spawn(move || {
+        let (model, question, genomes) = ball();
+        let processors = Processors { threads: 1, ranks: Some(ranks) };
+        let mut evaluator = Evaluator::on(model, question, &processors).unwrap();
+        evaluator.cancel_by(Some(flag));
+        evaluator.evaluate(&genomes).unwrap();
+    });
+    let begun = Instant::now();
+    while !servant.is_finished() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "it serves without its thread");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    over.store(true, Ordering::SeqCst);
+    run.join().unwrap();
+    assert!(servant.join().is_err(), "it has not told that a thread was lost");
+}

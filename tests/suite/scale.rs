@@ -12,19 +12,29 @@ use std::collections::BinaryHeap;
 const MESSAGE: f64 = 1.5e-4;
 const HANDLING: f64 = 1e-5;
 
-/// A job of so many ranks and individuals; simulations take between a half and one and a half times the
-/// mean.
+/// A job of so many ranks, cores and individuals; simulations take between a half and one and a half
+/// times the mean.
 struct Cluster {
     ranks: usize,
+    cores: usize,
     individuals: usize,
     simulation: f64,
 }
 
 impl Cluster {
-    /// The share of the time of all ranks in which they simulate.
+    /// What a simulation takes on a rank that shares its core with others.
+    fn duration(&self) -> f64 {
+        self.simulation * (self.ranks as f64 / self.cores as f64).max(1.0)
+    }
+
+    /// The share of the time of all cores in which they simulate.
     fn efficiency(&self) -> f64 {
-        let times =
-            Times { simulation: Some(self.simulation), message: MESSAGE, handling: HANDLING };
+        self.ranks.min(self.cores) as f64 / self.cores as f64 * self.share_of_ranks()
+    }
+
+    fn share_of_ranks(&self) -> f64 {
+        let simulation = self.duration();
+        let times = Times { simulation: Some(simulation), message: MESSAGE, handling: HANDLING };
         let nanoseconds = |seconds: f64| (seconds * 1e9).round() as u64;
         let mut free: BinaryHeap<Reverse<(u64, usize)>> =
             (0..self.ranks).map(|rank| Reverse((0, rank))).collect();
@@ -42,7 +52,7 @@ impl Cluster {
                     // Knuth's linear congruential generator.
                     state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                     let share = (state >> 40) as f64 / (1_u64 << 24) as f64;
-                    nanoseconds(self.simulation * (0.5 + share))
+                    nanoseconds(simulation * (0.5 + share))
                 })
                 .sum();
             busy = asked.max(busy) + nanoseconds(HANDLING);
@@ -56,7 +66,7 @@ impl Cluster {
 }
 
 fn efficiency(ranks: usize, for_each: usize, simulation: f64) -> f64 {
-    Cluster { ranks, individuals: ranks * for_each, simulation }.efficiency()
+    Cluster { ranks, cores: ranks, individuals: ranks * for_each, simulation }.efficiency()
 }
 
 #[test]
@@ -64,7 +74,11 @@ fn long_simulations_scale_and_short_ones_do_not() {
     assert!(efficiency(2, 100, 0.1) > 0.97);
     assert!(efficiency(1000, 100, 0.1) > 0.95);
     // One population of 100 individuals of a microsecond on 64 ranks is nothing but messages.
-    assert!(Cluster { ranks: 64, individuals: 100, simulation: 1e-6 }.efficiency() < 0.01);
+    let small = Cluster { ranks: 64, cores: 64, individuals: 100, simulation: 1e-6 };
+    assert!(small.efficiency() < 0.01);
+    // Ranks that share cores gain nothing but lose little.
+    let shared = Cluster { ranks: 8, cores: 2, individuals: 2000, simulation: 0.01 };
+    assert!((0.95..1.0).contains(&shared.efficiency()), "{}", shared.efficiency());
     // Rank 0 handles 100,000 messages a second, and chunks are as large as that asks.
     assert!(efficiency(10_000, 1000, 0.1) > 0.9);
 }

@@ -106,6 +106,30 @@ fn shards_that_are_missing_or_of_another_study_are_named() {
     assert!(errors.contains("is damaged"), "{errors}");
 }
 
+/// The job for Slurm, as the tasks of an array run it; one of them alone a second time.
+#[cfg(target_os = "linux")]
+#[test]
+fn tasks_of_a_slurm_array_are_the_shards_of_one_study() {
+    let here = here();
+    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/cluster/study.sbatch");
+    let task = |number: &str| {
+        let mut command = std::process::Command::new("bash");
+        command.args([job, "2", "p.toml", "--bootstrap", "--profile"]).current_dir(here.path());
+        command.env("GAPI", env!("CARGO_BIN_EXE_gapi")).env("SLURM_ARRAY_TASK_ID", number);
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    ["1", "2"].into_iter().for_each(task);
+    let merge = ["report", "--merge", "shards/1", "shards/2", "--out", "study"];
+    assert_eq!(gapi(&here, &merge).0, 0);
+    fs::remove_dir_all(here.path().join("shards/2")).unwrap();
+    let (code, _, errors) = gapi(&here, &["report", "--merge", "shards/1", "--out", "study"]);
+    assert!(code == 1 && errors.contains("missing: 2/2"), "{errors}");
+    task("2");
+    let (code, _, errors) = gapi(&here, &merge);
+    assert_eq!(code, 0, "{errors}");
+}
+
 #[test]
 fn numbers_of_shards_are_checked() {
     let here = here();
@@ -129,6 +153,9 @@ fn without_mpi_a_job_is_refused() {
     assert_eq!(code, Some(2));
     assert!(errors.contains("has started 64 processes"), "{errors}");
     assert!(errors.contains("--features mpi") && errors.contains("--shard"), "{errors}");
+    // A step of Slurm without any of MPI's ways to start: srun's own default.
+    let (code, errors) = run(&[("SLURM_STEP_NUM_TASKS", "8"), ("SLURM_PROCID", "0")]);
+    assert!(code == Some(2) && errors.contains("has started 8 processes"), "{errors}");
     // The others are silent.
     assert_eq!(run(&[("PMI_SIZE", "64"), ("PMI_RANK", "5")]), (Some(2), String::new()));
     assert!(!here.path().join("results").exists());

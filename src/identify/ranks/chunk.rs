@@ -2,14 +2,12 @@
 //!
 //! A chunk must be worth its message: the time to simulate it is `WORTH` times what the message
 //! takes, and all chunks under way together keep the ranks busy while rank 0 handles one message after
-//! the other. Towards the end of a population chunks shrink to a part of what remains (guided
-//! self-scheduling), so that all processors finish at about the same time. Where one simulation takes
+//! the other. Towards the end of a population chunks shrink to each processor's share of what remains
+//! (guided self-scheduling), so that all finish at about the same time. Where one simulation takes
 //! longer than its message, a chunk is one individual, and a slow one delays no other.
 
 /// A chunk takes at least this many times what its message takes.
 const WORTH: f64 = 20.0;
-/// Chunks that remain for each processor when the size begins to shrink.
-const REMAINING: usize = 2;
 /// A population is distributed where the threads of rank 0 alone would work this many times the
 /// time of a message on it.
 const WORTH_DISTRIBUTING: f64 = 10.0;
@@ -31,7 +29,7 @@ pub fn size(times: &Times, remaining: usize, processors: usize) -> usize {
     let for_message = WORTH * times.message / simulation.max(1e-9);
     let for_handling = 2.0 * processors as f64 * times.handling / simulation.max(1e-9);
     let least = for_message.max(for_handling).ceil() as usize;
-    let share = remaining.div_ceil(REMAINING * processors.max(1));
+    let share = remaining.div_ceil(processors.max(1));
     least.min(share).max(1)
 }
 
@@ -69,7 +67,19 @@ mod tests {
     fn chunks_shrink_towards_the_end() {
         let sizes: Vec<usize> =
             [4000, 400, 40, 4, 1].iter().map(|rest| size(&times(1e-5), *rest, 4)).collect();
-        assert_eq!(sizes, [200, 50, 5, 1, 1]);
+        assert_eq!(sizes, [200, 100, 10, 1, 1]);
+    }
+
+    /// A population of case 4.2 of the paper with messages of a machine that others use, too.
+    #[test]
+    fn a_short_population_is_no_sequence_of_small_messages() {
+        let times = Times { simulation: Some(2.7e-4), message: 1e-3, handling: 2e-5 };
+        let (mut remaining, mut messages) = (75, 0);
+        while remaining > 0 {
+            remaining -= size(&times, 2 * remaining, 2);
+            messages += 1;
+        }
+        assert!(messages <= 2, "{messages}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::chunk::Times;
 use super::connection::Connection;
 use super::message::{About, Order, Report, Work, decode, encode};
 use super::simulation::Simulation;
+use super::traffic::Traffic;
 use crate::diag::Fault;
 use crate::identify::errors::RANKS_DIFFER;
 use crate::identify::problem::Portable;
@@ -15,10 +16,7 @@ use std::time::Duration;
 /// The first pause where no message has come, and the longest, in seconds: a process that waits
 /// leaves its core to others.
 const PAUSES: [f64; 2] = [2e-5, 5e-4];
-/// Times before any was measured, in seconds.
-const MESSAGE: f64 = 2e-4;
-const HANDLING: f64 = 1e-5;
-/// What a new measurement counts in the mean.
+/// What a new measurement of simulations counts in the mean.
 const NEW: f64 = 0.2;
 
 /// The other ranks, as rank 0 knows them.
@@ -36,7 +34,7 @@ pub struct Ranks {
 pub(super) struct State {
     /// One for each thread of each other rank.
     pub lanes: Vec<Lane>,
-    pub times: [f64; 2],
+    pub traffic: Traffic,
     /// Answers that nobody has taken yet.
     pub arrived: Vec<Arrived>,
     prepared: Vec<(u64, usize, Option<String>)>,
@@ -58,6 +56,8 @@ pub(super) struct Sent {
     pub first: usize,
     pub count: usize,
     at: f64,
+    /// What sending it took.
+    sending: f64,
 }
 
 /// The answers to a chunk.
@@ -127,9 +127,13 @@ impl Ranks {
         let lanes = others.iter().enumerate().flat_map(|(k, about)| {
             (0..about.threads.max(1)).map(move |_| Lane { rank: k + 1, work: None })
         });
-        let state =
-            State { lanes: lanes.collect(), times: [MESSAGE, HANDLING], ..State::default() };
+        let state = State { lanes: lanes.collect(), ..State::default() };
         Ok(Arc::new(Ranks { connection, others, state: Mutex::new(state), stop: Mutex::default() }))
+    }
+
+    /// What messages have taken so far; `None` while a population is under way.
+    pub fn traffic(&self) -> Option<Traffic> {
+        self.free_state().map(|state| state.traffic)
     }
 
     /// Number of ranks, this one included.
@@ -207,9 +211,8 @@ impl Ranks {
             any = true;
             match decode(&bytes) {
                 Some(Report::Done { ticket, seconds, simulations }) => {
-                    state.done(ticket, seconds, simulations, began);
-                    let handling = self.seconds() - began;
-                    state.times[1] += NEW * (handling - state.times[1]);
+                    let sending = state.done(ticket, seconds, simulations, began);
+                    state.traffic.handled(sending + self.seconds() - began);
                 }
                 Some(Report::Prepared { number, refusal }) => {
                     state.prepared.push((number, rank, refusal));
@@ -241,13 +244,14 @@ impl Ranks {
 }
 
 impl State {
-    fn done(&mut self, ticket: u64, seconds: f64, simulations: Vec<Simulation>, now: f64) {
+    /// Notes the answers to a chunk; what sending it has taken.
+    fn done(&mut self, ticket: u64, seconds: f64, simulations: Vec<Simulation>, now: f64) -> f64 {
         let of = |lane: &Lane| lane.work.is_some_and(|sent| sent.ticket == ticket);
-        let Some(lane) = self.lanes.iter().position(of) else { return };
-        let Some(sent) = self.lanes[lane].work.take() else { return };
-        let message = (now - sent.at - seconds).max(0.0);
-        self.times[0] += NEW * (message - self.times[0]);
+        let Some(lane) = self.lanes.iter().position(of) else { return 0.0 };
+        let Some(sent) = self.lanes[lane].work.take() else { return 0.0 };
+        self.traffic.answered(simulations.len(), now - sent.at - seconds);
         self.arrived.push(Arrived { lane, sent, seconds, simulations });
+        sent.sending
     }
 }
 
@@ -255,7 +259,8 @@ impl Prepared {
     /// Measured times.
     pub(super) fn times(&self, state: &State) -> Times {
         let simulation = *self.simulation.lock().unwrap_or_else(PoisonError::into_inner);
-        Times { simulation, message: state.times[0], handling: state.times[1] }
+        let Traffic { message, handling, .. } = state.traffic;
+        Times { simulation, message, handling }
     }
 
     /// Notes what some simulations took.
@@ -274,9 +279,10 @@ impl Prepared {
         work.number = self.number;
         work.ticket = state.next_ticket;
         state.next_ticket += 1;
-        let sent = Sent { ticket: work.ticket, first, count, at: self.ranks.seconds() };
-        state.lanes[lane].work = Some(sent);
+        let (ticket, at) = (work.ticket, self.ranks.seconds());
         self.ranks.connection.send(state.lanes[lane].rank, &encode(&Order::Work(work)));
+        let sending = self.ranks.seconds() - at;
+        state.lanes[lane].work = Some(Sent { ticket, first, count, at, sending });
     }
 }
 

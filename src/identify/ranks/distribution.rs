@@ -65,10 +65,11 @@ impl Prepared {
             for _ in 0..local.threads {
                 scope.spawn(|_| work());
             }
-            if let Some(mut state) = self.ranks.free_state()
-                && chunk::is_worth_distributing(&self.times(&state), batch.len(), local.threads)
-            {
+            let Some(mut state) = self.ranks.free_state() else { return };
+            if chunk::is_worth_distributing(&self.times(&state), batch.len(), local.threads) {
                 remote = self.hand_out(&mut state, batch, &queue, local.threads, &is_cancelled);
+            } else {
+                state.traffic.not_used();
             }
         });
         if is_cancelled() {

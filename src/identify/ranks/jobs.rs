@@ -50,6 +50,7 @@ impl Prepared {
         state.arrived.clear();
         let lanes: Vec<usize> = self.useful_lanes(&state, count.saturating_sub(own.len()));
         if lanes.is_empty() {
+            state.traffic.not_used();
             return None;
         }
         let results = (0..count).map(|_| Mutex::new(None)).collect();

@@ -29,6 +29,7 @@ mod processors;
 mod remote;
 mod service;
 mod simulation;
+mod traffic;
 
 pub use connection::Connection;
 pub use coordinator::{Prepared, Ranks};
@@ -37,3 +38,4 @@ pub use message::About;
 pub use processors::Processors;
 pub use service::{Service, serve};
 pub use simulation::{Asked, Batch, Simulation, simulate};
+pub use traffic::Traffic;

@@ -8,8 +8,9 @@ use crate::diag::Fault;
 use crate::identify::problem::{Portable, Simulate, unpacked};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::ScopedJoinHandle;
 
 /// What a rank needs to serve.
 pub struct Service<'a> {
@@ -34,16 +35,21 @@ struct Task {
 }
 
 /// Serves until rank 0 ends it.
+///
+/// # Panics
+///
+/// Where a thread panics that simulates: nobody else would answer in its place.
 pub fn serve(service: &Service<'_>) {
     let (tasks, waiting) = channel::<Task>();
     let (finished, reports) = channel::<Report>();
     let waiting = Mutex::new(waiting);
     service.send(&Report::Ready(service.about.clone()));
     std::thread::scope(|scope| {
-        for place in 0..service.about.threads.max(1) {
+        let thread = |place: usize| {
             let (waiting, finished) = (&waiting, finished.clone());
-            scope.spawn(move || work_on(place, waiting, &finished, service.connection));
-        }
+            scope.spawn(move || work_on(place, waiting, &finished, service.connection))
+        };
+        let threads: Vec<_> = (0..service.about.threads.max(1)).map(thread).collect();
         let mut rank = Rank {
             service,
             simulators: BTreeMap::new(),
@@ -51,7 +57,7 @@ pub fn serve(service: &Service<'_>) {
             last_cancelled: None,
             tasks,
         };
-        rank.run(&reports);
+        rank.run(&reports, &|| threads.iter().any(ScopedJoinHandle::is_finished));
         // Without a sender of tasks the threads end.
     });
 }
@@ -73,7 +79,8 @@ impl Service<'_> {
 }
 
 impl Rank<'_> {
-    fn run(&mut self, reports: &Receiver<Report>) {
+    /// `has_lost_one` says whether a thread has ended: while there may be tasks only a panic does that.
+    fn run(&mut self, reports: &Receiver<Report>, has_lost_one: &dyn Fn() -> bool) {
         let mut patience = Patience::new();
         let mut has_asked = false;
         loop {
@@ -95,7 +102,8 @@ impl Rank<'_> {
                     patience.reset();
                     self.service.send(&report);
                 }
-                Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
+                Err(_) if has_lost_one() => return self.cancel.store(true, Ordering::Relaxed),
+                Err(_) => {}
             }
         }
     }

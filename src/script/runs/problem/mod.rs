@@ -33,6 +33,7 @@ use crate::identify::problem::{
     self as solving, Finding, FindingKind, Importance, ModelSimulator, Origins, Run, Severity,
     Simulate, Solution, SolvedSeries,
 };
+use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
@@ -45,6 +46,7 @@ pub use shards::{Division, read_shards};
 use build::Built;
 use search::Search;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Files that not every run writes.
 const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
@@ -322,6 +324,20 @@ fn validated(
     Ok(solved)
 }
 
+/// What a run took, and in a job of several ranks what their messages took.
+fn timing(seconds: f64, ranks: Option<Arc<Ranks>>) -> String {
+    let mut text = format!("{{\n  \"wall_seconds\": {seconds:.3}");
+    if let Some((ranks, traffic)) = ranks.and_then(|ranks| Some((ranks.size(), ranks.traffic()?))) {
+        let Traffic { message, handling, chunks, simulations } = traffic;
+        text += &format!(
+            ",\n  \"ranks\": {ranks},\n  \"messages\": {chunks},\n  \"distributed_simulations\": \
+             {simulations},\n  \"message_seconds\": {message:.2e},\n  \"handling_seconds\": \
+             {handling:.2e}"
+        );
+    }
+    text + "\n}\n"
+}
+
 /// Writes the files of a solution. What differs between equal runs, the time, has a file of its own.
 pub(super) fn write(
     session: &mut Session,
@@ -338,7 +354,7 @@ pub(super) fn write(
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
         ("convergence.svg", solution.convergence_figure().svg()),
-        ("timing.json", format!("{{\n  \"wall_seconds\": {seconds:.3}\n}}\n")),
+        ("timing.json", timing(seconds, session.world.ranks())),
     ]
     .map(|(name, text)| (name.to_owned(), text))
     .into();
