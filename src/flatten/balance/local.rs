@@ -175,7 +175,7 @@ impl Instantiation<'_> {
         match &e.kind {
             ExpressionKind::Reference(reference) => {
                 let name = path(reference);
-                name != "time" && !self.classes.tree.variable_of.contains_key(name.as_str())
+                name != "time" && !self.classes.tree.variable_of.contains_key(&*name)
             }
             ExpressionKind::Call { function, .. } => {
                 let function = self.functions.table.get(&function.name()).and_then(Option::as_ref);
