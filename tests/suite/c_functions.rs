@@ -276,3 +276,19 @@ fn code_of_older_libraries_is_compiled() {
     let (_, out, errors) = script("Foreign.charge(\"SO-4\")\n");
     assert!(out.contains("-4"), "{out}{errors}");
 }
+
+/// SystemDynamics: older compilers knew the functions of C without their headers.
+#[test]
+fn functions_of_c_need_no_headers() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let text = "package P function seven output Integer n; external \"C\" n = seven() \
+        annotation(Include = \"int seven() { srand(3); \
+        return time(NULL) > 0 && isdigit('7') && fabs(-2.0) == 2.0 ? atoi(\\\"7\\\") : 0; }\"); \
+        end seven; end P;";
+    let here = folder(&[("P.mo", text), ("a.mos", "openModel(\"P.mo\");\nP.seven()\n")]);
+    let (code, out, errors) = run(&here, &["run", "a.mos"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    assert!(out.ends_with("7\n"), "{out}");
+}

@@ -270,6 +270,9 @@ fn operator_functions_have_the_inputs_of_their_operators() {
     refused(&record(plus), "illegal-operator");
     let zero = "encapsulated operator function '0' output Real y; algorithm y := 0; end '0';";
     refused(&record(zero), "illegal-operator");
+    let plain = "record R Real a; encapsulated operator function '+' import R; input R x; input R y; \
+        output R z; algorithm z.a := x.a + y.a; end '+'; end R; model M R r(a = 1); end M;";
+    refused_if_strict(plain, "class-restriction");
 }
 
 #[test]

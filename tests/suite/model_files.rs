@@ -52,8 +52,12 @@ fn tables_in_files_are_read_when_the_model_is_compiled() {
            Modelica.Blocks.Tables.CombiTable1Ds own(
              tableOnFile = true, fileName = \"modelica://P/Resources/t.txt\", tableName = \"own\",
              columns = {2});
+           Modelica.Blocks.Tables.CombiTable1Ds twice(
+             tableOnFile = true, fileName = \"modelica://P//Resources/t.txt\", tableName = \"own\",
+             columns = {2});
            Real x(start = 0, fixed = true);
          equation
+           twice.u = time;
            der(x) = steps.y[1];
            line.u = time;
            csv.u = time;

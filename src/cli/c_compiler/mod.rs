@@ -33,7 +33,10 @@ const FLAGS: &[&str] = &[
 
 /// What older compilers did: functions of the standard library that are not declared. Where the
 /// code is not accepted otherwise, the headers that declare them are included first.
-const LENIENT: &[&str] = &["-include", "stdlib.h", "-include", "string.h", "-include", "stdio.h"];
+const LENIENT: &[&str] = &[
+    "-include", "stdlib.h", "-include", "string.h", "-include", "stdio.h", "-include", "time.h",
+    "-include", "ctype.h", "-include", "math.h",
+];
 /// What the compiler says then.
 const UNDECLARED: &str = "implicit declaration of function";
 
