@@ -287,6 +287,16 @@ fn processes_that_do_not_find_each_other_are_refused() {
 }
 
 #[test]
+fn threads_that_share_a_core_are_told_once() {
+    let here = here();
+    let arguments = ["identify", "nothing.toml", "--threads", "300"];
+    let (_, text) = ended(&mut command(here.path(), 3, &arguments));
+    assert_eq!(text.matches("is to have 300 threads").count(), 1, "{text}");
+    let (_, text) = ended(&mut command(here.path(), 3, &[&arguments[..], &["--quiet"]].concat()));
+    assert!(!text.contains("threads"), "{text}");
+}
+
+#[test]
 fn a_model_with_functions_in_c_is_simulated_by_rank_0_alone() {
     let here = here();
     let function = "  parameter Real d = 0.1;
