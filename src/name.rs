@@ -1,6 +1,6 @@
 //! Identifiers and dotted names, interned: comparing two is comparing two addresses.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::sync::{LazyLock, Mutex};
@@ -10,7 +10,7 @@ use std::sync::{LazyLock, Mutex};
 #[derive(Clone, Copy)]
 pub struct Ident(&'static str);
 
-static INTERNED: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Default::default);
+static INTERNED: LazyLock<Mutex<FxHashSet<&'static str>>> = LazyLock::new(Default::default);
 
 impl Ident {
     /// The identifier with this text. Texts live as long as the program; their number is bounded

@@ -5,6 +5,8 @@
 //! under one condition costs one computation of what its elements share, not one for each.
 
 use super::instruction::Register;
+use super::places::Places;
+use crate::symbolic::Expr;
 use rustc_hash::FxHashMap;
 use std::hash::Hash;
 
@@ -93,17 +95,26 @@ impl Branches {
     }
 }
 
+/// What was computed in branches, with that in which it was computed last.
+pub(super) type Inside<K> = FxHashMap<K, (Register, Branch)>;
+
+/// The register of what was computed in a branch, if the present one knows it.
+fn known_inside<K: Eq + Hash>(
+    inside: &Inside<K>,
+    key: &K,
+    branches: &Branches,
+) -> Option<Register> {
+    let (register, branch) = inside.get(key)?;
+    branches.is_open[branch.0 as usize].then_some(*register)
+}
+
 /// The registers of what was computed.
 #[derive(Debug)]
 pub(super) struct Computed<K> {
     /// In no branch.
     outside: FxHashMap<K, Register>,
-    /// In branches, with that in which it was computed last.
     inside: Inside<K>,
 }
-
-/// What was computed in branches.
-pub(super) type Inside<K> = FxHashMap<K, (Register, Branch)>;
 
 impl<K: Eq + Hash> Computed<K> {
     pub(super) fn new() -> Computed<K> {
@@ -112,11 +123,8 @@ impl<K: Eq + Hash> Computed<K> {
 
     /// The register, if it was computed where the present branch knows it.
     pub(super) fn get(&self, key: &K, branches: &Branches) -> Option<Register> {
-        if let Some(register) = self.outside.get(key) {
-            return Some(*register);
-        }
-        let (register, branch) = self.inside.get(key)?;
-        branches.is_open[branch.0 as usize].then_some(*register)
+        let outside = self.outside.get(key).copied();
+        outside.or_else(|| known_inside(&self.inside, key, branches))
     }
 
     pub(super) fn insert(&mut self, key: K, register: Register, branches: &Branches) {
@@ -132,6 +140,43 @@ impl<K: Eq + Hash> Computed<K> {
     }
 
     pub(super) fn resume(&mut self, inside: Inside<K>) {
+        self.inside = inside;
+    }
+}
+
+/// The same of expressions, which are asked for more often than all else: those in no branch are in
+/// the [`Places`] of the registers.
+#[derive(Debug, Default)]
+pub(super) struct ComputedExpressions {
+    inside: Inside<Expr>,
+}
+
+impl ComputedExpressions {
+    pub(super) fn get(&self, e: Expr, places: &Places, branches: &Branches) -> Option<Register> {
+        match places.get(e) {
+            None if !self.inside.is_empty() => known_inside(&self.inside, &e, branches),
+            known => known,
+        }
+    }
+
+    pub(super) fn insert(
+        &mut self,
+        e: Expr,
+        d: Register,
+        places: &mut Places,
+        branches: &Branches,
+    ) {
+        match branches.is_inside() {
+            true => _ = self.inside.insert(e, (d, branches.current())),
+            false => places.insert(e, d),
+        }
+    }
+
+    pub(super) fn suspend(&mut self) -> Inside<Expr> {
+        std::mem::take(&mut self.inside)
+    }
+
+    pub(super) fn resume(&mut self, inside: Inside<Expr>) {
         self.inside = inside;
     }
 }

@@ -30,6 +30,7 @@ pub(crate) mod memory;
 pub(crate) mod noevent_relations;
 #[cfg(feature = "jit")]
 mod pieces;
+mod places;
 pub(crate) mod program;
 mod queries;
 #[cfg(feature = "jit")]

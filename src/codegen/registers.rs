@@ -1,6 +1,7 @@
 //! The registers of a program, and what is computed in them once a simulation.
 
 use super::instruction::{Instruction, Register};
+use super::places::Places;
 use super::tape::Tape;
 use crate::bytecode::Functions;
 use crate::symbolic::function::FunctionId;
@@ -21,6 +22,9 @@ pub(crate) struct Registers {
     /// Workspaces of linear systems by matrix, and their sizes.
     workspaces: FxHashMap<Expr, u32>,
     systems: Vec<usize>,
+    /// What the tape that is written at the moment has computed.
+    #[serde(skip)]
+    pub(super) places: Places,
     /// Registers with their values.
     pub(super) values: Vec<(Register, f64)>,
     /// What is computed once a simulation.
@@ -37,6 +41,7 @@ impl Registers {
             functions,
             workspaces: FxHashMap::default(),
             systems: Vec::new(),
+            places: Places::default(),
             values: Vec::new(),
             hoisted: Hoisted::default(),
         }

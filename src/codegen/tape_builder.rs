@@ -1,6 +1,6 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
-use super::branches::{Branches, Computed};
+use super::branches::{Branches, Computed, ComputedExpressions};
 use super::hoist::Hoisting;
 use super::instruction::{Call, Instruction, LinearSolve, Register};
 use super::routines::{Routine, Routines};
@@ -26,7 +26,7 @@ pub(super) struct TapeBuilder<'a> {
     pool: &'a Pool,
     registers: &'a mut Registers,
     tape: Tape,
-    known: Computed<Expr>,
+    known: ComputedExpressions,
     /// First registers of what has several results.
     several: Computed<Several>,
     /// Registers of variables that are not in their own.
@@ -41,11 +41,12 @@ pub(super) struct TapeBuilder<'a> {
 
 impl<'a> TapeBuilder<'a> {
     pub(super) fn new(pool: &'a Pool, registers: &'a mut Registers) -> TapeBuilder<'a> {
+        registers.places.begin();
         TapeBuilder {
             pool,
             registers,
             tape: Tape::default(),
-            known: Computed::new(),
+            known: ComputedExpressions::default(),
             several: Computed::new(),
             moved: FxHashMap::default(),
             read: FxHashSet::default(),
@@ -105,13 +106,13 @@ impl<'a> TapeBuilder<'a> {
     pub(super) fn emit(&mut self, root: Expr) -> Register {
         let mut stack = vec![(root, false)];
         while let Some((expr, ready)) = stack.pop() {
-            if self.known.get(&expr, &self.branches).is_some() {
+            if self.known(expr).is_some() {
                 continue;
             }
             if !ready {
                 if let Some(routine) = self.routine(expr) {
                     self.tape.code.push(routine.perform());
-                    self.known.insert(expr, routine.result, &self.branches);
+                    self.note(expr, routine.result);
                     continue;
                 }
                 stack.push((expr, true));
@@ -123,14 +124,22 @@ impl<'a> TapeBuilder<'a> {
                 continue;
             }
             let register = self.instruction(expr);
-            self.known.insert(expr, register, &self.branches);
+            self.note(expr, register);
         }
         self.register(root)
     }
 
     /// Where an expression is that has been computed.
     fn register(&self, expr: Expr) -> Register {
-        self.known.get(&expr, &self.branches).expect("operands are computed first")
+        self.known(expr).expect("operands are computed first")
+    }
+
+    fn known(&self, expr: Expr) -> Option<Register> {
+        self.known.get(expr, &self.registers.places, &self.branches)
+    }
+
+    fn note(&mut self, expr: Expr, register: Register) {
+        self.known.insert(expr, register, &mut self.registers.places, &self.branches);
     }
 
     fn instruction(&mut self, expr: Expr) -> Register {
@@ -233,7 +242,7 @@ impl<'a> TapeBuilder<'a> {
     fn compute_entries(&mut self, list: Expr) {
         let pool = self.pool;
         for entry in pool.entries(list) {
-            if self.known.get(entry, &self.branches).is_none() {
+            if self.known(*entry).is_none() {
                 self.emit(*entry);
             }
         }

@@ -418,12 +418,13 @@ impl Types<'_> {
         if matches!(left.kind, ExpressionKind::Tuple(_)) {
             return false;
         }
-        let of_left = self.value_type_of(left, local);
-        let found = match of_left {
-            Some(ValueType::Record(..)) => of_left,
-            _ => self.value_type_of(right, local),
-        };
-        let Some(ValueType::Record(_, fields)) = found else { return false };
+        let fields = [left, right].into_iter().find_map(|side| {
+            match self.may_be_record(side, local).then(|| self.value_type_of(side, local))? {
+                Some(ValueType::Record(_, fields)) => Some(fields),
+                _ => None,
+            }
+        });
+        let Some(fields) = fields else { return false };
         for name in fields.keys() {
             let kind = EquationKind::Equal {
                 left: self.functions.field(left, *name),

@@ -15,6 +15,7 @@ use crate::source::Span;
 use crate::syntax::ast::{self, CausalityPrefix, Expression, Statement};
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
+use rustc_hash::FxBuildHasher;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub struct FlatModel {
     /// The class's string.
     pub description: Option<Arc<str>>,
     /// Variables by flat name, in order of declaration.
-    pub variables: IndexMap<Arc<str>, Variable>,
+    pub variables: IndexMap<Arc<str>, Variable, FxBuildHasher>,
     /// Equations, loops kept, branches on parameters chosen, connections resolved.
     pub equations: Vec<ast::Equation>,
     /// Initial equations.

@@ -171,7 +171,7 @@ impl Instantiation<'_> {
         if reference.as_ident().is_some_and(|name| name == "time") {
             return Some(Vec::new());
         }
-        let at = *self.classes.tree.variable_of.get(path(reference).as_str())?;
+        let at = *self.classes.tree.variable_of.get(&*path(reference))?;
         let dims = self.classes.tree.variables[at].0.dims.clone();
         let subscripts = reference.parts.last()?.subscripts.clone();
         self.subscripted_shape(dims, &subscripts)

@@ -113,7 +113,7 @@ impl Types<'_> {
     }
 
     fn named(&self, reference: &ComponentReference) -> Option<&Variable> {
-        let at = self.tree.variable_of.get(path(reference).as_str())?;
+        let at = self.tree.variable_of.get(&*path(reference))?;
         Some(&self.tree.variables[*at].0)
     }
 
@@ -302,7 +302,7 @@ impl Visit for MostVariable<'_, '_> {
         if let Some(found) = self.types.variability_of(reference)
             && self.most.as_ref().is_none_or(|(_, known)| found > *known)
         {
-            self.most = Some((path(reference), found));
+            self.most = Some((path(reference).into_owned(), found));
         }
         walk_reference(self, reference);
     }

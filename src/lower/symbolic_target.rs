@@ -182,8 +182,7 @@ impl Target for Builder<'_> {
     }
 
     fn sizes(&self, path: &str) -> Option<Vec<usize>> {
-        let variable = self.flat.variables.get(path)?;
-        let position = self.flat.variables.get_index_of(path)?;
+        let (position, _, variable) = self.flat.variables.get_full(path)?;
         let is_number = variable.base != BaseType::String || self.is_varying_text(position);
         is_number.then(|| variable.dims.clone())
     }

@@ -56,15 +56,16 @@ fn differentiate_nodes(
 ) -> Vec<Expr> {
     let mut derivatives = Derivatives::new(pool);
     derivatives.fill(nodes, seed);
-    let of = derivatives.of;
+    let found: Vec<Option<Expr>> = exprs.iter().map(|expr| derivatives.get(*expr)).collect();
     let zero = pool.constant(0.0);
-    exprs.iter().map(|expr| of.get(expr).copied().unwrap_or(zero)).collect()
+    found.into_iter().map(|derivative| derivative.unwrap_or(zero)).collect()
 }
 
 /// Derivatives of the nodes done so far; those that are zero are not kept.
 struct Derivatives<'a> {
     pool: &'a mut Pool,
-    of: FxHashMap<Expr, Expr>,
+    /// Node and derivative, ascending.
+    of: Vec<(Expr, Expr)>,
     /// The right sides of the derivatives of linear systems, `None` where these are zero.
     rights: FxHashMap<System, Option<Expr>>,
     /// Whether norms have one-sided derivatives where they are zero.
@@ -76,7 +77,7 @@ type System = (Expr, Expr, bool);
 
 impl Derivatives<'_> {
     fn new(pool: &mut Pool) -> Derivatives<'_> {
-        let (of, rights) = (FxHashMap::default(), FxHashMap::default());
+        let (of, rights) = (Vec::new(), FxHashMap::default());
         Derivatives { pool, of, rights, is_forward: false }
     }
 
@@ -84,7 +85,7 @@ impl Derivatives<'_> {
     fn fill(&mut self, nodes: &[Expr], seed: &dyn Fn(VarId) -> Option<Expr>) {
         for &node in nodes {
             if let Some(derivative) = self.derivative_of(node, seed) {
-                self.of.insert(node, derivative);
+                self.of.push((node, derivative));
             }
         }
     }
@@ -121,7 +122,8 @@ impl Derivatives<'_> {
     }
 
     fn get(&self, expr: Expr) -> Option<Expr> {
-        self.of.get(&expr).copied()
+        let at = self.of.binary_search_by_key(&expr, |(node, _)| *node).ok()?;
+        Some(self.of[at].1)
     }
 
     fn sum(&mut self, a: Expr, b: Expr) -> Option<Expr> {

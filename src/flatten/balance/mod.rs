@@ -16,6 +16,7 @@ use crate::syntax::ast::{
     CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
     Statement, StatementKind,
 };
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// The most classes that one message names.
@@ -161,7 +162,7 @@ fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<V
         return Some(Vec::new());
     }
     let last = reference.parts.last()?;
-    let variable = model.variables.get(path(reference).as_str())?;
+    let variable = model.variables.get(&*path(reference))?;
     if last.subscripts.is_empty() {
         return Some(variable.dims.clone());
     }
@@ -179,7 +180,10 @@ fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<V
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.
-pub fn path(reference: &ComponentReference) -> String {
+pub fn path(reference: &ComponentReference) -> Cow<'static, str> {
+    if let [part] = &reference.parts[..] {
+        return part.name.as_str().into();
+    }
     let mut path = String::new();
     for (at, part) in reference.parts.iter().enumerate() {
         if at > 0 {
@@ -201,7 +205,7 @@ pub fn path(reference: &ComponentReference) -> String {
             path.push_str(&format!("[{}]", numbers.join(",")));
         }
     }
-    path
+    path.into()
 }
 
 /// Number of scalars of variables, and of records, whose components begin with their names.
@@ -225,10 +229,10 @@ fn targets(statements: &[Statement], out: &mut BTreeSet<String>) {
     for statement in statements {
         match &statement.kind {
             StatementKind::Assign { target, .. } => {
-                out.insert(path(target));
+                out.insert(path(target).into_owned());
             }
             StatementKind::MultiAssign { targets, .. } => {
-                out.extend(targets.iter().flatten().map(path));
+                out.extend(targets.iter().flatten().map(|target| path(target).into_owned()));
             }
             StatementKind::If { branches, otherwise } => {
                 branches.iter().for_each(|(_, body)| targets(body, out));

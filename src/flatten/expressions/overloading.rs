@@ -28,10 +28,8 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let types =
-            (self.types().element_type_of(left, local), self.types().element_type_of(right, local));
-        let records: Vec<Name> =
-            [&types.0, &types.1].into_iter().filter_map(|t| record_name(t.as_ref())).collect();
+        let types = [left, right].map(|operand| self.types().record_of(operand, local));
+        let records: Vec<Name> = types.iter().flatten().cloned().collect();
         if records.is_empty() {
             return Ok(None);
         }
@@ -61,8 +59,7 @@ impl Instantiation<'_> {
         // One operand may be converted by a constructor of the other's record (MLS §14.3).
         for record in &records {
             for at in 0..2 {
-                let given = [types.0.as_ref(), types.1.as_ref()][at];
-                if record_name(given).as_ref() == Some(record) {
+                if types[at].as_ref() == Some(record) {
                     continue;
                 }
                 let one = std::slice::from_ref(&both[at]);
@@ -89,8 +86,7 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let operand_type = self.types().element_type_of(operand, local);
-        let Some(record) = record_name(operand_type.as_ref()) else { return Ok(None) };
+        let Some(record) = self.types().record_of(operand, local) else { return Ok(None) };
         let call = self.operator_call(&record, sign, std::slice::from_ref(operand), local, span)?;
         match (call, &operand.kind) {
             (Some(call), _) => Ok(Some(call)),
@@ -135,8 +131,7 @@ impl Instantiation<'_> {
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
         let Some(operand) = arguments.positional.first() else { return Ok(None) };
-        let operand_type = self.types().element_type_of(operand, local);
-        let record = record_name(operand_type.as_ref());
+        let record = self.types().record_of(operand, local);
         let known = |record: Name| {
             let class = *self.functions.record_scopes.get(&record)?;
             Some((record, class))
@@ -224,7 +219,28 @@ impl Types<'_> {
 
     /// The record that an expression, or the elements of an array constructor, are of.
     pub fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
+        if !self.may_be_record(e, local) {
+            return None;
+        }
         record_name(self.element_type_of(e, local).as_ref())
+    }
+
+    /// Whether a value, or the elements of an array constructor, may be records, told by its outermost
+    /// operation: what is below operations is looked at where these are.
+    pub fn may_be_record(&self, e: &Expression, local: &Local) -> bool {
+        match &e.kind {
+            ExpressionKind::Array(elements) => {
+                elements.first().is_some_and(|element| self.may_be_record(element, local))
+            }
+            ExpressionKind::If { otherwise, .. } => self.may_be_record(otherwise, local),
+            ExpressionKind::Unary { operand, .. } => self.may_be_record(operand, local),
+            ExpressionKind::Reference(reference) => {
+                let first = reference.parts.first().map(|part| part.name);
+                local.types.iter().any(|(name, _)| Some(*name) == first)
+            }
+            ExpressionKind::Call { .. } | ExpressionKind::Field { .. } => true,
+            _ => false,
+        }
     }
 
     /// Whether a call with these arguments can be one of the function, without conversions but

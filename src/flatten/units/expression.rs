@@ -28,7 +28,7 @@ pub fn compared(operator: BinaryOperator) -> Option<&'static str> {
 impl Units {
     /// That of a variable. `time` has none: ramps are written `slope*time` with the unit of the value.
     pub fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
-        self.known.get(path(reference).as_str()).copied()
+        self.known.get(&*path(reference)).copied()
     }
 
     /// The dimension, where the units of all that matters are known.

@@ -6,6 +6,7 @@ use super::continuation::Continued;
 use super::hardest::{Hardest, hardest};
 use super::stored::Request;
 pub use super::translated::Translated;
+use super::translated::declarations;
 use super::warnings::warn;
 use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
@@ -141,6 +142,10 @@ pub(in crate::script) fn flat_model_of<'m>(
     Ok(model.flat.get_or_init(|| flat))
 }
 
+/// A flat model with more equations is given back before its program is made, and made again where
+/// somebody asks for it: it takes a third of the memory of a translation.
+const MOST_KEPT: usize = 10_000;
+
 /// A model, translated whether it has been or not.
 pub(super) fn compiled(
     session: &mut Session,
@@ -148,9 +153,14 @@ pub(super) fn compiled(
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
     let sorted = causalize::causalize(&flat).map_err(|error| vec![error])?;
+    let (declarations, flat) = (declarations(&flat), Some(flat));
+    let flat = flat.filter(|flat| flat.equations.len() <= MOST_KEPT);
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
     warn(session, program.warnings());
-    Ok(Translated::new(problem, flat, program))
+    Ok(match flat {
+        Some(flat) => Translated::new(problem, flat, program),
+        None => Translated::without_flat_model(problem, declarations, program),
+    })
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.

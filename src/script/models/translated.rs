@@ -16,7 +16,7 @@ pub struct Translated {
     pub declarations: Declarations,
     /// The compiled model.
     pub program: Arc<Program>,
-    /// The flat model; a model that was kept has none until somebody asks.
+    /// The flat model; a model that was kept, or is large, has none until somebody asks.
     pub(super) flat: OnceLock<FlatModel>,
 }
 
@@ -49,10 +49,7 @@ pub struct Declaration {
 impl Translated {
     /// A model with its flat model.
     pub fn new(problem: &str, flat: FlatModel, program: Arc<Program>) -> Translated {
-        let declared = |(name, variable): (&Arc<str>, &flatten::Variable)| {
-            (name.clone(), Declaration::of(variable))
-        };
-        let declarations = flat.variables.iter().map(declared).collect();
+        let declarations = declarations(&flat);
         Translated { problem: problem.to_owned(), declarations, program, flat: flat.into() }
     }
 
@@ -80,6 +77,14 @@ impl Translated {
         let unknown = self.declarations.values().filter(is_unknown);
         unknown.map(|variable| variable.dims.iter().product::<usize>()).sum()
     }
+}
+
+/// What the variables of a flat model are declared as.
+pub(super) fn declarations(flat: &FlatModel) -> Declarations {
+    let declared = |(name, variable): (&Arc<str>, &flatten::Variable)| {
+        (name.clone(), Declaration::of(variable))
+    };
+    flat.variables.iter().map(declared).collect()
 }
 
 impl Declaration {

@@ -65,18 +65,46 @@ struct Factors {
     /// column and position in the values of the pattern.
     entry_starts: Vec<u32>,
     entries: Vec<(u32, u32)>,
-    /// L without its diagonal of ones, by rows.
-    lower_starts: Vec<u32>,
-    lower_columns: Vec<u32>,
-    lower: Vec<f64>,
-    /// U without its diagonal, by rows.
-    upper_starts: Vec<u32>,
-    upper_columns: Vec<u32>,
-    upper: Vec<f64>,
+    /// L without its diagonal of ones.
+    lower: Rows,
+    /// U without its diagonal.
+    upper: Rows,
     /// 1 / u_ii, as many as there are rows with sparse pivots.
     inverse_diagonal: Vec<f64>,
     /// The rows after these, and the columns after these.
     last: DenseLu,
+}
+
+/// Columns and values by rows. Side by side: rows are short, and to find both in two places costs as
+/// much as what is computed with them.
+#[derive(Debug, Clone)]
+struct Rows {
+    /// Where every row begins and ends.
+    ranges: Vec<(u32, u32)>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl Rows {
+    /// With values of zero.
+    fn of(columns: impl Iterator<Item = Vec<u32>>) -> Rows {
+        let (mut ranges, mut entries) = (Vec::new(), Vec::new());
+        for row in columns {
+            let begin = entries.len() as u32;
+            entries.extend(row.into_iter().map(|column| (column, 0.0)));
+            ranges.push((begin, entries.len() as u32));
+        }
+        Rows { ranges, entries }
+    }
+
+    fn row(&self, i: usize) -> &[(u32, f64)] {
+        let (begin, end) = self.ranges[i];
+        &self.entries[begin as usize..end as usize]
+    }
+
+    fn row_mut(&mut self, i: usize) -> &mut [(u32, f64)] {
+        let (begin, end) = self.ranges[i];
+        &mut self.entries[begin as usize..end as usize]
+    }
 }
 
 impl SparseLu {
@@ -117,7 +145,7 @@ impl SparseLu {
     #[cfg(test)]
     pub(super) fn nonzeros(&self) -> usize {
         let factors = self.others.as_ref().or(self.first.as_ref());
-        factors.map_or(0, |f| f.rows.len() + f.lower.len() + f.upper.len())
+        factors.map_or(0, |f| f.rows.len() + f.lower.entries.len() + f.upper.entries.len())
     }
 
     /// Leaves NaN if nothing has been factorised.
@@ -148,15 +176,16 @@ impl Factors {
     ) -> Result<(), SingularMatrix> {
         let n = self.inverse_diagonal.len();
         for i in 0..n {
-            let upper = row(&self.upper_starts, i);
             work[i] = 0.0;
-            self.upper_columns[upper.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
+            self.upper.row(i).iter().for_each(|(j, _)| work[*j as usize] = 0.0);
             self.eliminate(i, values, work);
             let pivot = work[i];
             let mut largest = pivot.abs();
-            for (j, u) in self.upper_columns[upper.clone()].iter().zip(&mut self.upper[upper]) {
+            for (j, u) in self.upper.row_mut(i) {
                 *u = work[*j as usize];
-                largest = largest.max(u.abs());
+                if u.abs() > largest {
+                    largest = u.abs();
+                }
             }
             if pivot == 0.0 || !pivot.is_finite() || pivot.abs() < threshold * largest {
                 return Err(SingularMatrix);
@@ -176,18 +205,17 @@ impl Factors {
 
     /// Computes row i of L, and in `work`, where zeros stand for its other entries, of U.
     fn eliminate(&mut self, i: usize, values: &[f64], work: &mut [f64]) {
-        let lower = row(&self.lower_starts, i);
-        self.lower_columns[lower.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
+        let (lower, upper) = (self.lower.row_mut(i), &self.upper);
+        lower.iter().for_each(|(j, _)| work[*j as usize] = 0.0);
         for (column, position) in &self.entries[row(&self.entry_starts, i)] {
             work[*column as usize] = values[*position as usize];
         }
-        for (k, l) in self.lower_columns[lower.clone()].iter().zip(&mut self.lower[lower]) {
+        for (k, l) in lower {
             let k = *k as usize;
             let factor = work[k] * self.inverse_diagonal[k];
             *l = factor;
             if factor != 0.0 {
-                let row = row(&self.upper_starts, k);
-                for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
+                for (j, u) in upper.row(k) {
                     work[*j as usize] -= factor * u;
                 }
             }
@@ -198,8 +226,7 @@ impl Factors {
         let n = self.inverse_diagonal.len();
         for i in 0..self.rows.len() {
             let mut sum = b[self.rows[i] as usize];
-            let row = row(&self.lower_starts, i);
-            for (k, l) in self.lower_columns[row.clone()].iter().zip(&self.lower[row]) {
+            for (k, l) in self.lower.row(i) {
                 sum -= l * work[*k as usize];
             }
             work[i] = sum;
@@ -210,8 +237,7 @@ impl Factors {
         }
         for i in (0..n).rev() {
             let mut sum = work[i];
-            let row = row(&self.upper_starts, i);
-            for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
+            for (j, u) in self.upper.row(i) {
                 sum -= u * work[*j as usize];
             }
             work[i] = sum * self.inverse_diagonal[i];
@@ -364,27 +390,22 @@ impl Elimination {
                 entries[new_row as usize].push((*new_column, position as u32));
             }
         }
-        let lower = rows.iter().map(|row| self.lower[*row as usize].clone()).collect();
+        let lower = rows.iter().map(|row| self.lower[*row as usize].clone());
         let upper = (0u32..).zip(&rows[..n - kept.len()]).map(|(i, row)| {
             let columns = self.rows[*row as usize].iter().map(|(j, _)| new_column[*j]);
             let mut columns: Vec<u32> = columns.filter(|j| *j != i).collect();
             columns.sort_unstable();
             columns
         });
+        let (lower, upper) = (Rows::of(lower), Rows::of(upper));
         let (entry_starts, entries) = compressed(entries);
-        let (lower_starts, lower_columns) = compressed(lower);
-        let (upper_starts, upper_columns) = compressed(upper.collect());
         Factors {
+            lower,
+            upper,
             rows,
             columns,
             entry_starts,
             entries,
-            lower: vec![0.0; lower_columns.len()],
-            lower_starts,
-            lower_columns,
-            upper: vec![0.0; upper_columns.len()],
-            upper_starts,
-            upper_columns,
             inverse_diagonal: vec![0.0; n - kept.len()],
             last: DenseLu::new(kept.len()),
         }
