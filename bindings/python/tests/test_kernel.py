@@ -51,6 +51,18 @@ def test_figures_are_shown(notebook):
     assert "image/svg+xml" in kinds or "image/png" in kinds
 
 
+def test_commands_of_ipython_are_refused(notebook):
+    one, two = notebook("%matplotlib inline", "1+1", allow_errors=True)
+    [error] = [output for output in one if output.output_type == "error"]
+    assert error.ename == "unknown-command" and "`%matplotlib`" in error.evalue
+    assert "2" in text(two)
+
+
+def test_long_output_is_whole(notebook):
+    [outputs] = notebook("for i in 1:3000 loop print(String(i)); end for;")
+    assert text(outputs).split() == [str(k) for k in range(1, 3001)]
+
+
 def test_help(notebook):
     [outputs] = notebook("?simulateModel")
     assert "stopTime" in text(outputs)
@@ -65,6 +77,10 @@ def test_completion_and_completeness():
     Quiet.__init__(quiet)
     found = quiet.do_complete("x = simulateM", 13)
     assert "simulateModel" in found["matches"] and found["cursor_start"] == 4
+    # In the middle of a word all of it is replaced.
+    found = quiet.do_complete("x = simulateMo + 1", 10)
+    assert "simulateModel" in found["matches"]
+    assert (found["cursor_start"], found["cursor_end"]) == (4, 14)
     assert quiet.do_is_complete("f(1,")["status"] == "incomplete"
     assert quiet.do_is_complete("a = 1;")["status"] == "complete"
 
