@@ -7,6 +7,20 @@ use std::collections::HashSet;
 
 /// The results of one simulation. Time does not decrease; an event is two points with equal time,
 /// the values before and after it.
+///
+/// ```
+/// use gapilib::results::{ResultTable, Series, Values};
+///
+/// let mut table = ResultTable::new(vec![0.0, 1.0]);
+/// table.series.push(Series {
+///     name: "x".to_owned(),
+///     unit: "V".to_owned(),
+///     description: String::new(),
+///     values: Values::Trajectory(vec![2.0, 4.0]),
+/// });
+/// assert_eq!(table.column("x").unwrap(), [2.0, 4.0]);
+/// assert_eq!(table.interpolate("x", &[0.5]).unwrap(), [3.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultTable {
     /// The name of time: `time`, or `Time` as some programs write it.

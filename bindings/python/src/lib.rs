@@ -13,7 +13,9 @@ mod screen;
 mod search;
 mod session;
 mod simulator;
+mod stored;
 mod values;
+mod watch;
 mod worker;
 
 use pyo3::prelude::*;
@@ -38,5 +40,6 @@ fn _gapilib(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulator::Simulator>()?;
     module.add_class::<search::Optimizer>()?;
     module.add_class::<operators::Random>()?;
+    module.add_function(wrap_pyfunction!(stored::restored, module)?)?;
     operators::add(module)
 }

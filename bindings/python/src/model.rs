@@ -14,7 +14,7 @@ use indexmap::IndexMap;
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyIterator, PyList};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -244,9 +244,9 @@ fn keep_only(table: &mut ResultTable, wanted: Option<&[String]>) -> Result<(), F
 /// and after it.
 #[pyclass(frozen, module = "gapilib")]
 pub(crate) struct SimulationResult {
-    model: String,
-    table: Arc<ResultTable>,
-    statistics: Statistics,
+    pub(crate) model: String,
+    pub(crate) table: Arc<ResultTable>,
+    pub(crate) statistics: Statistics,
 }
 
 #[pymethods]
@@ -320,7 +320,17 @@ impl SimulationResult {
         self.table.time.len()
     }
 
-    /// A data frame of pandas with time as index: all variables, or those of `names`.
+    /// The names of the variables, as a data frame of pandas has them.
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        PyList::new(py, self.names())?.try_iter()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<crate::stored::Reduced<'py>> {
+        crate::stored::reduced(py, self)
+    }
+
+    /// A data frame of pandas with time as index: all variables, or those of `names`. Units are in
+    /// its `attrs["units"]`.
     #[pyo3(signature = (names=None))]
     fn to_pandas<'py>(
         &self,
@@ -338,7 +348,9 @@ impl SimulationResult {
         let arguments = PyDict::new(py);
         arguments.set_item("index", index)?;
         arguments.set_item("copy", false)?;
-        pandas.getattr("DataFrame")?.call((columns,), Some(&arguments))
+        let frame = pandas.getattr("DataFrame")?.call((columns,), Some(&arguments))?;
+        frame.getattr("attrs")?.set_item("units", self.units())?;
+        Ok(frame)
     }
 
     /// Writes all variables into a file; its extension, .mat or .csv, selects the format.

@@ -2,6 +2,7 @@
 
 use crate::errors::raised_fault;
 use crate::values;
+use crate::watch::Watched;
 use gapilib::diag::Fault;
 use gapilib::identify::problem::{Experiment, Failed, ModelSimulator, Observation, Simulate};
 use gapilib::identify::{CompiledModel, Model as _};
@@ -11,7 +12,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often the signals of the user are looked at.
 const TICK: Duration = Duration::from_millis(20);
@@ -38,9 +39,24 @@ pub(crate) struct Simulator {
     parameters: Vec<String>,
     points: Points,
     workers: Arc<Vec<Mutex<ModelSimulator>>>,
-    pool: Arc<rayon::ThreadPool>,
+    pool: Mutex<Pool>,
     /// While one call uses the workers, another one waits.
     busy: Arc<Mutex<()>>,
+    watched: Arc<Watched>,
+}
+
+/// The threads for many simulations. A forked process has none of them and makes its own.
+struct Pool {
+    process: u32,
+    threads: Arc<rayon::ThreadPool>,
+}
+
+impl Pool {
+    fn new(threads: usize) -> PyResult<Pool> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let threads = pool.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Pool { process: std::process::id(), threads: Arc::new(threads) })
+    }
 }
 
 /// The answer to one row.
@@ -77,15 +93,25 @@ impl Simulator {
         let make = || ModelSimulator::new(std::slice::from_ref(&experiment)).map(Mutex::new);
         let workers: Result<Vec<_>, Fault> = (0..threads).map(|_| make()).collect();
         let workers = workers.map_err(|fault| raised_fault(py, fault))?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(Simulator {
             parameters,
             points,
             workers: Arc::new(workers),
-            pool: Arc::new(pool),
+            pool: Mutex::new(Pool::new(threads)?),
             busy: Arc::new(Mutex::new(())),
+            watched: Watched::new()?,
         })
+    }
+
+    /// The threads of this process.
+    fn threads(&self) -> PyResult<Arc<rayon::ThreadPool>> {
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        if pool.process != std::process::id() {
+            let new = Pool::new(self.workers.len())?;
+            // Its end would wait for threads that are not here.
+            std::mem::forget(std::mem::replace(&mut *pool, new));
+        }
+        Ok(pool.threads.clone())
     }
 
     fn n_values(&self) -> usize {
@@ -118,26 +144,35 @@ impl Simulator {
         count: usize,
         work: impl Fn(&mut ModelSimulator, usize) -> Row + Send + Sync + 'static,
     ) -> PyResult<Vec<Row>> {
-        let (workers, pool, busy) = (self.workers.clone(), self.pool.clone(), self.busy.clone());
-        let (done, is_done) = mpsc::channel();
-        let stop = Arc::new(AtomicBool::new(false));
-        let stopped = stop.clone();
-        let run = move || {
-            let _alone = busy.lock().unwrap_or_else(PoisonError::into_inner);
+        let (workers, pool) = (self.workers.clone(), self.threads()?);
+        self.waited(py, move |stop| {
             for worker in workers.iter() {
                 let mut worker = worker.lock().unwrap_or_else(PoisonError::into_inner);
-                worker.cancel_by(Some(stopped.clone()));
+                worker.cancel_by(Some(stop.clone()));
             }
             let one = |row: usize| {
                 let own = rayon::current_thread_index().unwrap_or(0);
                 let mut worker = workers[own].lock().unwrap_or_else(PoisonError::into_inner);
                 work(&mut worker, row)
             };
-            let rows: Vec<Row> =
-                pool.install(|| (0..count).into_par_iter().with_min_len(1).map(one).collect());
-            drop(done.send(rows));
+            pool.install(|| (0..count).into_par_iter().with_min_len(1).map(one).collect())
+        })
+    }
+
+    /// Works on another thread and waits for it; Ctrl-C sets the flag that the work is given.
+    fn waited<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(Arc<AtomicBool>) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let busy = self.busy.clone();
+        let (done, is_done) = mpsc::channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = stop.clone();
+        let run = move || {
+            let _alone = busy.lock().unwrap_or_else(PoisonError::into_inner);
+            drop(done.send(work(stopped)));
         };
-        // A call of its own for one row would cost more than a short simulation.
         std::thread::Builder::new().spawn(run)?;
         let is_done = Mutex::new(is_done);
         loop {
@@ -145,7 +180,7 @@ impl Simulator {
                 is_done.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK)
             });
             match received {
-                Ok(rows) => return Ok(rows),
+                Ok(answer) => return Ok(answer),
                 Err(mpsc::RecvTimeoutError::Timeout) => {
                     if let Err(interrupt) = py.check_signals() {
                         stop.store(true, Ordering::SeqCst);
@@ -161,16 +196,34 @@ impl Simulator {
         }
     }
 
-    /// One row on the calling thread.
-    fn one(&self, py: Python<'_>, values: &[f64]) -> PyResult<Row> {
-        let size = self.n_values();
-        Ok(py.detach(|| {
-            let _alone = self.busy.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut worker = self.workers[0].lock().unwrap_or_else(PoisonError::into_inner);
-            worker.cancel_by(None);
-            let mut row = vec![f64::NAN; size];
-            worker.simulate(values, &mut row).map(|()| row)
-        }))
+    /// Works on the calling thread, where a call of another one would cost more than a short
+    /// simulation; what turns out to be long is begun again on another one, and Ctrl-C ends it.
+    fn one<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl Fn(&mut ModelSimulator) -> Result<T, Failed> + Send + Sync + 'static,
+    ) -> PyResult<Result<T, Failed>> {
+        if !self.watched.is_slow() {
+            let answer = py.detach(|| {
+                let _alone = self.busy.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut worker = self.workers[0].lock().unwrap_or_else(PoisonError::into_inner);
+                worker.cancel_by(Some(self.watched.begin()));
+                let answer = work(&mut worker);
+                if self.watched.end() { None } else { Some(answer) }
+            });
+            if let Some(answer) = answer {
+                return Ok(answer);
+            }
+        }
+        let (workers, watched) = (self.workers.clone(), self.watched.clone());
+        self.waited(py, move |stop| {
+            let mut worker = workers[0].lock().unwrap_or_else(PoisonError::into_inner);
+            worker.cancel_by(Some(stop));
+            let begin = Instant::now();
+            let answer = work(&mut worker);
+            watched.lasted(begin.elapsed());
+            answer
+        })
     }
 }
 
@@ -204,7 +257,12 @@ impl Simulator {
         if count != 1 {
             return Err(PyValueError::new_err("one row of values; `many` takes several"));
         }
-        let row = self.one(py, &values)?.map_err(|failed| failure(py, failed))?;
+        let size = self.n_values();
+        let row = self.one(py, move |worker| {
+            let mut row = vec![f64::NAN; size];
+            worker.simulate(&values, &mut row).map(|()| row)
+        });
+        let row = row?.map_err(|failed| failure(py, failed))?;
         let mut out = Vec::with_capacity(row.len());
         self.by_points(&row, 1, &mut out);
         Ok(PyArray1::from_vec(py, out).reshape(self.shape())?.into_any())
@@ -264,25 +322,14 @@ impl Simulator {
             return Err(PyValueError::new_err("derivatives are computed at one row of values"));
         }
         let size = self.n_values();
-        let (row, derivatives, exact) = py.detach(|| {
-            let _alone = self.busy.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut worker = self.workers[0].lock().unwrap_or_else(PoisonError::into_inner);
-            worker.cancel_by(None);
+        let answer = self.one(py, move |worker| {
             let (mut row, mut derivatives) = (vec![f64::NAN; size], vec![f64::NAN; size * width]);
-            let exact = worker.sensitivities(&values, &mut row, &mut derivatives).map(|exact| {
-                if exact { Ok(()) } else { Err(worker.sensitivity_refusal().map(str::to_owned)) }
-            });
-            (row, derivatives, exact)
+            let is_exact = worker.sensitivities(&values, &mut row, &mut derivatives)?;
+            let refusal = || worker.sensitivity_refusal().map(str::to_owned);
+            Ok(if is_exact { Ok((row, derivatives)) } else { Err(refusal()) })
         });
-        if let Err(refusal) = exact.map_err(|failed| failure(py, failed))? {
-            let why = refusal.unwrap_or_else(|| "the model has events".to_owned());
-            let fault = Fault::new(
-                gapilib::registry::BAD_OPTION,
-                format!("there are no exact derivatives because {why}"),
-            );
-            let fault = fault.help("take differences of simulations instead");
-            return Err(raised_fault(py, fault));
-        }
+        let answer = answer?.map_err(|failed| failure(py, failed))?;
+        let (row, derivatives) = answer.map_err(|refusal| without_derivatives(py, refusal))?;
         let (mut out, mut by_point) = (Vec::new(), Vec::new());
         self.by_points(&row, 1, &mut out);
         self.by_points(&derivatives, width, &mut by_point);
@@ -302,6 +349,14 @@ impl Simulator {
             self.parameters.join(", ")
         )
     }
+}
+
+/// Why there are no exact derivatives, as an exception.
+fn without_derivatives(py: Python<'_>, refusal: Option<String>) -> PyErr {
+    let why = refusal.unwrap_or_else(|| "the model has events".to_owned());
+    let message = format!("there are no exact derivatives because {why}");
+    let fault = Fault::new(gapilib::registry::BAD_OPTION, message);
+    raised_fault(py, fault.help("take differences of simulations instead"))
 }
 
 /// A failed simulation as an exception.

@@ -1,7 +1,7 @@
 //! Values of scripts as Python's, and back.
 
 use gapilib::value::{ArrayValue, Elements, EnumerationValue, Value};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
@@ -126,18 +126,15 @@ fn elements(
     Ok(match kind {
         "f" => {
             let array = typed("float64")?;
-            let values: PyReadonlyArrayDyn<'_, f64> = array.extract()?;
-            Elements::Real(values.as_slice()?.to_vec())
+            Elements::Real(owned(&array)?.0)
         }
         "i" | "u" => {
             let array = typed("int64")?;
-            let values: PyReadonlyArrayDyn<'_, i64> = array.extract()?;
-            Elements::Integer(values.as_slice()?.to_vec())
+            Elements::Integer(owned(&array)?.0)
         }
         "b" => {
             let array = typed("bool_")?;
-            let values: PyReadonlyArrayDyn<'_, bool> = array.extract()?;
-            Elements::Boolean(values.as_slice()?.to_vec())
+            Elements::Boolean(owned(&array)?.0)
         }
         "U" => {
             let values: Vec<String> = array.call_method0("ravel")?.extract()?;
@@ -155,6 +152,19 @@ fn unknown(value: &Bound<'_, PyAny>) -> PyErr {
     ))
 }
 
+/// The elements of an array in C order, and its shape.
+fn owned<T: Element + Clone>(array: &Bound<'_, PyAny>) -> PyResult<(Vec<T>, Vec<usize>)> {
+    let values: PyReadonlyArrayDyn<'_, T> = array.extract()?;
+    let shape = PyUntypedArrayMethods::shape(&*values).to_vec();
+    if let Ok(slice) = values.as_slice() {
+        return Ok((slice.to_vec(), shape));
+    }
+    // Not aligned, as arrays are that another process has sent.
+    let copy = array.call_method0("copy")?;
+    let copy: PyReadonlyArrayDyn<'_, T> = copy.extract()?;
+    Ok((copy.as_slice()?.to_vec(), shape))
+}
+
 /// Rows of numbers: an array of one or two dimensions with so many columns.
 pub(crate) fn rows(
     value: &Bound<'_, PyAny>,
@@ -163,12 +173,10 @@ pub(crate) fn rows(
 ) -> PyResult<(Vec<f64>, usize)> {
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("ascontiguousarray", (value, numpy.getattr("float64")?))?;
-    let array: PyReadonlyArrayDyn<'_, f64> = array.extract()?;
-    let values = array.as_slice()?.to_vec();
-    let shape = numpy::PyUntypedArrayMethods::shape(&*array);
-    match shape {
-        [n] if *n == columns => Ok((values, 1)),
-        [n, m] if *m == columns => Ok((values, *n)),
+    let (values, shape) = owned(&array)?;
+    match shape[..] {
+        [n] if n == columns => Ok((values, 1)),
+        [n, m] if m == columns => Ok((values, n)),
         _ => Err(PyValueError::new_err(format!(
             "{what} must have {columns} columns, but the shape is {shape:?}"
         ))),

@@ -10,18 +10,25 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// Stack of the thread in bytes: functions written in Modelica may call themselves a thousand deep.
 const STACK: usize = 256 << 20;
 /// How often the signals of the user are looked at.
 const TICK: Duration = Duration::from_millis(20);
+/// How many bytes are printed at once.
+const LARGE: usize = 1 << 16;
 
 type Work = Box<dyn FnOnce(&mut Session) + Send>;
 
 /// The thread of a session; it ends with this value.
 pub(crate) struct Worker {
-    work: Sender<Work>,
+    /// The process that it was made in: a forked one has no such thread.
+    process: u32,
+    /// `None` at its end.
+    work: Option<Sender<Work>>,
+    thread: Option<JoinHandle<()>>,
     /// While one work is done, another one waits.
     busy: Mutex<()>,
     events: Arc<Mutex<Receiver<Event>>>,
@@ -50,10 +57,13 @@ impl Worker {
             drop(opened.send(Ok(())));
             with_stack(STACK - (4 << 20), || jobs.into_iter().for_each(|job| job(&mut session)));
         };
-        std::thread::Builder::new().name("gapilib".to_owned()).stack_size(STACK).spawn(live)?;
+        let thread = std::thread::Builder::new().name("gapilib".to_owned()).stack_size(STACK);
+        let thread = thread.spawn(live)?;
         is_open.recv().map_err(|_| PyRuntimeError::new_err("the session did not start"))??;
         Ok(Worker {
-            work,
+            process: std::process::id(),
+            work: Some(work),
+            thread: Some(thread),
             busy: Mutex::new(()),
             events: Arc::new(Mutex::new(received)),
             finished: events,
@@ -73,6 +83,7 @@ impl Worker {
     /// # Errors
     ///
     /// What the user interrupted it with, such as `KeyboardInterrupt`: the session is as it was left.
+    /// `RuntimeError` in a forked process.
     pub(crate) fn call<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -89,6 +100,13 @@ impl Worker {
         py: Python<'_>,
         job: impl FnOnce(&mut Session) -> T + Send + 'static,
     ) -> PyResult<(T, String)> {
+        if self.process != std::process::id() {
+            return Err(PyRuntimeError::new_err(format!(
+                "the session belongs to the process {}: make a session in each process, or start \
+                 processes with the method \"spawn\"",
+                self.process
+            )));
+        }
         let _alone = self.busy.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         self.stop.store(false, Ordering::SeqCst);
         let (answer, answered) = mpsc::channel();
@@ -99,7 +117,8 @@ impl Worker {
             drop(answer.send(job(session)));
         });
         let gone = || PyRuntimeError::new_err("the session has ended after an internal error");
-        self.work.send(work).map_err(|_| gone())?;
+        let sent = self.work.as_ref().map(|to| to.send(work));
+        sent.ok_or_else(gone)?.map_err(|_| gone())?;
         let mut errors = String::new();
         let interrupt = self.wait(py, &mut errors);
         let answer = answered.recv().map_err(|_| gone());
@@ -109,15 +128,22 @@ impl Worker {
     /// Shows what comes until the work is done, but for `errors`; what interrupted it meanwhile.
     fn wait(&self, py: Python<'_>, errors: &mut String) -> PyResult<()> {
         let mut interrupt = Ok(());
+        let mut next = None;
         loop {
-            let event = py.detach(|| {
-                self.events.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK)
-            });
+            let event = match next.take() {
+                Some(event) => Ok(event),
+                None => py.detach(|| self.events().recv_timeout(TICK)),
+            };
             let shown = match event {
                 Ok(Event::Done) | Err(RecvTimeoutError::Disconnected) => return interrupt,
                 Ok(Event::Errors(text)) if text.starts_with("error") => {
                     errors.push_str(&text);
                     Ok(())
+                }
+                Ok(Event::Output(text)) => {
+                    let (text, other) = self.more(text);
+                    next = other;
+                    written(py, "stdout", &text)
                 }
                 Ok(event) => self.show(py, event),
                 Err(RecvTimeoutError::Timeout) => py.check_signals(),
@@ -127,6 +153,24 @@ impl Worker {
                 interrupt = interrupt.and(Err(error));
             }
         }
+    }
+
+    fn events(&self) -> std::sync::MutexGuard<'_, Receiver<Event>> {
+        self.events.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What has been printed meanwhile, as one text: a notebook takes longer for a line than a script.
+    /// And the event behind it.
+    fn more(&self, mut text: String) -> (String, Option<Event>) {
+        let events = self.events();
+        while text.len() < LARGE {
+            match events.try_recv() {
+                Ok(Event::Output(more)) => text.push_str(&more),
+                Ok(event) => return (text, Some(event)),
+                Err(_) => break,
+            }
+        }
+        (text, None)
     }
 
     fn show(&self, py: Python<'_>, event: Event) -> PyResult<()> {
@@ -141,6 +185,17 @@ impl Worker {
                 None => Ok(()),
             },
             Event::Done => Ok(()),
+        }
+    }
+}
+
+impl Drop for Worker {
+    /// Waits for the end of the session: what it has locked is free afterwards.
+    fn drop(&mut self) {
+        self.work = None;
+        if self.process == std::process::id() {
+            // It has shown what is wrong already.
+            let _ = self.thread.take().map(JoinHandle::join);
         }
     }
 }

@@ -117,3 +117,16 @@ def test_the_example_of_the_guide_has_inputs_of_the_action(runner):
     (runner / "a.mos").rename(runner / "tests" / "a.mos")
     assert run(runner, "Run gapi test", **step["with"]).returncode == 0
     assert (runner / "report.xml").exists()
+
+
+def test_the_archives_that_the_action_asks_for_are_made():
+    github = ACTION.parents[2]
+    asked = set(re.findall(r"archive=([\w-]+)", ACTION.read_text(encoding="utf-8")))
+    jobs = yaml.safe_load((github / "workflows" / "release.yml").read_text(encoding="utf-8"))["jobs"]
+    made = {one["target"] for one in jobs["programs"]["strategy"]["matrix"]["include"]}
+    made.add("x86_64-linux")
+    assert len(asked) == 5 and asked <= made
+    # Static ones for both processors, and what they are called is what the script makes of a target.
+    assert {"x86_64-unknown-linux-musl", "aarch64-unknown-linux-musl"} <= made
+    script = (github.parent / "scripts" / "release").read_text(encoding="utf-8")
+    assert "gapi-$version-${only:-x86_64-linux}" in script

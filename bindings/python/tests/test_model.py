@@ -97,6 +97,19 @@ def test_many_simulations(decay):
     assert simulator.many(np.zeros((0, 2))).shape == (0, 4, 2)
 
 
+def test_arrays_of_any_layout_are_taken(decay, session):
+    simulator = decay.simulator(["k", "a"], "x", TIMES)
+    rows = np.array([[1.0, 2.0], [3.0, 4.0]])
+    # Not aligned, as arrays that another process has sent.
+    shifted = np.frombuffer(b" " + rows.tobytes(), dtype=np.uint8)[1:].view("f8").reshape(2, 2)
+    assert not shifted.flags.aligned
+    for same in [shifted, np.asfortranarray(rows), rows.astype("float32"), rows.astype(int), rows[::-1][::-1]]:
+        np.testing.assert_array_equal(simulator.many(same), simulator.many(rows))
+        np.testing.assert_array_equal(simulator(same[1]), simulator(rows[1]))
+        session["v"] = same
+        np.testing.assert_array_equal(session["v"], rows)
+
+
 def test_failed_simulations_are_not_numbers(decay):
     simulator = decay.simulator(["k"], "x", TIMES)
     found, failures = simulator.many([[1.0], [60.0], [2.0]], failures=True)

@@ -17,6 +17,7 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w.])")
 #: chain depend on versions: standard deviations of 2,000 effective draws differ by some percent.
 NOTEBOOKS = [
     ("least_squares", ["scipy", "matplotlib"], 1e-3),
+    ("pypesto", ["pypesto", "matplotlib"], 0.02),
     ("posterior", ["emcee", "arviz", "matplotlib"], 0.15),
 ]
 

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, Optional, Union
 
 import numpy as np
 
-from . import _gapilib, _progress, _toml
+from . import _data, _gapilib, _progress, _toml
 
 
 def identify(
@@ -29,7 +29,10 @@ def identify(
             "experiment": [{"data": "curve.csv", "x": "i", "outputs": {"V": "V"}}],
         })
 
-    Files that a dict names are looked for in `folder`, by default the working directory. Options:
+    Files that a dict names are looked for in `folder`, by default the working directory. The data of an
+    experiment can also be a data frame of pandas or a dict of columns; an index with a name or with dates is
+    a column (dates in seconds from the first one), units are those of pint, of a second level of the headings,
+    of ``frame.attrs["units"]`` or of headings such as ``U [mV]``. Options:
     `out` and `overwrite` (where results go), `resume` and `fresh`, `profile`, `design`, `bootstrap`,
     `posterior`, `sensitivity` ("morris" or "sobol") with `samples`, `evaluations`, `libraries`, `threads`,
     `allow_read`, `allow_external`, `cache`.
@@ -54,20 +57,25 @@ class _problem_file:
 
     def __init__(self, problem: Any, folder: Any) -> None:
         self._problem, self._folder = problem, Path(folder or ".")
-        self._made: Optional[str] = None
+        self._made: List[str] = []
 
     def __enter__(self) -> str:
         if not isinstance(self._problem, Mapping):
             return os.fspath(self._problem)
-        text = _toml.dumps(self._problem)
-        descriptor, self._made = tempfile.mkstemp(".toml", "problem-", self._folder)
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(text)
-        return self._made
+        descriptor, path = tempfile.mkstemp(".toml", "problem-", self._folder)
+        self._made.append(path)
+        try:
+            with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+                problem, made = _data.with_files(self._problem, self._folder)
+                self._made += made
+                file.write(_toml.dumps(problem))
+        except BaseException:
+            self.__exit__()
+            raise
+        return path
 
     def __exit__(self, *_: Any) -> None:
-        if self._made:
-            os.unlink(self._made)
+        _data.remove(self._made)
 
 
 class Solution:

@@ -110,6 +110,13 @@ def _drawing(label: str, done: int, total: int, curve: List[Tuple[int, float]]) 
     )
 
 
+def _word_at(code: str, position: int) -> Tuple[str, str]:
+    """The parts of a name before and behind a position."""
+    before = re.search(r"[\w.]*$", code[:position])
+    behind = re.match(r"\w*", code[position:])
+    return before.group(0) if before else "", behind.group(0) if behind else ""
+
+
 class GapilibKernel(Kernel):
     """Executes cells in one session."""
 
@@ -143,6 +150,13 @@ class GapilibKernel(Kernel):
         wanted = re.fullmatch(r"\?\s*([\w.]+)\s*|([\w.]+)\s*\?", code.strip())
         if wanted:
             return self._helped(wanted.group(1) or wanted.group(2))
+        magic = re.match(r"\s*([%!]+\S*)", code)
+        if magic:
+            text = (
+                f"`{magic.group(1)}` is a command of IPython: cells of this kernel hold statements of scripts and "
+                "classes of Modelica"
+            )
+            return self._failed("unknown-command", text)
         begun = time.time()
         self._picture.begin(f"run-{self.execution_count}")
         streams = (_Stream(self, "stdout"), _Stream(self, "stderr"))
@@ -162,22 +176,20 @@ class GapilibKernel(Kernel):
         return self._done()
 
     def do_complete(self, code: str, cursor_pos: int) -> Dict[str, Any]:
-        beginning = re.search(r"[\w.]*$", code[:cursor_pos])
-        word = beginning.group(0) if beginning else ""
+        word, rest = _word_at(code, cursor_pos)
         return {
             "status": "ok",
             "matches": self._session.complete(word) if word else [],
             "cursor_start": cursor_pos - len(word),
-            "cursor_end": cursor_pos,
+            # The name that is chosen stands for the whole word, also behind the cursor.
+            "cursor_end": cursor_pos + len(rest),
             "metadata": {},
         }
 
     def do_inspect(
         self, code: str, cursor_pos: int, detail_level: int = 0, omit_sections: Any = ()
     ) -> Dict[str, Any]:
-        before = re.search(r"[\w.]*$", code[:cursor_pos])
-        behind = re.match(r"\w*", code[cursor_pos:])
-        word = (before.group(0) if before else "") + (behind.group(0) if behind else "")
+        word = "".join(_word_at(code, cursor_pos))
         found = self._session.help(word) if word else None
         data = {"text/plain": found} if found else {}
         return {"status": "ok", "found": bool(found), "data": data, "metadata": {}}
