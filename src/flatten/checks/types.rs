@@ -158,7 +158,7 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// Whether two types are one: enumerations are told apart by their literals and the order of
+    /// Whether two types are one: enumerations are distinguished by their literals and the order of
     /// these, not by their names (MLS §6.7).
     fn same(&self, a: Kind, b: Kind) -> bool {
         match (a, b) {

@@ -225,7 +225,7 @@ impl Types<'_> {
         record_name(self.element_type_of(e, local).as_ref())
     }
 
-    /// Whether a value, or the elements of an array constructor, may be records, told by its outermost
+    /// Whether a value, or the elements of an array constructor, may be records, judged by its outermost
     /// operation: what is below operations is looked at where these are.
     pub fn may_be_record(&self, e: &Expression, local: &Local) -> bool {
         match &e.kind {

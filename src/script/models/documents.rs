@@ -49,7 +49,7 @@ impl ModelCheck {
                 Ok(flattened) => flattened,
                 Err(errors) => return open.faults(errors),
             };
-        // What has open connectors is no system by itself: its local balance counts, if it is known.
+        // What has open connectors is not a system by itself: its local balance counts, if known.
         let is_component = match &flattened.balance {
             Some(balance) => balance.of_component().is_some(),
             None => open.is_component(),
