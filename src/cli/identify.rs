@@ -80,6 +80,9 @@ pub(super) struct IdentifyArgs {
     /// Stop after this number of evaluations
     #[arg(long, value_name = "N")]
     pub evaluations: Option<u64>,
+    /// Search N times, each time with another seed, and take the best result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub searches: Option<u32>,
     /// Compute profile likelihoods of the parameters after the fit
     #[arg(long)]
     pub profile: bool,
@@ -98,7 +101,7 @@ pub(super) struct IdentifyArgs {
     /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
     #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub samples: Option<u32>,
-    /// Compute one of N shards of what follows the fit; `gapi report --merge` makes the report of all
+    /// Compute one of N shards of further searches and of what follows the fit; `gapi report --merge` makes the report of all
     #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with_all = ["others", "watch"])]
     pub shard: Option<Shard>,
     /// A file with settings (name = number) that can be changed during the run
@@ -187,6 +190,7 @@ pub(super) fn solve_one(
         sensitivity: arguments.sensitivity.clone(),
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
+        searches: arguments.searches.map(|count| count as usize),
         division: arguments.shard.map_or(Division::Whole, Division::Shard),
     };
     grant_inputs(&mut session, problem);

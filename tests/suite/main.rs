@@ -85,6 +85,7 @@ mod scale;
 mod script_fuzzing;
 mod script_tests;
 mod scripts;
+mod searches;
 mod sensitivities;
 mod session;
 mod shards;

@@ -1,7 +1,8 @@
 //! Parts of a study that are computed by several processes on their own: shards.
 //!
-//! What follows the search is made of independent parts: the replicates of a bootstrap, the chains of a
-//! posterior, the profiles of the parameters, the samples of a sensitivity analysis. Shard k of n
+//! A study is made of independent parts: further searches with other seeds, the replicates of a
+//! bootstrap, the chains of a posterior, the profiles of the parameters, the samples of a sensitivity
+//! analysis. Shard k of n
 //! computes every n-th of them. Whoever merges the shards runs the problem again, replays the search
 //! from its journal, and takes the parts that are there; so the report is that of one process.
 
@@ -121,27 +122,52 @@ impl Parts {
         count: usize,
         compute: impl FnOnce(&[usize]) -> Vec<T>,
     ) -> Option<Vec<T>> {
-        let mut fingerprint = Fingerprint::default();
-        fingerprint.add_numbers(values);
-        let key = (kind.to_owned(), fingerprint.number());
-        let stored = self.known().get(&key).cloned().unwrap_or_default();
-        let read = |bytes: &Vec<u8>| postcard::from_bytes::<T>(bytes).ok();
-        let mut results: BTreeMap<usize, T> =
-            stored.iter().filter_map(|(k, bytes)| Some((*k, read(bytes)?))).collect();
+        let missing = self.missing::<T>((kind, values), count);
+        let computed = missing.iter().copied().zip(compute(&missing));
+        self.complete((kind, values), count, computed.collect())
+    }
+
+    /// The numbers of those of `count` parts that have to be computed here.
+    pub fn missing<T: DeserializeOwned>(&self, key: (&str, &[f64]), count: usize) -> Vec<usize> {
+        let results = self.results::<T>(key);
         let is_own = |part: &usize| self.shard.is_none_or(|shard| shard.has(*part));
-        let missing: Vec<usize> =
-            (0..count).filter(is_own).filter(|part| !results.contains_key(part)).collect();
-        let computed = compute(&missing);
+        (0..count).filter(is_own).filter(|part| !results.contains_key(part)).collect()
+    }
+
+    /// All of `count` parts, of which these were computed here; `None` where others belong to other
+    /// shards.
+    pub fn complete<T: Serialize + DeserializeOwned>(
+        &self,
+        key: (&str, &[f64]),
+        count: usize,
+        computed: Vec<(usize, T)>,
+    ) -> Option<Vec<T>> {
+        let mut results = self.results::<T>(key);
         if self.shard.is_some() {
             let mut known = self.known();
-            let own = known.entry(key).or_default();
-            for (part, result) in missing.iter().zip(&computed) {
+            let own = known.entry(address(key)).or_default();
+            for (part, result) in &computed {
                 own.extend(postcard::to_allocvec(result).ok().map(|bytes| (*part, bytes)));
             }
         }
-        results.extend(missing.into_iter().zip(computed));
+        results.extend(computed);
         (0..count).map(|part| results.remove(&part)).collect()
     }
+
+    /// What is known of a kind of parts.
+    fn results<T: DeserializeOwned>(&self, key: (&str, &[f64])) -> BTreeMap<usize, T> {
+        let known = self.known();
+        let stored = known.get(&address(key)).into_iter().flatten();
+        let read = |bytes: &Vec<u8>| postcard::from_bytes::<T>(bytes).ok();
+        stored.filter_map(|(part, bytes)| Some((*part, read(bytes)?))).collect()
+    }
+}
+
+/// A kind of parts, and the fingerprint of the values that they start from.
+fn address((kind, values): (&str, &[f64])) -> (String, u64) {
+    let mut fingerprint = Fingerprint::default();
+    fingerprint.add_numbers(values);
+    (kind.to_owned(), fingerprint.number())
 }
 
 /// What is said where other shards have a part of it.

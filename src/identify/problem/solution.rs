@@ -68,6 +68,9 @@ pub struct Solution {
     /// Minima beside the best whose sum of squares lies within the 95 % limit of the likelihood.
     #[serde(default)]
     pub other_minima: Vec<OtherMinimum>,
+    /// All searches with different seeds, where there were several; the best is this one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub searches: Vec<super::SolvedSearch>,
     /// Questions of the method.
     pub generations: u64,
     /// Individuals evaluated.

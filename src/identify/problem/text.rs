@@ -105,6 +105,7 @@ impl Solution {
         if self.ending.kind == EndingKind::Minimum {
             facts.push(("ending", self.ending.words.clone()));
         }
+        facts.extend(self.searches_line().map(|line| ("searches", line)));
         facts.extend(self.ending.derivatives.clone().map(|how| ("derivatives", how)));
         facts.push(("evaluations", self.evaluations_line()));
         let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();

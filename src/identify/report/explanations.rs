@@ -58,6 +58,11 @@ pub const WATERFALL: Explanation = Explanation {
            a plateau on the left means that several starts reach the same minimum. A minimum \
            reached from at least three starts is reliable.",
 };
+pub const SEARCHES: Explanation = Explanation {
+    topic: "searches",
+    line: "Each search began with another seed, sorted by its final objective; a plateau on the left \
+           means that the result does not depend on chance. The result is that of the best one.",
+};
 pub const CONVERGENCE: Explanation = Explanation {
     topic: "convergence",
     line: "The best so far can only decrease; the best of the generation shows the state of the \
@@ -103,7 +108,7 @@ pub const MINIMA: Explanation = Explanation {
 
 /// All, for the test that the guide has a section on each.
 #[cfg(test)]
-pub(super) const ALL: [&Explanation; 16] = [
+pub(super) const ALL: [&Explanation; 17] = [
     &STANDARD_ERROR,
     &INTERVAL,
     &BAND,
@@ -112,6 +117,7 @@ pub(super) const ALL: [&Explanation; 16] = [
     &RUNS,
     &AUTOCORRELATION,
     &WATERFALL,
+    &SEARCHES,
     &CONVERGENCE,
     &CORRELATION,
     &CONDITION,

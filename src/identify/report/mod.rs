@@ -18,6 +18,7 @@ mod parts;
 mod profiles;
 mod residuals;
 mod run;
+mod searches;
 mod sensitivity;
 mod summary;
 mod table;
@@ -56,6 +57,7 @@ fn body(view: &View) -> Markup {
         fit::section(view),
         convergence::section(view),
         waterfall::section(view),
+        searches::section(view),
         residuals::section(view),
         minima::section(view),
         pairs::section(view),

@@ -30,6 +30,8 @@ pub(super) struct ProblemFile {
     #[serde(default)]
     pub stop: StopEntry,
     pub seed: Option<[f64; 6]>,
+    /// How often to search, each time with another seed.
+    pub searches: Option<usize>,
     #[serde(default)]
     pub checkpoint: CheckpointEntry,
     /// Prediction bands: whether, or of which variables beside the measured ones.

@@ -23,6 +23,7 @@ pub(in crate::script) mod own_function;
 mod places;
 mod record;
 mod search;
+mod searches;
 mod series;
 mod shards;
 mod sigma;
@@ -45,11 +46,13 @@ pub use shards::{Division, read_shards};
 
 use build::Built;
 use search::Search;
+use searches::Searched;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Files that not every run writes.
-const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
+const OPTIONAL: [&str; 5] =
+    ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv", "searches.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
 
@@ -78,8 +81,18 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
+    /// How often to search, each time with another seed; the best counts.
+    pub searches: Option<usize>,
     /// Whether the study is divided into shards.
     pub division: Division,
+}
+
+/// Where the journals of a problem's runs lie, and what they depend on.
+struct Journalled<'a> {
+    folder: &'a Path,
+    origins: &'a Origins,
+    /// Questions and seconds between two checkpoints.
+    every: (Option<u64>, f64),
 }
 
 /// The user has named this problem file: the data and the models that it names may be read.
@@ -143,10 +156,32 @@ fn solve_text(
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let mut file = file::read(source, &text).map_err(|error| vec![error])?;
-    let mut built = build::build(session, &mut file, path, &text)?;
+    let built = built_for(session, &mut file, (path, &text), options)?;
     for note in &built.notes {
         session.note(crate::mat::errors::DATA_NOTE, note.clone());
     }
+    let every =
+        (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
+    let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
+    let mut again = |session: &mut Session, seed| {
+        file.seed = Some(seed);
+        let built = built_for(session, &mut file, (path, &text), &options);
+        built.map_err(|errors| {
+            let first = errors.first().map(|error| error.message.clone()).unwrap_or_default();
+            fault!(BAD_OPTION, "the problem cannot be read again: {first}")
+        })
+    };
+    solve_built(session, (path, built), (&options, every), &mut again).map_err(one)
+}
+
+/// The problem, with what the options ask beyond its file.
+fn built_for(
+    session: &mut Session,
+    file: &mut file::ProblemFile,
+    (path, text): (&Path, &str),
+    options: &RunOptions,
+) -> Result<Built, Vec<Diagnostic>> {
+    let mut built = build::build(session, file, path, text)?;
     if options.design {
         built.problem.inference.design.get_or_insert_with(inference::usual_design);
     }
@@ -159,16 +194,14 @@ fn solve_text(
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
-    let every =
-        (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
-    solve_built(session, (path, built), options, every).map_err(one)
+    Ok(built)
 }
 
 fn solve_built(
     session: &mut Session,
     (path, built): (&Path, Built),
-    options: &RunOptions,
-    every: (Option<u64>, f64),
+    (options, every): (&RunOptions, (Option<u64>, f64)),
+    again: &mut searches::Again<'_>,
 ) -> Result<Solution, Fault> {
     let Built { problem, experiments, validation, origins, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
@@ -176,10 +209,15 @@ fn solve_built(
     run.evaluation.parts = options.division.parts();
     session.note_idle_ranks(run.evaluation.alone());
     let importance = analysed(session, &run, &folder, options)?;
-    let checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
+    let files = Journalled { folder: &folder, origins: &origins, every };
+    let path_of_first = folder.join(JOURNAL);
+    let known = options.division.journal();
+    let checkpoint = open(session, &mut run, (&path_of_first, known), &files, options)?;
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
     let ending = search.run_to_end(session)?;
-    let Search { mut run, checkpoint, .. } = search;
+    let Search { run, checkpoint, .. } = search;
+    let Searched { mut run, ending, all, journals, seconds } =
+        searches::search_on(session, (run, ending), &files, options, again)?;
     if !ending.is_interrupted {
         solving::conclude(&mut run);
     }
@@ -189,17 +227,18 @@ fn solve_built(
     if options.profile && !ending.is_interrupted {
         solution = solution.with_profiles(&mut run, solved)?;
     }
+    solution.add_searches(all);
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
     let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
-    write(session, &folder, &solution, run.seconds)?;
+    write(session, &folder, &solution, seconds)?;
     if !is_interrupted {
         let files = (path, checkpoint.path(), folder.as_path());
         shards::keep(session, &run, files, (&origins, options))?;
     }
-    close(session, &checkpoint, is_interrupted);
+    close(session, (&checkpoint, &journals), is_interrupted);
     Ok(solution)
 }
 
@@ -212,15 +251,20 @@ fn infer(session: &mut Session, run: &mut Run, solution: &mut Solution) -> Resul
 }
 
 /// Removes the checkpoint of a run that came to its end.
-fn close(session: &mut Session, checkpoint: &Checkpoint, is_interrupted: bool) {
+fn close(
+    session: &mut Session,
+    (checkpoint, others): (&Checkpoint, &[PathBuf]),
+    is_interrupted: bool,
+) {
     if let Some(why) = checkpoint.broken() {
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
     if is_interrupted {
         session.print("\n  resume the run from here with --resume\n");
-    } else if session.world.exists(checkpoint.path()) {
-        // What cannot be removed does no harm.
-        let _ = session.world.remove(checkpoint.path());
+        return;
+    }
+    for journal in std::iter::once(checkpoint.path()).chain(others.iter().map(PathBuf::as_path)) {
+        discard(session, journal);
     }
 }
 
@@ -247,13 +291,12 @@ fn analysed(
 fn open(
     session: &mut Session,
     run: &mut Run,
-    folder: &Path,
-    origins: &Origins,
+    (path, known): (&Path, Option<&[u8]>),
+    files: &Journalled<'_>,
     options: &RunOptions,
-    every: (Option<u64>, f64),
 ) -> Result<Checkpoint, Fault> {
-    let path = folder.join(JOURNAL);
-    let exists = session.world.exists(&path);
+    let origins = files.origins;
+    let exists = session.world.exists(path);
     if exists && !options.resume && !options.fresh {
         bail!(
             BAD_OPTION,
@@ -262,9 +305,9 @@ fn open(
         );
     }
     let mut bytes = solving::header(origins);
-    let known = match options.division.journal() {
+    let known = match known {
         Some(journal) => Some(journal.to_vec()),
-        None if options.resume && exists => Some(session.read_bytes(&path)?),
+        None if options.resume && exists => Some(session.read_bytes(path)?),
         None => None,
     };
     if let Some(old) = known {
@@ -296,10 +339,10 @@ fn open(
         bytes = old[..journal.whole].to_vec();
     }
     if exists && !options.resume {
-        keep_old(session, &path)?;
+        keep_old(session, path)?;
     }
-    session.write_file(&path, &bytes)?;
-    Ok(Checkpoint::new(path, every, run.seconds).after(bytes))
+    session.write_file(path, &bytes)?;
+    Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
 
 /// The experiments kept for validation, at the best values.
@@ -363,6 +406,9 @@ pub(super) fn write(
         .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
     if solution.profiles.is_some() {
         files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
+    }
+    if !solution.searches.is_empty() {
+        files.push(("searches.csv".to_owned(), solution.searches_csv()));
     }
     for name in OPTIONAL.iter().filter(|name| !files.iter().any(|(own, _)| own == *name)) {
         discard(session, &folder.join(name));

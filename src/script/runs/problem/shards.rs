@@ -62,13 +62,13 @@ pub(super) fn keep(
 }
 
 /// What is asked for beyond the fit.
-type Wanted = ([bool; 4], Option<String>, usize, Option<u64>);
+type Wanted = ([bool; 4], Option<String>, usize, Option<u64>, Option<usize>);
 
 fn wanted(options: &RunOptions) -> Vec<u8> {
     let RunOptions { profile, design, bootstrap, posterior, .. } = *options;
-    let RunOptions { sensitivity, samples, evaluations, .. } = options;
-    let all: Wanted =
-        ([profile, design, bootstrap, posterior], sensitivity.clone(), *samples, *evaluations);
+    let RunOptions { sensitivity, samples, evaluations, searches, .. } = options;
+    let parts = [profile, design, bootstrap, posterior];
+    let all: Wanted = (parts, sensitivity.clone(), *samples, *evaluations, *searches);
     // Names and numbers only.
     postcard::to_allocvec(&all).unwrap_or_default()
 }
@@ -100,9 +100,7 @@ pub fn read_shards(
     let Some((_, first)) = files.first() else { bail!(BAD_OPTION, "there are no shards") };
     let problem = PathBuf::from(&first.problem);
     let options: Option<Wanted> = postcard::from_bytes(&first.wanted).ok();
-    let Some(([profile, design, bootstrap, posterior], sensitivity, samples, evaluations)) =
-        options
-    else {
+    let Some((parts, sensitivity, samples, evaluations, searches)) = options else {
         bail!(BAD_OPTION, "the shards were written by another version of gapilib");
     };
     let count = first.shard.count;
@@ -120,9 +118,10 @@ pub fn read_shards(
         );
     }
     let division = Division::Merged(files);
+    let [profile, design, bootstrap, posterior] = parts;
     let wanted =
         RunOptions { profile, design, bootstrap, posterior, sensitivity, ..RunOptions::default() };
-    Ok((problem, RunOptions { samples, evaluations, division, fresh: true, ..wanted }))
+    Ok((problem, RunOptions { samples, evaluations, searches, division, fresh: true, ..wanted }))
 }
 
 /// The file, if it belongs to those that were read before.

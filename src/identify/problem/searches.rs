@@ -1,0 +1,116 @@
+//! Several searches with different seeds: the best one counts, and how many came as far says how far
+//! its result can be trusted.
+
+use super::{Best, Finding, FindingKind, Run, Solution};
+use crate::ga::has_failed;
+use crate::identify::table::{quoted, significant};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+
+/// Objectives above the smallest by less than this part of it count as equal.
+const EQUAL: f64 = 0.01;
+/// Sums of squares below this part of that of the measured values are errors of rounding.
+const OF_ROUNDING: f64 = 1e-16;
+
+/// A finished search.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SolvedSearch {
+    /// Its seed.
+    pub seed: [f64; 6],
+    /// The smallest objective that it found; infinite where no simulation succeeded.
+    pub objective: f64,
+    /// Values of the parameters there.
+    pub values: Vec<f64>,
+    /// Questions of the method.
+    pub generations: u64,
+    /// Individuals evaluated.
+    pub evaluations: u64,
+    /// Whether its objective counts as equal to the best of all.
+    pub as_good: bool,
+}
+
+impl SolvedSearch {
+    /// What a run has found.
+    pub fn of(run: &Run) -> SolvedSearch {
+        let none = || Best { values: Vec::new(), fitness: f64::INFINITY };
+        let Best { values, fitness: objective } = run.best.clone().unwrap_or_else(none);
+        SolvedSearch {
+            seed: run.problem.seed,
+            objective,
+            values,
+            generations: run.generations(),
+            evaluations: run.evaluations,
+            as_good: false,
+        }
+    }
+}
+
+/// The best of these searches, the first of equal ones; marks those that count as equal to it. `run` is
+/// that of any of them.
+pub fn best_of(run: &Run, searches: &mut [SolvedSearch]) -> Option<usize> {
+    let found = searches.iter().enumerate().filter(|(_, own)| !has_failed(own.objective));
+    let (best, objective) = found
+        .map(|(number, own)| (number, own.objective))
+        .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))?;
+    let squares = match run.evaluation.has_residuals() {
+        true => run.evaluation.size() * run.evaluation.size(),
+        false => 0.0,
+    };
+    let allowed = (EQUAL * objective.abs()).max(OF_ROUNDING * squares);
+    searches.iter_mut().for_each(|own| own.as_good = own.objective - objective <= allowed);
+    Some(best)
+}
+
+impl Solution {
+    /// How the searches ended, in a line; `None` where there was one alone.
+    pub(super) fn searches_line(&self) -> Option<String> {
+        let count = self.searches.len();
+        if count < 2 {
+            return None;
+        }
+        let mut all: Vec<f64> = self.searches.iter().map(|own| own.objective).collect();
+        all.sort_by(f64::total_cmp);
+        let [best, median, worst] = [0, (count - 1) / 2, count - 1].map(|k| significant(all[k], 5));
+        Some(format!(
+            "{} of {count} with different seeds found the best objective within 1 %: best {best}, \
+             median {median}, worst {worst}",
+            self.as_good()
+        ))
+    }
+
+    fn as_good(&self) -> usize {
+        self.searches.iter().filter(|own| own.as_good).count()
+    }
+
+    /// Adds the searches that were made, and what they say.
+    pub fn add_searches(&mut self, searches: Vec<SolvedSearch>) {
+        self.searches = searches;
+        let (count, as_good) = (self.searches.len(), self.as_good());
+        if count > 1 && 2 * as_good < count {
+            let sentence = format!(
+                "Only {as_good} of {count} searches with different seeds found the best objective: \
+                 further ones may find a better one. Use more individuals or generations."
+            );
+            self.findings.push(Finding::new(FindingKind::Search, sentence));
+        }
+    }
+
+    /// `searches.csv`: one line for each search.
+    pub fn searches_csv(&self) -> String {
+        let mut text = String::from("search,seed,objective,as_good,generations,evaluations");
+        let names = self.parameters.iter().map(|parameter| quoted(&parameter.name));
+        names.for_each(|name| text += &format!(",{name}"));
+        text.push('\n');
+        for (k, own) in self.searches.iter().enumerate() {
+            let seed = own.seed.map(|entry| entry.to_string()).join(" ");
+            // Writing into a String cannot fail.
+            _ = write!(text, "{},{seed},{:e},{}", k + 1, own.objective, own.as_good);
+            _ = write!(text, ",{},{}", own.generations, own.evaluations);
+            let missing = self.parameters.len() - own.values.len().min(self.parameters.len());
+            own.values.iter().for_each(|value| text += &format!(",{value}"));
+            text += &",".repeat(missing);
+            text.push('\n');
+        }
+        text
+    }
+}
