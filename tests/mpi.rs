@@ -5,6 +5,11 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::disallowed_methods, reason = "expectations of tests")]
 
+#[allow(dead_code, reason = "the table of the guide uses the rest")]
+#[path = "suite/cluster.rs"]
+mod cluster;
+
+use cluster::Cluster;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -314,4 +319,81 @@ fn a_model_with_functions_in_c_is_simulated_by_rank_0_alone() {
     let (code, text) = ended(&mut command(here.path(), 2, &arguments));
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("take no part") && text.contains("functions in C"), "{text}");
+}
+
+/// Populations of simulations of some milliseconds, without anything after the search.
+const POPULATIONS: &str = "model = \"Oscillator\"
+files = [\"Oscillator.mo\"]
+[parameters]
+mu = { min = 0.9, max = 1.1 }
+w = { min = 0.9, max = 1.1 }
+d = { min = 0, max = 0.1 }
+[[experiment]]
+data = \"d.csv\"
+x = \"time\"
+outputs = { x = { column = \"x\", sigma = 0.05 } }
+[method]
+name = \"genetic\"
+population = 200
+polish = false
+[stop]
+generations = 8
+stagnation = 100
+";
+
+/// What the search took, and one message and its handling, by `timing.json`.
+fn timing(folder: &Path) -> [f64; 3] {
+    let text = fs::read_to_string(folder.join("timing.json")).unwrap();
+    let of = |name: &str| {
+        let line = text.lines().find(|line| line.contains(name));
+        let value = line.and_then(|line| line.split(':').nth(1));
+        value.map_or(0.0, |value| value.trim().trim_end_matches(',').parse().unwrap())
+    };
+    [of("wall_seconds"), of("message_seconds"), of("handling_seconds")]
+}
+
+/// The job on paper is that of the program: what 2 to 8 ranks take here, on however many cores.
+/// Run it on a machine that does nothing else:
+/// `cargo test --release --features mpi --test mpi -- --ignored --nocapture`
+#[test]
+#[ignore = "measures times"]
+#[allow(clippy::print_stdout, reason = "that is what it is for")]
+fn the_job_on_paper_takes_as_long_as_here() {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    for (stop_time, what) in [(60, "short"), (1500, "long")] {
+        let here = here();
+        let model = MODEL.replace("StopTime = 10", &format!("StopTime = {stop_time}"));
+        fs::write(here.path().join("Oscillator.mo"), model).unwrap();
+        fs::write(here.path().join("p.toml"), POPULATIONS).unwrap();
+        let stop = format!("[[experiment]]\nstop_time = {stop_time}\n");
+        let problem = POPULATIONS.replace("[[experiment]]\n", &stop);
+        fs::write(here.path().join("p.toml"), problem).unwrap();
+        let mut one = 0.0;
+        for ranks in [1, 2, 3, 4, 6, 8] {
+            let out = format!("r{ranks}");
+            let arguments = ["identify", "p.toml", "--threads", "1", "--quiet", "--out", &out];
+            let mut command = command(here.path(), ranks, &arguments);
+            command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
+            let (code, text) = ended(&mut command);
+            assert_eq!(code, Some(0), "{text}");
+            let [seconds, message, handling] = timing(&here.path().join(&out));
+            if ranks == 1 {
+                one = seconds;
+                println!("{what}: one rank {one:.2} s");
+                continue;
+            }
+            let used = ranks.min(cores) as f64;
+            let measured = one / seconds / used;
+            // The mean generation; the simulator draws other durations than these.
+            let generations = 8.0;
+            let (individuals, simulation) = (200, one / generations / 200.0);
+            let paper = Cluster { ranks, cores, individuals, simulation, message, handling };
+            let predicted = one / generations / paper.seconds() / used;
+            println!(
+                "{what}, {ranks} ranks on {cores} cores: {seconds:.2} s, efficiency {measured:.3}, \
+                 on paper {predicted:.3}, message {message:.1e} s, handling {handling:.1e} s"
+            );
+            assert!((measured - predicted).abs() < 0.15, "{measured} and {predicted}");
+        }
+    }
 }

@@ -110,6 +110,7 @@ fn spawn(
 ) -> Result<Watch, ExitCode> {
     if limits.interpret {
         crate::codegen::interpret();
+        crate::sim::interpret();
     }
     if let Some(millions) = limits.instruction_limit {
         limit_instructions(u64::from(millions) * 1_000_000);

@@ -30,6 +30,7 @@ pub(super) fn join(job: Launched, command: impl FnOnce() -> ExitCode) -> ExitCod
         terminal::eprint(&format!("error: {message}\n"));
         ExitCode::FAILURE
     };
+    launcher::keep_to_this_machine();
     let Some((universe, threading)) = mpi::initialize_with_threading(Threading::Serialized) else {
         return refused("MPI is already initialized");
     };
@@ -154,8 +155,22 @@ fn seconds() -> f64 {
     STARTED.elapsed().as_secs_f64()
 }
 
-/// Between two looks at a message under way.
+/// Looks at a message under way without a pause: most messages have passed before the system would wake
+/// this thread again.
+const LOOKS: u32 = 20;
+/// The first pause between two later ones; each is twice the one before. A rank that has sent its results
+/// waits until rank 0 looks for them, and would keep its core from the thread that simulates.
 const NAP: Duration = Duration::from_micros(10);
+const DOUBLINGS: u32 = 7;
+
+/// Waits before the next look at a message under way.
+fn pause(looks: &mut u32) {
+    match looks.checked_sub(LOOKS) {
+        None => std::hint::spin_loop(),
+        Some(late) => std::thread::sleep(NAP * (1 << late.min(DOUBLINGS))),
+    }
+    *looks += 1;
+}
 
 /// The messages of `MPI_COMM_WORLD`. One thread calls MPI at a time.
 struct Link {
@@ -176,19 +191,25 @@ impl Connection for Link {
         let other = world.process_at_rank(rank as i32);
         mpi::request::scope(|scope| {
             let mut request = other.immediate_send(scope, message);
+            let mut looks = 0;
             while let Err(pending) = request.test() {
                 request = pending;
-                match arrived(&world) {
-                    Some(message) => inbox.push_back(message),
-                    None => std::thread::sleep(NAP),
+                let mut message = Vec::new();
+                match arrived(&world, &mut message) {
+                    Some(rank) => inbox.push_back((rank, message)),
+                    None => pause(&mut looks),
                 }
             }
         });
     }
 
-    fn receive(&self) -> Option<(usize, Vec<u8>)> {
+    fn receive(&self, message: &mut Vec<u8>) -> Option<usize> {
         let mut inbox = self.inbox.lock().unwrap_or_else(PoisonError::into_inner);
-        inbox.pop_front().or_else(|| arrived(&SimpleCommunicator::world()))
+        let Some((rank, waiting)) = inbox.pop_front() else {
+            return arrived(&SimpleCommunicator::world(), message);
+        };
+        *message = waiting;
+        Some(rank)
     }
 
     fn seconds(&self) -> f64 {
@@ -198,15 +219,16 @@ impl Connection for Link {
 
 /// The library's own waiting gives the core away for a whole time slice, or keeps it from the thread
 /// that simulates.
-fn arrived(world: &SimpleCommunicator) -> Option<(usize, Vec<u8>)> {
+fn arrived(world: &SimpleCommunicator, bytes: &mut Vec<u8>) -> Option<usize> {
     let (message, status) = world.any_process().immediate_matched_probe()?;
-    let mut bytes = vec![0; usize::try_from(status.count(u8::equivalent_datatype())).ok()?];
+    bytes.resize(usize::try_from(status.count(u8::equivalent_datatype())).ok()?, 0);
     mpi::request::scope(|scope| {
         let mut request = message.immediate_matched_receive_into(scope, &mut bytes[..]);
+        let mut looks = 0;
         while let Err(pending) = request.test() {
             request = pending;
-            std::thread::sleep(NAP);
+            pause(&mut looks);
         }
     });
-    Some((status.source_rank() as usize, bytes))
+    Some(status.source_rank() as usize)
 }

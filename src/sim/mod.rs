@@ -83,7 +83,7 @@ pub use effort::Effort;
 pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use instants::{AT_ONCE, same_time};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
-pub use linear::{DenseLu, Factorization, SingularMatrix};
+pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};

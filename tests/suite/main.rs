@@ -13,6 +13,7 @@ mod chattering;
 mod checks;
 mod cli;
 mod clocks;
+mod cluster;
 mod compat;
 mod compliance;
 mod conformance;

@@ -1,13 +1,16 @@
 //! How many individuals a message to a rank holds.
 //!
-//! A chunk must be worth its message: the time to simulate it is `WORTH` times what the message
-//! takes, and all chunks under way together keep the ranks busy while rank 0 handles one message after
-//! the other. Towards the end of a population chunks shrink to each processor's share of what remains
-//! (guided self-scheduling), so that all finish at about the same time. Where one simulation takes
-//! longer than its message, a chunk is one individual, and a slow one delays no other.
+//! While a processor works on a chunk, the next one is on its way: a chunk takes `HIDDEN` times what its
+//! message takes, and all chunks under way together keep the ranks busy while rank 0 handles one message
+//! after the other. Times are means: no chunk is more than half of a processor's share of what remains,
+//! so that the last ones are small and all processors finish at about the same time (guided
+//! self-scheduling). Where simulations take longer than messages, a chunk is one individual, none waits
+//! behind another, and a slow one delays no other.
 
-/// A chunk takes at least this many times what its message takes.
-const WORTH: f64 = 20.0;
+/// A chunk takes at least this many times what its message takes, which hides the next message.
+const HIDDEN: f64 = 4.0;
+/// Simulations that take this many times what a message takes are not sent ahead.
+const LONG: f64 = 20.0;
 /// A population is distributed where the threads of rank 0 alone would work this many times the
 /// time of a message on it.
 const WORTH_DISTRIBUTING: f64 = 10.0;
@@ -26,11 +29,40 @@ pub struct Times {
 /// Individuals of the next chunk: `remaining` are without a processor, `processors` take chunks.
 pub fn size(times: &Times, remaining: usize, processors: usize) -> usize {
     let Some(simulation) = times.simulation else { return 1 };
-    let for_message = WORTH * times.message / simulation.max(1e-9);
-    let for_handling = 2.0 * processors as f64 * times.handling / simulation.max(1e-9);
-    let least = for_message.max(for_handling).ceil() as usize;
-    let share = remaining.div_ceil(processors.max(1));
-    least.min(share).max(1)
+    let processors = processors.max(1);
+    let for_handling = 2.0 * processors as f64 * times.handling;
+    let least = individuals(for_handling.max(HIDDEN * times.message), simulation);
+    let share = remaining.div_ceil(2 * processors).max(worth(times, simulation));
+    least.min(share).min(remaining).max(1)
+}
+
+/// Individuals that a processor gets which still has work: `load` of them, of `unfinished` ones in all.
+/// 0 where simulations are long, or where it has its share already.
+pub fn ahead(
+    times: &Times,
+    (load, unfinished): (usize, usize),
+    remaining: usize,
+    processors: usize,
+) -> usize {
+    let Some(simulation) = times.simulation.filter(|simulation| *simulation < LONG * times.message)
+    else {
+        return 0;
+    };
+    let left = (unfinished / processors.max(1)).saturating_sub(load);
+    match left < worth(times, simulation) {
+        true => 0,
+        false => size(times, remaining, processors).min(left),
+    }
+}
+
+/// The smallest chunk that is worth rank 0's work for it.
+fn worth(times: &Times, simulation: f64) -> usize {
+    individuals(2.0 * times.handling, simulation).max(1)
+}
+
+/// So many simulations take these seconds.
+fn individuals(seconds: f64, simulation: f64) -> usize {
+    (seconds / simulation.max(1e-9)).ceil() as usize
 }
 
 /// Whether a population of this size gains from other ranks.
@@ -56,9 +88,9 @@ mod tests {
     }
 
     #[test]
-    fn short_ones_fill_chunks_that_are_worth_their_message() {
-        // 20 times 100 us are 2 ms.
-        assert!((2000..=2001).contains(&size(&times(1e-6), 1_000_000, 4)));
+    fn short_ones_fill_chunks_that_hide_the_next_message() {
+        // 4 times 100 us are 400 us.
+        assert!((400..=401).contains(&size(&times(1e-6), 1_000_000, 4)));
         assert!(!is_worth_distributing(&times(1e-6), 100, 1));
         assert!(is_worth_distributing(&times(1e-6), 10_000, 1));
     }
@@ -67,19 +99,28 @@ mod tests {
     fn chunks_shrink_towards_the_end() {
         let sizes: Vec<usize> =
             [4000, 400, 40, 4, 1].iter().map(|rest| size(&times(1e-5), *rest, 4)).collect();
-        assert_eq!(sizes, [200, 100, 10, 1, 1]);
+        // The smallest takes twice what rank 0 works for it.
+        assert_eq!(sizes, [40, 40, 5, 2, 1]);
     }
 
-    /// A population of case 4.2 of the paper with messages of a machine that others use, too.
     #[test]
-    fn a_short_population_is_no_sequence_of_small_messages() {
-        let times = Times { simulation: Some(2.7e-4), message: 1e-3, handling: 2e-5 };
-        let (mut remaining, mut messages) = (75, 0);
-        while remaining > 0 {
-            remaining -= size(&times, 2 * remaining, 2);
-            messages += 1;
-        }
-        assert!(messages <= 2, "{messages}");
+    fn short_simulations_are_sent_ahead_until_each_has_its_share() {
+        let times = times(2.7e-4);
+        assert_eq!(size(&times, 80, 2), 2);
+        assert_eq!(ahead(&times, (2, 80), 78, 2), 2);
+        assert_eq!(ahead(&times, (8, 18), 9, 2), 1);
+        assert_eq!(ahead(&times, (8, 16), 8, 2), 0, "it has its share");
+        let long = Times { simulation: Some(0.1), ..times };
+        assert_eq!(ahead(&long, (1, 80), 72, 2), 0, "a slow one would delay the next");
+    }
+
+    /// A population of case 4.2 of the paper with messages of a machine that others use, too: no more
+    /// than half of it depends on the first guess of the times.
+    #[test]
+    fn no_chunk_is_a_whole_share() {
+        let times = Times { simulation: Some(2.7e-4), message: 5e-3, handling: 1e-4 };
+        assert_eq!(size(&times, 150, 2), 38);
+        assert_eq!(ahead(&times, (38, 150), 112, 2), 28);
     }
 
     #[test]

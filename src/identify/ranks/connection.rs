@@ -7,8 +7,8 @@ pub trait Connection: Send + Sync {
     /// Sends a message; returns when the bytes may be reused. Messages between two processes arrive
     /// in their order.
     fn send(&self, rank: usize, message: &[u8]);
-    /// The next message that has arrived, and who sent it.
-    fn receive(&self) -> Option<(usize, Vec<u8>)>;
+    /// The next message that has arrived, written over `message`, and who sent it.
+    fn receive(&self, message: &mut Vec<u8>) -> Option<usize>;
     /// Seconds since an arbitrary moment.
     fn seconds(&self) -> f64;
 }

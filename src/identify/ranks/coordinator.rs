@@ -13,9 +13,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
-/// The first pause where no message has come, and the longest, in seconds: a process that waits
-/// leaves its core to others.
-const PAUSES: [f64; 2] = [2e-5, 5e-4];
+/// The shortest pause where no message has come, and the longest, in seconds: a process that waits
+/// leaves its core to others. To look for a message takes Open MPI 3e-5 s, so that a core that simulates
+/// loses 2 % of its time to the longest pauses; it lost 8 % to pauses of 5e-4 s.
+const PAUSES: [f64; 2] = [2e-5, 2e-3];
+/// The shortest pause of a process whose core has something else to do.
+const SHORT: f64 = 1e-4;
+/// A pause takes at most this part of what was waited before, so that a message is found late by no
+/// more than that.
+const LATE: f64 = 0.02;
 /// What a new measurement of simulations counts in the mean.
 const NEW: f64 = 0.2;
 
@@ -37,6 +43,8 @@ pub(super) struct State {
     pub traffic: Traffic,
     /// Answers that nobody has taken yet.
     pub arrived: Vec<Arrived>,
+    /// The last message; its memory is used again.
+    received: Vec<u8>,
     prepared: Vec<(u64, usize, Option<String>)>,
     next_ticket: u64,
     next_number: u64,
@@ -45,7 +53,19 @@ pub(super) struct State {
 /// A thread of another rank.
 pub(super) struct Lane {
     pub rank: usize,
-    pub work: Option<Sent>,
+    /// Chunks under way: the one that it works on, and one that waits behind it.
+    pub work: Vec<Sent>,
+}
+
+impl Lane {
+    fn of(rank: usize) -> Lane {
+        Lane { rank, work: Vec::with_capacity(2) }
+    }
+
+    /// Individuals under way.
+    pub fn load(&self) -> usize {
+        self.work.iter().map(|sent| sent.count).sum()
+    }
 }
 
 /// A chunk under way.
@@ -58,6 +78,8 @@ pub(super) struct Sent {
     at: f64,
     /// What sending it took.
     sending: f64,
+    /// Whether the lane had nothing else to do, so that its answer tells what a message takes.
+    alone: bool,
 }
 
 /// The answers to a chunk.
@@ -78,22 +100,34 @@ pub struct Prepared {
 }
 
 /// Waits longer and longer while nothing happens.
-pub(super) struct Patience(f64);
+pub(super) struct Patience {
+    waited: f64,
+}
 
 impl Patience {
     pub fn new() -> Patience {
-        Patience(PAUSES[0])
+        Patience { waited: 0.0 }
     }
 
     pub fn reset(&mut self) {
-        self.0 = PAUSES[0];
+        self.waited = 0.0;
     }
 
     /// How long to wait this time.
     pub fn next(&mut self) -> Duration {
-        let now = self.0;
-        self.0 = (2.0 * now).min(PAUSES[1]);
+        let now = (LATE * self.waited).clamp(PAUSES[0], PAUSES[1]);
+        self.waited += now;
         Duration::from_secs_f64(now)
+    }
+
+    /// How long a process waits whose core has something else to do.
+    pub fn busy() -> Duration {
+        Duration::from_secs_f64(PAUSES[1])
+    }
+
+    /// The same, where a processor has nothing left to do after these seconds.
+    pub fn busy_until(seconds: f64) -> Duration {
+        Duration::from_secs_f64((0.5 * seconds).clamp(SHORT, PAUSES[1]))
     }
 
     pub fn wait(&mut self) {
@@ -109,9 +143,9 @@ impl Ranks {
     /// `ranks-differ` where one runs another version of the program.
     pub fn connect(connection: Box<dyn Connection>, own: &About) -> Result<Arc<Ranks>, Fault> {
         let mut known: Vec<Option<About>> = vec![None; connection.size().saturating_sub(1)];
-        let mut patience = Patience::new();
+        let (mut patience, mut bytes) = (Patience::new(), Vec::new());
         while known.iter().any(Option::is_none) {
-            let Some((rank, bytes)) = connection.receive() else {
+            let Some(rank) = connection.receive(&mut bytes) else {
                 patience.wait();
                 continue;
             };
@@ -124,9 +158,10 @@ impl Ranks {
             }
         }
         let others: Vec<About> = known.into_iter().flatten().collect();
-        let lanes = others.iter().enumerate().flat_map(|(k, about)| {
-            (0..about.threads.max(1)).map(move |_| Lane { rank: k + 1, work: None })
-        });
+        let lanes = others
+            .iter()
+            .enumerate()
+            .flat_map(|(k, about)| (0..about.threads.max(1)).map(move |_| Lane::of(k + 1)));
         let state = State { lanes: lanes.collect(), ..State::default() };
         Ok(Arc::new(Ranks { connection, others, state: Mutex::new(state), stop: Mutex::default() }))
     }
@@ -206,7 +241,8 @@ impl Ranks {
     /// Notes all reports that have come; whether there were any.
     pub(super) fn take_reports(&self, state: &mut State) -> bool {
         let mut any = false;
-        while let Some((rank, bytes)) = self.connection.receive() {
+        let mut bytes = std::mem::take(&mut state.received);
+        while let Some(rank) = self.connection.receive(&mut bytes) {
             let began = self.seconds();
             any = true;
             match decode(&bytes) {
@@ -222,6 +258,7 @@ impl Ranks {
                 Some(Report::Ready(_)) | None => {}
             }
         }
+        state.received = bytes;
         any
     }
 
@@ -234,7 +271,7 @@ impl Ranks {
     pub(super) fn cancel(&self, state: &State) {
         let order = encode(&Order::Cancel { ticket: state.next_ticket });
         let mut last = 0;
-        for lane in state.lanes.iter().filter(|lane| lane.work.is_some()) {
+        for lane in state.lanes.iter().filter(|lane| !lane.work.is_empty()) {
             if lane.rank != last {
                 self.connection.send(lane.rank, &order);
                 last = lane.rank;
@@ -244,12 +281,24 @@ impl Ranks {
 }
 
 impl State {
+    /// When the first lane with work will have none, in seconds of the connection's clock, where one
+    /// simulation takes so many.
+    pub(super) fn next_idle(&self, simulation: f64) -> Option<f64> {
+        let end = |lane: &Lane| Some(lane.work.first()?.at + lane.load() as f64 * simulation);
+        self.lanes.iter().filter_map(end).min_by(f64::total_cmp)
+    }
+
     /// Notes the answers to a chunk; what sending it has taken.
     fn done(&mut self, ticket: u64, seconds: f64, simulations: Vec<Simulation>, now: f64) -> f64 {
-        let of = |lane: &Lane| lane.work.is_some_and(|sent| sent.ticket == ticket);
-        let Some(lane) = self.lanes.iter().position(of) else { return 0.0 };
-        let Some(sent) = self.lanes[lane].work.take() else { return 0.0 };
-        self.traffic.answered(simulations.len(), now - sent.at - seconds);
+        let place = |lane: &Lane| lane.work.iter().position(|sent| sent.ticket == ticket);
+        let found = self.lanes.iter().enumerate().find_map(|(k, lane)| Some((k, place(lane)?)));
+        let Some((lane, place)) = found else { return 0.0 };
+        let sent = self.lanes[lane].work.remove(place);
+        if sent.alone {
+            self.traffic.answered(simulations.len(), now - sent.at - seconds);
+        } else {
+            self.traffic.waited(simulations.len());
+        }
         self.arrived.push(Arrived { lane, sent, seconds, simulations });
         sent.sending
     }
@@ -273,8 +322,8 @@ impl Prepared {
         *known = Some(known.map_or(own, |known| known + NEW * (own - known)));
     }
 
-    /// Gives a lane these individuals.
-    pub(super) fn send(&self, state: &mut State, lane: usize, first: usize, mut work: Work) {
+    /// Gives a lane these individuals; the ticket of the answer.
+    pub(super) fn send(&self, state: &mut State, lane: usize, first: usize, mut work: Work) -> u64 {
         let count = work.batch().len();
         work.number = self.number;
         work.ticket = state.next_ticket;
@@ -282,7 +331,9 @@ impl Prepared {
         let (ticket, at) = (work.ticket, self.ranks.seconds());
         self.ranks.connection.send(state.lanes[lane].rank, &encode(&Order::Work(work)));
         let sending = self.ranks.seconds() - at;
-        state.lanes[lane].work = Some(Sent { ticket, first, count, at, sending });
+        let work = &mut state.lanes[lane].work;
+        work.push(Sent { ticket, first, count, at, sending, alone: work.is_empty() });
+        ticket
     }
 }
 

@@ -2,7 +2,7 @@
 //! individuals from one queue.
 
 use super::chunk;
-use super::coordinator::{Arrived, Patience, Prepared, State};
+use super::coordinator::{Arrived, Lane, Patience, Prepared, State};
 use super::message::Work;
 use super::simulation::{Batch, Simulation};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -49,6 +49,8 @@ impl Prepared {
         let is_cancelled = || cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         let queue = Queue { next: AtomicUsize::new(0), end: batch.len() };
         let found: Mutex<Answers> = Mutex::new(Vec::with_capacity(batch.len()));
+        let busy = AtomicUsize::new(local.threads);
+        let leader = std::thread::current();
         let work = || {
             let mut own = Vec::new();
             let began = self.ranks.seconds();
@@ -59,6 +61,8 @@ impl Prepared {
             }
             self.measured(own.len(), self.ranks.seconds() - began);
             found.lock().unwrap_or_else(PoisonError::into_inner).append(&mut own);
+            busy.fetch_sub(1, Ordering::Relaxed);
+            leader.unpark();
         };
         let mut remote = Vec::new();
         local.pool.in_place_scope(|scope| {
@@ -67,7 +71,8 @@ impl Prepared {
             }
             let Some(mut state) = self.ranks.free_state() else { return };
             if chunk::is_worth_distributing(&self.times(&state), batch.len(), local.threads) {
-                remote = self.hand_out(&mut state, batch, &queue, local.threads, &is_cancelled);
+                let here = Here { threads: local.threads, busy: &busy };
+                remote = self.hand_out(&mut state, batch, &queue, &here, &is_cancelled);
             } else {
                 state.traffic.not_used();
             }
@@ -80,13 +85,13 @@ impl Prepared {
         Some(in_order(found, batch))
     }
 
-    /// Gives chunks to free lanes until none remains, and collects the answers.
+    /// Gives chunks to lanes until none remains, and collects the answers.
     fn hand_out(
         &self,
         state: &mut State,
         batch: &Batch<'_>,
         queue: &Queue,
-        threads: usize,
+        here: &Here<'_>,
         is_cancelled: &dyn Fn() -> bool,
     ) -> Answers {
         let (mut answers, mut patience) = (Vec::new(), Patience::new());
@@ -95,17 +100,7 @@ impl Prepared {
         state.arrived.clear();
         let mut under_way: Vec<u64> = Vec::new();
         loop {
-            for lane in 0..state.lanes.len() {
-                if state.lanes[lane].work.is_some() || queue.remaining() == 0 {
-                    continue;
-                }
-                let processors = state.lanes.len() + threads;
-                let size = chunk::size(&self.times(state), queue.remaining(), processors);
-                let Some(individuals) = queue.take(size) else { break };
-                let work = part(batch, individuals.clone());
-                self.send(state, lane, individuals.start, work);
-                under_way.extend(state.lanes[lane].work.map(|sent| sent.ticket));
-            }
+            self.load(state, batch, queue, here, &mut under_way);
             if is_cancelled() {
                 self.ranks.cancel(state);
                 return answers;
@@ -115,7 +110,11 @@ impl Prepared {
             }
             match self.ranks.take_reports(state) {
                 true => patience.reset(),
-                false => patience.wait(),
+                false => {
+                    let simulation = self.times(state).simulation.unwrap_or(0.0);
+                    let idle = state.next_idle(simulation).unwrap_or(0.0);
+                    here.wait(&mut patience, idle - self.ranks.seconds());
+                }
             }
             for Arrived { sent, seconds, simulations, .. } in state.arrived.drain(..) {
                 let Some(place) = under_way.iter().position(|own| *own == sent.ticket) else {
@@ -126,6 +125,60 @@ impl Prepared {
                 answers.extend((sent.first..sent.first + sent.count).zip(simulations));
             }
         }
+    }
+
+    /// Sends a chunk to each lane that has none, and to each that will have none before a message
+    /// arrives.
+    fn load(
+        &self,
+        state: &mut State,
+        batch: &Batch<'_>,
+        queue: &Queue,
+        here: &Here<'_>,
+        under_way: &mut Vec<u64>,
+    ) {
+        let processors = state.lanes.len() + here.threads;
+        for lane in 0..state.lanes.len() {
+            let remaining = queue.remaining();
+            if remaining == 0 {
+                return;
+            }
+            let times = self.times(state);
+            let size = match state.lanes[lane].work.len() {
+                0 => chunk::size(&times, remaining, processors),
+                1 => {
+                    let sent: usize = state.lanes.iter().map(Lane::load).sum();
+                    let load = (state.lanes[lane].load(), remaining + sent);
+                    chunk::ahead(&times, load, remaining, processors)
+                }
+                _ => 0,
+            };
+            if size == 0 {
+                continue;
+            }
+            let Some(individuals) = queue.take(size) else { return };
+            let work = part(batch, individuals.clone());
+            under_way.push(self.send(state, lane, individuals.start, work));
+        }
+    }
+}
+
+/// The threads of this process while a population is distributed.
+struct Here<'a> {
+    threads: usize,
+    /// How many of them still simulate.
+    busy: &'a AtomicUsize,
+}
+
+impl Here<'_> {
+    /// Waits for messages: seldom looking for them while this core simulates, until a thread has ended or
+    /// another processor is about to have nothing to do.
+    fn wait(&self, patience: &mut Patience, next_idle: f64) {
+        if self.busy.load(Ordering::Relaxed) < self.threads {
+            return patience.wait();
+        }
+        patience.reset();
+        std::thread::park_timeout(Patience::busy_until(next_idle));
     }
 }
 

@@ -85,7 +85,7 @@ impl Prepared {
         if simulation.is_none_or(|simulation| simulation < WORTH * message) {
             return Vec::new();
         }
-        let free = |lane: &usize| state.lanes[*lane].work.is_none();
+        let free = |lane: &usize| state.lanes[*lane].work.is_empty();
         (0..state.lanes.len()).filter(free).take(most).collect()
     }
 

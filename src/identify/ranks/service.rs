@@ -56,6 +56,8 @@ pub fn serve(service: &Service<'_>) {
             cancel: Arc::default(),
             last_cancelled: None,
             tasks,
+            under_way: 0,
+            received: Vec::new(),
         };
         rank.run(&reports, &|| threads.iter().any(ScopedJoinHandle::is_finished));
         // Without a sender of tasks the threads end.
@@ -70,6 +72,19 @@ struct Rank<'a> {
     /// Work with tickets below is not begun.
     last_cancelled: Option<u64>,
     tasks: Sender<Task>,
+    /// Tasks that were not reported yet.
+    under_way: usize,
+    /// The last message; its memory is used again.
+    received: Vec<u8>,
+}
+
+/// Orders that have come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Taken {
+    None,
+    Some,
+    /// The last of all.
+    End,
 }
 
 impl Service<'_> {
@@ -84,28 +99,49 @@ impl Rank<'_> {
         let mut patience = Patience::new();
         let mut has_asked = false;
         loop {
-            while let Some((_, bytes)) = self.service.connection.receive() {
-                patience.reset();
-                match decode(&bytes) {
-                    Some(Order::End) => return self.cancel.store(true, Ordering::Relaxed),
-                    Some(order) => self.obey(order),
-                    // Versions were compared: there is nothing else.
-                    None => {}
-                }
+            match self.take_orders() {
+                Taken::End => return self.cancel.store(true, Ordering::Relaxed),
+                Taken::Some => patience.reset(),
+                Taken::None => {}
             }
             if self.service.stop.load(Ordering::Relaxed) && !has_asked {
                 has_asked = true;
                 self.service.send(&Report::Stop);
             }
-            match reports.recv_timeout(patience.next()) {
+            // A core that simulates is not disturbed by looking for messages often.
+            let is_idle = self.under_way < self.service.about.threads.max(1);
+            let pause = if is_idle { patience.next() } else { Patience::busy() };
+            match reports.recv_timeout(pause) {
                 Ok(report) => {
+                    self.under_way -= 1;
                     patience.reset();
+                    // What has come is begun first: rank 0 may be slow to receive.
+                    if self.take_orders() == Taken::End {
+                        return self.cancel.store(true, Ordering::Relaxed);
+                    }
                     self.service.send(&report);
                 }
                 Err(_) if has_lost_one() => return self.cancel.store(true, Ordering::Relaxed),
                 Err(_) => {}
             }
         }
+    }
+
+    /// Obeys all orders that have come.
+    fn take_orders(&mut self) -> Taken {
+        let mut taken = Taken::None;
+        let mut bytes = std::mem::take(&mut self.received);
+        while self.service.connection.receive(&mut bytes).is_some() {
+            taken = Taken::Some;
+            match decode(&bytes) {
+                Some(Order::End) => return Taken::End,
+                Some(order) => self.obey(order),
+                // Versions were compared: there is nothing else.
+                None => {}
+            }
+        }
+        self.received = bytes;
+        taken
     }
 
     fn obey(&mut self, order: Order) {
@@ -145,6 +181,7 @@ impl Rank<'_> {
             return self.service.send(&none);
         };
         let task = Task { work, simulators, cancel: Arc::clone(&self.cancel) };
+        self.under_way += 1;
         // The threads live as long as the sender.
         _ = self.tasks.send(task);
     }

@@ -2,12 +2,18 @@
 
 mod dense;
 mod sparse;
+#[cfg(feature = "jit")]
+mod straight_line;
+#[cfg(not(feature = "jit"))]
+#[path = "without_straight_line.rs"]
+mod straight_line;
 #[cfg(test)]
 mod tests;
 
 use super::Pattern;
 pub use dense::DenseLu;
 use sparse::SparseLu;
+pub use straight_line::interpret;
 
 /// A matrix that has no usable factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 //! A matrix is eliminated symbolically and numerically together: among the rows with fewest entries
 //! left and their entries not much smaller than the row's largest, the pivot is the one that fills
 //! least (Markowitz's rule with a threshold). Later matrices of the same pattern are factorised row
-//! by row with the same pivots,
+//! by row with the same pivots ([as machine code](super::straight_line) where that happens often),
 //!
 //! ```text
 //! for each row i of the permuted matrix
@@ -21,6 +21,7 @@
 //! Not the one of a crate: those choose pivots from the values of the first matrix, so that a simulation
 //! would depend on what was simulated before with the same workspace.
 
+use super::straight_line::StraightLine;
 use super::{DenseLu, SingularMatrix};
 use crate::elementary;
 use crate::sim::Pattern;
@@ -73,12 +74,39 @@ struct Factors {
     inverse_diagonal: Vec<f64>,
     /// The rows after these, and the columns after these.
     last: DenseLu,
+    /// The same without loops; only for pivots that do not depend on values.
+    code: StraightLine,
+}
+
+/// Where the nonzeros of a matrix and of its factors are.
+pub(super) struct Shape<'a> {
+    pub rows: &'a [u32],
+    pub columns: &'a [u32],
+    entry_starts: &'a [u32],
+    pub entries: &'a [(u32, u32)],
+    pub lower: &'a Rows,
+    pub upper: &'a Rows,
+    /// Rows with sparse pivots.
+    pub n_sparse: usize,
+}
+
+impl Shape<'_> {
+    /// Column of the permuted matrix and position in the values of the entries of row i.
+    pub fn row_entries(&self, i: usize) -> &[(u32, u32)] {
+        &self.entries[row(self.entry_starts, i)]
+    }
+
+    /// Products that row i of the factors takes.
+    pub fn products(&self, i: usize) -> usize {
+        let of = |(k, _): &(u32, f64)| 1 + self.upper.row(*k as usize).len();
+        self.lower.row(i).iter().map(of).sum::<usize>() + self.row_entries(i).len()
+    }
 }
 
 /// Columns and values by rows. Side by side: rows are short, and to find both in two places costs as
 /// much as what is computed with them.
 #[derive(Debug, Clone)]
-struct Rows {
+pub(super) struct Rows {
     /// Where every row begins and ends.
     ranges: Vec<(u32, u32)>,
     entries: Vec<(u32, f64)>,
@@ -96,9 +124,19 @@ impl Rows {
         Rows { ranges, entries }
     }
 
-    fn row(&self, i: usize) -> &[(u32, f64)] {
+    pub fn row(&self, i: usize) -> &[(u32, f64)] {
+        &self.entries[self.range(i)]
+    }
+
+    /// The places of row i.
+    pub fn range(&self, i: usize) -> std::ops::Range<usize> {
         let (begin, end) = self.ranges[i];
-        &self.entries[begin as usize..end as usize]
+        begin as usize..end as usize
+    }
+
+    /// Number of entries.
+    pub fn len(&self) -> usize {
+        self.entries.len()
     }
 
     fn row_mut(&mut self, i: usize) -> &mut [(u32, f64)] {
@@ -141,6 +179,16 @@ impl SparseLu {
         Ok(())
     }
 
+    /// Makes machine code for the pivots of the pattern.
+    #[cfg(all(test, feature = "jit"))]
+    pub(super) fn translate(&mut self) {
+        if let Some(factors) = &mut self.first {
+            let mut code = std::mem::take(&mut factors.code);
+            code.translate(&factors.shape());
+            factors.code = code;
+        }
+    }
+
     /// Nonzeros of the factors, the diagonal counted once.
     #[cfg(test)]
     pub(super) fn nonzeros(&self) -> usize {
@@ -174,6 +222,35 @@ impl Factors {
         work: &mut [f64],
         threshold: f64,
     ) -> Result<(), SingularMatrix> {
+        let mut code = std::mem::take(&mut self.code);
+        let mut last = std::mem::replace(&mut self.last, DenseLu::new(0));
+        let done = code.factorize(&self.shape(), values, last.matrix(), threshold);
+        (self.code, self.last) = (code, last);
+        match done {
+            Some(done) => done?,
+            None => self.factorize_in_loops(values, work, threshold)?,
+        }
+        self.last.factorize()
+    }
+
+    fn shape(&self) -> Shape<'_> {
+        Shape {
+            rows: &self.rows,
+            columns: &self.columns,
+            entry_starts: &self.entry_starts,
+            entries: &self.entries,
+            lower: &self.lower,
+            upper: &self.upper,
+            n_sparse: self.inverse_diagonal.len(),
+        }
+    }
+
+    fn factorize_in_loops(
+        &mut self,
+        values: &[f64],
+        work: &mut [f64],
+        threshold: f64,
+    ) -> Result<(), SingularMatrix> {
         let n = self.inverse_diagonal.len();
         for i in 0..n {
             work[i] = 0.0;
@@ -200,7 +277,7 @@ impl Factors {
                 self.last.matrix()[i + j * n_last] = *value;
             }
         }
-        self.last.factorize()
+        Ok(())
     }
 
     /// Computes row i of L, and in `work`, where zeros stand for its other entries, of U.
@@ -214,15 +291,29 @@ impl Factors {
             let k = *k as usize;
             let factor = work[k] * self.inverse_diagonal[k];
             *l = factor;
-            if factor != 0.0 {
-                for (j, u) in upper.row(k) {
-                    work[*j as usize] -= factor * u;
-                }
+            for (j, u) in upper.row(k) {
+                work[*j as usize] -= factor * u;
             }
         }
     }
 
     fn solve(&self, b: &mut [f64], work: &mut [f64]) {
+        let is_solved = self.code.solve(b, work, |b, work| self.solve_last(b, work));
+        if !is_solved {
+            self.solve_in_loops(b, work);
+        }
+    }
+
+    /// What is eliminated last.
+    fn solve_last(&self, b: &mut [f64], work: &mut [f64]) {
+        let n = self.inverse_diagonal.len();
+        self.last.solve(&mut work[n..]);
+        for (value, column) in work[n..].iter().zip(&self.columns[n..]) {
+            b[*column as usize] = *value;
+        }
+    }
+
+    fn solve_in_loops(&self, b: &mut [f64], work: &mut [f64]) {
         let n = self.inverse_diagonal.len();
         for i in 0..self.rows.len() {
             let mut sum = b[self.rows[i] as usize];
@@ -231,10 +322,7 @@ impl Factors {
             }
             work[i] = sum;
         }
-        self.last.solve(&mut work[n..]);
-        for (value, column) in work[n..].iter().zip(&self.columns[n..]) {
-            b[*column as usize] = *value;
-        }
+        self.solve_last(b, work);
         for i in (0..n).rev() {
             let mut sum = work[i];
             for (j, u) in self.upper.row(i) {
@@ -408,6 +496,7 @@ impl Elimination {
             entries,
             inverse_diagonal: vec![0.0; n - kept.len()],
             last: DenseLu::new(kept.len()),
+            code: StraightLine::default(),
         }
     }
 }

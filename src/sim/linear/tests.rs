@@ -73,6 +73,34 @@ proptest! {
         }
     }
 
+    /// Machine code and loops are one algorithm, to the bit, also where pivots fail.
+    #[test]
+    #[cfg(feature = "jit")]
+    fn code_without_loops_gives_the_same_bits(
+        (pattern, values) in sparse_matrix(40),
+        coupled in prop::collection::btree_set(0usize..40, 0..5),
+        factor in 0.5f64..2.0,
+    ) {
+        let coupled: Vec<usize> = coupled.into_iter().collect();
+        let mut loops = SparseLu::new(&pattern, &coupled);
+        // Finds the pivots.
+        let _ = loops.factorize(&values);
+        let mut code = loops.clone();
+        code.translate();
+        for number in 0..3 {
+            let scaled = |(i, v): (usize, &f64)| v * (1.0 + factor * ((number * i) as f64).cos());
+            let values: Vec<f64> = values.iter().enumerate().map(scaled).collect();
+            loops.forget();
+            code.forget();
+            prop_assert_eq!(loops.factorize(&values), code.factorize(&values));
+            let (mut a, mut b) = (vec![0.7; 40], vec![0.7; 40]);
+            loops.solve(&mut a);
+            code.solve(&mut b);
+            let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!(bits(&a), bits(&b));
+        }
+    }
+
     #[test]
     fn dense_factors_solve((pattern, values) in sparse_matrix(8)) {
         let mut dense = Factorization::new(&pattern, &[]);

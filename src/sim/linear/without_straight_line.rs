@@ -1,0 +1,34 @@
+//! In place of machine code for factors where the feature `jit` is left out: loops always.
+
+use super::SingularMatrix;
+use super::sparse::Shape;
+
+/// There is no code in any case.
+pub fn interpret() {}
+
+/// The code that factors never get.
+#[derive(Debug, Clone, Default)]
+pub(super) struct StraightLine;
+
+impl StraightLine {
+    /// The caller has to.
+    pub fn factorize(
+        &mut self,
+        _: &Shape<'_>,
+        _: &[f64],
+        _: &mut [f64],
+        _: f64,
+    ) -> Option<Result<(), SingularMatrix>> {
+        None
+    }
+
+    /// The caller has to.
+    pub fn solve(
+        &self,
+        _: &mut [f64],
+        _: &mut [f64],
+        _: impl FnOnce(&mut [f64], &mut [f64]),
+    ) -> bool {
+        false
+    }
+}
