@@ -605,3 +605,29 @@ end plotParametricCurve;
 fn plot_parametric_curve(session: &mut Session, args: Args) -> Result<Value, Failure> {
     draw_vectors(session, args, Mark::Line)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::script::world::MemoryWorld;
+
+    #[test]
+    fn columns_are_series_and_a_cleared_diagram_has_none() {
+        let mut session = Session::new(Box::new(MemoryWorld::new()));
+        let script = r#"
+plotArrays({0, 1, 2}, [1, 2; 4, 3; 9, 4], legend={"squares", "successors"}, title="Columns");
+clearPlot();
+plotArray({0, 1}, {0, 1}, legend="alone", erase=false);
+"#;
+        assert_eq!(session.run_text("plots", script).code, 0);
+        let folder = session.world.output_dir();
+        let drawn = |name: &str| {
+            let bytes = session.world.read(&folder.join(name)).expect("a figure");
+            String::from_utf8(bytes).expect("SVG")
+        };
+        let (columns, cleared) = (drawn("plot_1.svg"), drawn("plot_2.svg"));
+        assert!(["squares", "successors", "Columns"].iter().all(|name| columns.contains(name)));
+        assert!(["alone", "Columns"].iter().all(|name| cleared.contains(name)));
+        assert!(!cleared.contains("squares"), "{cleared}");
+    }
+}
