@@ -167,8 +167,8 @@ class Solution:
 
     def profiles(self) -> "Optional[_pandas.DataFrame]":
         """The profile likelihoods as a data frame of pandas: parameter, a value that it was held at, the
-        smallest sum of squares there, and the limit that the sum stays below within the 95 % interval. None
-        unless `profile=True` was asked for."""
+        smallest sum of squares there, and the limit that the sum stays below within the 95 % interval. None where
+        there are none: without `profile=True`, or where the search has not ended at a minimum."""
         import pandas
 
         found = self.data.get("profiles")
