@@ -14,6 +14,17 @@ use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::{Dae, Equation, Kind};
 use crate::symbolic::{Expr, Substitution, VarId};
 
+/// What a system is sorted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Purpose {
+    /// To solve it.
+    #[default]
+    Solution,
+    /// To find out what is wrong with it: blocks of Real variables, which can always be solved by
+    /// iteration, are left out.
+    Check,
+}
+
 /// Blocks, and the variables that are read before they are written.
 #[derive(Debug, Default)]
 pub(super) struct EventSystem {
@@ -27,6 +38,7 @@ pub(super) fn sort_events(
     dae: &mut Dae,
     continuous: &[Equation],
     unknowns: &[VarId],
+    purpose: Purpose,
 ) -> Result<EventSystem, Diagnostic> {
     if dae.events.equations.is_empty() {
         return Ok(EventSystem::default());
@@ -41,7 +53,7 @@ pub(super) fn sort_events(
     let origins: Vec<usize> =
         (0..equations.len()).map(|at| if at < n { at } else { at + n_initial }).collect();
     let system = format!("`{}`", dae.name);
-    sort_mixed(dae, &system, &equations, &origins, &all)
+    sort_mixed(dae, &system, Numbered { equations, origins }, &all, purpose)
 }
 
 /// Replaces `initial()` by its value.
@@ -57,14 +69,22 @@ pub(super) fn with_initial(dae: &mut Dae, equations: &mut [Equation], value: f64
     }
 }
 
-/// Sorts equations for unknowns some of which are discrete; `origins` numbers the equations.
+/// Equations with the numbers of what they come from.
+#[derive(Default)]
+pub(super) struct Numbered {
+    pub(super) equations: Vec<Equation>,
+    pub(super) origins: Vec<usize>,
+}
+
+/// Sorts equations for unknowns some of which are discrete.
 pub(super) fn sort_mixed(
     dae: &mut Dae,
     system: &str,
-    equations: &[Equation],
-    origins: &[usize],
+    Numbered { equations, origins }: Numbered,
     unknowns: &[VarId],
+    purpose: Purpose,
 ) -> Result<EventSystem, Diagnostic> {
+    let equations = equations.as_slice();
     let graph = incidence(dae, equations, unknowns);
     let matching = match_mixed(dae, equations, unknowns, &graph, equations.len());
     if equations.len() != unknowns.len() || !matching.is_perfect() {
@@ -77,14 +97,17 @@ pub(super) fn sort_mixed(
             .filter_map(|equation| matching.equation_to_unknown[*equation])
             .map(|unknown| unknowns[unknown])
             .collect();
-        let is_single = block.len() == 1;
-        if is_single || members.iter().all(|v| dae.variable(*v).base == BaseType::Real) {
+        let is_real = members.iter().all(|v| dae.variable(*v).base == BaseType::Real);
+        if is_real && purpose == Purpose::Check {
+            continue;
+        }
+        if is_real || block.len() == 1 {
             sorted.blocks.push(solve_block(dae, equations, &block, &members)?);
         } else {
-            cut(dae, system, equations, &block, &members, &mut sorted)?;
+            cut(dae, system, equations, (&block, &members), (&mut sorted, purpose))?;
         }
     }
-    sorted.blocks.iter_mut().for_each(|block| renumber(block, origins));
+    sorted.blocks.iter_mut().for_each(|block| renumber(block, &origins));
     Ok(sorted)
 }
 
@@ -124,9 +147,8 @@ fn cut(
     dae: &mut Dae,
     system: &str,
     equations: &[Equation],
-    block: &[usize],
-    members: &[VarId],
-    sorted: &mut EventSystem,
+    (block, members): (&[usize], &[VarId]),
+    (sorted, purpose): (&mut EventSystem, Purpose),
 ) -> Result<(), Diagnostic> {
     let local: Vec<Equation> = block.iter().map(|equation| equations[*equation]).collect();
     let graph = incidence(dae, &local, members);
@@ -145,7 +167,7 @@ fn cut(
     }
     let rows = values.iter().map(|row| row.iter().map(|(unknown, _)| *unknown).collect::<Vec<_>>());
     let matching = match_equations(&Bipartite::new(members.len(), rows.collect::<Vec<_>>()));
-    let mut rest = (Vec::new(), Vec::new(), Vec::new());
+    let (mut rest, mut unknowns) = (Numbered::default(), Vec::new());
     let mut assignments = Vec::new();
     for (row, choices) in values.iter().enumerate() {
         let Some(unknown) = matching.equation_to_unknown[row] else {
@@ -161,13 +183,13 @@ fn cut(
                 assignments.push(Assignment { variable, value, equation: block[row] });
             }
             None => {
-                rest.0.push(local[row]);
-                rest.1.push(block[row]);
-                rest.2.push(members[unknown]);
+                rest.equations.push(local[row]);
+                rest.origins.push(block[row]);
+                unknowns.push(members[unknown]);
             }
         }
     }
-    let inner = sort_mixed(dae, system, &rest.0, &rest.1, &rest.2)?;
+    let inner = sort_mixed(dae, system, rest, &unknowns, purpose)?;
     sorted.blocks.extend(inner.blocks);
     sorted.iterated.extend(assignments.iter().map(|assignment| assignment.variable));
     sorted.blocks.extend(assignments.into_iter().map(Block::Assignment));

@@ -10,7 +10,7 @@
 
 use super::blt::incidence;
 use super::causalized::{Alias, Block, Selection};
-use super::event_system::{match_mixed, of_kind, sort_mixed, with_initial};
+use super::event_system::{Numbered, Purpose, match_mixed, of_kind, sort_mixed, with_initial};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -27,13 +27,6 @@ pub(super) struct InitialSystem {
     pub(super) iterated: Vec<VarId>,
 }
 
-/// Equations with the numbers of what they come from.
-#[derive(Default)]
-struct Numbered {
-    equations: Vec<Equation>,
-    origins: Vec<usize>,
-}
-
 impl Numbered {
     fn push(&mut self, equation: Equation, origin: usize) {
         self.equations.push(equation);
@@ -48,6 +41,7 @@ pub(super) fn sort_initial(
     selections: &[Selection],
     unknowns: &[VarId],
     aliases: &[Option<Alias>],
+    purpose: Purpose,
 ) -> Result<InitialSystem, Diagnostic> {
     let mut all: Vec<VarId> = states.to_vec();
     all.extend(unknowns);
@@ -95,7 +89,7 @@ pub(super) fn sort_initial(
         warn_of_start_values(dae, &held);
     }
     let name = format!("the initial system of `{}`", dae.name);
-    let sorted = sort_mixed(dae, &name, &used.equations, &used.origins, &all)?;
+    let sorted = sort_mixed(dae, &name, used, &all, purpose)?;
     Ok(InitialSystem { blocks: sorted.blocks, checks, iterated: sorted.iterated })
 }
 

@@ -60,6 +60,15 @@ pub fn causalize(flat: &FlatModel) -> Result<CausalizedDae, Diagnostic> {
     with_zeros(flat).map(|(causalized, _)| causalized)
 }
 
+/// Finds out what is wrong with a flat model. What only the solution needs is not computed: blocks at
+/// events and at the start are not solved, and parameters of zero do not lead to a second structure.
+///
+/// # Errors
+/// Those of [`causalize`].
+pub fn check(flat: &FlatModel) -> Result<(), Diagnostic> {
+    passes::check(flat).map(drop)
+}
+
 /// The causalized system, and the parameters of zero that its structure takes as numbers.
 fn with_zeros(flat: &FlatModel) -> Result<(CausalizedDae, ZeroCoefficients), Diagnostic> {
     let mut zeros = ZeroCoefficients::default();
@@ -87,7 +96,7 @@ fn causalize_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<Causalize
 /// The error that a model is not balanced, with the variables and equations concerned, if they can
 /// be told.
 pub fn explain_imbalance(flat: &FlatModel, error: Diagnostic) -> Diagnostic {
-    let found = match causalize(flat) {
+    let found = match check(flat) {
         Err(found) if [SINGULAR_SYSTEM, UNBALANCED_MODEL].contains(&found.code) => found,
         _ => return error,
     };

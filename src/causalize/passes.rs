@@ -2,7 +2,7 @@
 
 use super::causalized::{Alias, CausalizedDae};
 use super::dummy_derivatives::ChosenStates;
-use super::event_system::{self, EventSystem};
+use super::event_system::{self, EventSystem, Purpose};
 use super::hidden_constraints::hidden_constraints;
 use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
@@ -95,6 +95,7 @@ pub(super) struct Causalization<'a> {
     flat: &'a FlatModel,
     /// Parameters of zero that the structure takes as numbers.
     zeros: &'a ZeroCoefficients,
+    purpose: Purpose,
     dae: Dae,
     parameters: Vec<VarId>,
     aliases: Vec<Option<Alias>>,
@@ -118,7 +119,7 @@ pub(super) fn run_passes(
     zeros: &ZeroCoefficients,
     show: &mut Show<'_>,
 ) -> Result<CausalizedDae, Diagnostic> {
-    let mut system = Causalization::new(flat, zeros);
+    let mut system = Causalization::new(flat, zeros, Purpose::Solution);
     for pass in PASSES {
         (pass.run)(&mut system)?;
         if pass.write_blocks.is_none() {
@@ -128,11 +129,20 @@ pub(super) fn run_passes(
     Ok(system.finish())
 }
 
+/// Executes all passes as far as they find out what is wrong with a system; how many blocks were solved.
+pub(super) fn check(flat: &FlatModel) -> Result<usize, Diagnostic> {
+    let zeros = ZeroCoefficients::default();
+    let mut system = Causalization::new(flat, &zeros, Purpose::Check);
+    PASSES.iter().try_for_each(|pass| (pass.run)(&mut system))?;
+    Ok(system.blocks.len() + system.events.blocks.len() + system.initial.blocks.len())
+}
+
 impl<'a> Causalization<'a> {
-    fn new(flat: &'a FlatModel, zeros: &'a ZeroCoefficients) -> Self {
+    fn new(flat: &'a FlatModel, zeros: &'a ZeroCoefficients, purpose: Purpose) -> Self {
         Causalization {
             flat,
             zeros,
+            purpose,
             dae: Dae::default(),
             parameters: Vec::new(),
             aliases: Vec::new(),
@@ -220,7 +230,8 @@ impl<'a> Causalization<'a> {
     }
 
     fn sort_events(&mut self) -> Result<(), Diagnostic> {
-        self.events = event_system::sort_events(&mut self.dae, &self.actual, &self.unknowns)?;
+        let (dae, equations) = (&mut self.dae, &self.actual);
+        self.events = event_system::sort_events(dae, equations, &self.unknowns, self.purpose)?;
         Ok(())
     }
 
@@ -232,6 +243,7 @@ impl<'a> Causalization<'a> {
             selections,
             &self.unknowns,
             &self.aliases,
+            self.purpose,
         )?;
         Ok(())
     }
@@ -253,5 +265,57 @@ impl<'a> Causalization<'a> {
             iterated,
             parameters: self.parameters,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::causalize::{Block, causalize};
+    use crate::flatten::{BaseType, Library, flatten};
+    use crate::source::SourceMap;
+    use crate::syntax::parse_stored_definition;
+
+    /// Three pairs of unknowns in a loop, and a value that only events change.
+    const LOOPS: &str = "\
+model Loops
+  parameter Real a[3] = {2, 3, 4};
+  Real x[3](each start = 1, each fixed = true);
+  Real u[3];
+  Real v[3];
+  discrete Real k(start = 1, fixed = true);
+equation
+  for i in 1:3 loop
+    der(x[i]) = u[i] - k*x[i];
+    a[i]*u[i] + v[i] = x[i];
+    u[i] - a[i]*v[i] = k;
+  end for;
+  when time > 0.5 then
+    k = pre(k) + 1;
+  end when;
+end Loops;
+";
+
+    #[test]
+    fn a_check_solves_the_blocks_between_events_alone() {
+        let sources = SourceMap::default();
+        let source = sources.add("Loops.mo", LOOPS);
+        let file = parse_stored_definition(source, LOOPS).expect("Modelica");
+        let mut library = Library::new();
+        let names = library.load(&file).expect("a class");
+        let flat = flatten(&library, &names[0], &[]).expect("a model").model;
+        let solved = causalize(&flat).expect("it can be solved");
+        let is_real = |v: VarId| solved.dae.variable(v).base == BaseType::Real;
+        // The condition is a Boolean at events and at the start; what is left out is Real.
+        let discrete = |blocks: &[Block]| {
+            let assigned = blocks
+                .iter()
+                .filter(|block| matches!(block, Block::Assignment(a) if !is_real(a.variable)));
+            assigned.count()
+        };
+        let rest = discrete(&solved.event_blocks) + discrete(&solved.initial_blocks);
+        assert_eq!(check(&flat).expect("nothing is wrong"), solved.blocks.len() + rest);
+        let all = solved.blocks.len() + solved.event_blocks.len() + solved.initial_blocks.len();
+        assert!(2 * (solved.blocks.len() + rest) < all, "{rest} {all}");
     }
 }

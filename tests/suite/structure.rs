@@ -2,7 +2,7 @@
 
 use super::flat_class::flat;
 use super::shipped::{project, world};
-use gapilib::causalize::{PASSES, Pass, causalize, dump, report, sizes};
+use gapilib::causalize::{PASSES, Pass, causalize, check, dump, report, sizes};
 use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::FlatModel;
@@ -19,6 +19,29 @@ fn sorted_systems() {
 #[test]
 fn sizes_after_every_pass() {
     shown(".sizes", sizes);
+}
+
+/// Editors check a model without solving it, with the errors of a simulation.
+#[test]
+fn a_check_finds_what_causalization_finds() {
+    // Wrong between events, at events, and at the start.
+    let wrong = [
+        "model Twice Real x; Real y; equation x = 1; x = 2; y*0 = time; end Twice;",
+        "model Whole Integer i; Integer j; equation i + j = 3; i - j = 1; end Whole;",
+        "model Free parameter Real p(fixed = false); Real x; equation x = p; end Free;",
+    ];
+    let entries = std::fs::read_dir(project("tests/structure")).expect("a folder");
+    let files = entries.map(|entry| entry.expect("an entry").path());
+    let models = files.filter(|path| path.extension().is_some_and(|extension| extension == "mo"));
+    let models = models.map(|path| std::fs::read_to_string(path).expect("a model"));
+    let mut count = 0;
+    for text in models.chain(wrong.map(str::to_owned)) {
+        let flat = flat(&text);
+        let (found, expected) = (check(&flat).err(), causalize(&flat).err());
+        count += usize::from(expected.is_some());
+        assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{text}");
+    }
+    assert!(count > wrong.len(), "{count}");
 }
 
 #[test]

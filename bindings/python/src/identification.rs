@@ -4,18 +4,20 @@ use crate::errors::{Reported, raised};
 use crate::session::{Answer, checked};
 use crate::worker::{Worker, written};
 use gapilib::cli::embedding::Embedding;
+use gapilib::identify::problem::Solution;
 use gapilib::script::Session as Engine;
 use gapilib::script::access::policy::Grant;
 use gapilib::script::runs::problem::{RunOptions, grant_inputs, solve};
+use indexmap::IndexMap;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// The solution as JSON, as text and as the report's page.
-type Solved = (String, String, String);
+/// The solution as JSON, as text, as the report's page, and its figures as SVG by their names.
+type Solved = (String, String, String, IndexMap<String, String>);
 
-/// Solves the problem of a file as `gapi identify` does: JSON, text and page of the solution. The
-/// package's `identify` makes an object of them.
+/// Solves the problem of a file as `gapi identify` does: JSON, text, page and figures of the solution.
+/// The package's `identify` makes an object of them.
 #[pyfunction]
 #[pyo3(signature = (problem, *, out=None, overwrite=false, resume=false, fresh=false, profile=false,
     design=false, bootstrap=false, posterior=false, sensitivity=None, samples=0, evaluations=None,
@@ -65,6 +67,8 @@ pub(crate) fn identify(
     };
     let file = problem.clone();
     let worker = Worker::new(
+        py,
+        threads,
         move |screen, stop| {
             let task = ("gapi identify", file.as_path());
             embedding.session_for(task, (out.as_deref(), overwrite), (screen, stop))
@@ -93,5 +97,17 @@ fn solved(
     let solution = solve(engine, problem, options);
     let solution = checked(engine, solution)?;
     let interrupted = engine.is_interrupted();
-    Ok(((solution.to_json(), solution.text(), solution.html()), interrupted))
+    let solved = (solution.to_json(), solution.text(), solution.html(), figures(&solution));
+    Ok((solved, interrupted))
+}
+
+/// Those that `gapi identify` writes, by the names of the files, and the profiles of the report.
+fn figures(solution: &Solution) -> IndexMap<String, String> {
+    let stem = |name: String| name.trim_end_matches(".svg").to_owned();
+    let fits = solution.fit_figures().into_iter().map(|(name, figure)| (stem(name), figure));
+    let profiles = solution.profile_figures().into_iter();
+    let profiles = profiles.map(|(parameter, figure)| (format!("profile-{parameter}"), figure));
+    let convergence = ("convergence".to_owned(), solution.convergence_figure());
+    let all = fits.chain([convergence]).chain(profiles);
+    all.map(|(name, figure)| (name, figure.svg())).collect()
 }

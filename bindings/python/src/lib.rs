@@ -5,6 +5,7 @@
 //! the simulator has made.
 
 mod errors;
+mod forked;
 mod identification;
 mod model;
 mod operators;
@@ -22,8 +23,9 @@ use pyo3::prelude::*;
 
 /// Runs the command line; its exit code.
 #[pyfunction]
-fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
-    py.detach(|| gapilib::cli::embedding::command(arguments))
+fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResult<u8> {
+    let _at_work = forked::AtWork::begin(py)?;
+    Ok(py.detach(|| gapilib::cli::embedding::command(arguments)))
 }
 
 #[pymodule]

@@ -53,6 +53,8 @@ pub(crate) fn run<'py>(
     let permissions = Permissions { system: allow_system, ..Permissions::default() };
     let file = script.clone();
     let worker = Worker::new(
+        py,
+        threads,
         move |screen, stop| {
             let task = ("gapi run", file.as_path());
             let session =

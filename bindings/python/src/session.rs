@@ -56,6 +56,7 @@ impl Session {
         allow_write=false, allow_external=false, cache=true, dialogue=false, progress=None))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
     fn new(
+        py: Python<'_>,
         libraries: Vec<PathBuf>,
         threads: Option<usize>,
         allow_read: Vec<PathBuf>,
@@ -82,7 +83,7 @@ impl Session {
             false => Options::default(),
         };
         let open = move |screen, stop| Ok(embedding.session(screen, stop)?.with_options(options));
-        Ok(Session { worker: Arc::new(Worker::new(open, progress)?), threads })
+        Ok(Session { worker: Arc::new(Worker::new(py, threads, open, progress)?), threads })
     }
 
     /// Loads a Modelica file, or a package from its folder; the names of its classes.

@@ -1,6 +1,7 @@
 //! Many simulations of one model, spread over all cores.
 
 use crate::errors::raised_fault;
+use crate::forked::{AtWork, Own};
 use crate::values;
 use crate::watch::Watched;
 use gapilib::diag::Fault;
@@ -46,17 +47,14 @@ pub(crate) struct Simulator {
 }
 
 /// The threads for many simulations. A forked process has none of them and makes its own.
-struct Pool {
-    process: u32,
-    threads: Arc<rayon::ThreadPool>,
-}
+type Pool = Own<Arc<rayon::ThreadPool>>;
 
-impl Pool {
-    fn new(threads: usize) -> PyResult<Pool> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let threads = pool.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(Pool { process: std::process::id(), threads: Arc::new(threads) })
-    }
+fn new_pool(threads: usize) -> PyResult<Arc<rayon::ThreadPool>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    // All have begun: what a thread locks when it begins is free when the process forks.
+    pool.broadcast(|_| ());
+    Ok(Arc::new(pool))
 }
 
 /// The answer to one row.
@@ -70,6 +68,7 @@ impl Simulator {
         tolerance: Option<f64>,
         threads: usize,
     ) -> PyResult<Simulator> {
+        let _at_work = AtWork::begin(py)?;
         if points.x.is_empty() || points.x.iter().any(|x| !x.is_finite()) {
             return Err(PyValueError::new_err("`at` must hold finite numbers, at least one"));
         }
@@ -97,21 +96,21 @@ impl Simulator {
             parameters,
             points,
             workers: Arc::new(workers),
-            pool: Mutex::new(Pool::new(threads)?),
+            pool: Mutex::new(Own::new(new_pool(threads)?)),
             busy: Arc::new(Mutex::new(())),
-            watched: Watched::new()?,
+            watched: Watched::new(),
         })
     }
 
     /// The threads of this process.
     fn threads(&self) -> PyResult<Arc<rayon::ThreadPool>> {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        if pool.process != std::process::id() {
-            let new = Pool::new(self.workers.len())?;
-            // Its end would wait for threads that are not here.
-            std::mem::forget(std::mem::replace(&mut *pool, new));
+        if let Some(threads) = pool.get() {
+            return Ok(threads.clone());
         }
-        Ok(pool.threads.clone())
+        let threads = new_pool(self.workers.len())?;
+        *pool = Own::new(threads.clone());
+        Ok(threads)
     }
 
     fn n_values(&self) -> usize {
@@ -165,13 +164,18 @@ impl Simulator {
         py: Python<'_>,
         work: impl FnOnce(Arc<AtomicBool>) -> T + Send + 'static,
     ) -> PyResult<T> {
+        let at_work = AtWork::begin(py)?;
         let busy = self.busy.clone();
         let (done, is_done) = mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
         let run = move || {
-            let _alone = busy.lock().unwrap_or_else(PoisonError::into_inner);
-            drop(done.send(work(stopped)));
+            let alone = busy.lock().unwrap_or_else(PoisonError::into_inner);
+            let answer = work(stopped);
+            // Before the answer: whoever has it may fork.
+            drop(alone);
+            drop(at_work);
+            drop(done.send(answer));
         };
         std::thread::Builder::new().spawn(run)?;
         let is_done = Mutex::new(is_done);
@@ -204,6 +208,8 @@ impl Simulator {
         work: impl Fn(&mut ModelSimulator) -> Result<T, Failed> + Send + Sync + 'static,
     ) -> PyResult<Result<T, Failed>> {
         if !self.watched.is_slow() {
+            let _at_work = AtWork::begin(py)?;
+            self.watched.watch()?;
             let answer = py.detach(|| {
                 let _alone = self.busy.lock().unwrap_or_else(PoisonError::into_inner);
                 let mut worker = self.workers[0].lock().unwrap_or_else(PoisonError::into_inner);

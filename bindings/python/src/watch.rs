@@ -4,8 +4,10 @@
 //! thread watches how long such calls last and cancels them, so that they are made again where the
 //! calling thread is free.
 
+use crate::forked::Own;
 use std::io;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
@@ -15,17 +17,15 @@ const LONG: u64 = 100;
 const TICK: Duration = Duration::from_millis(50);
 
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
-static ALL: Mutex<All> = Mutex::new(All { process: 0, watched: Vec::new() });
 
-/// What the thread of this process watches. It ends when nothing is left.
-struct All {
-    /// A forked process has the memory, but not the thread.
-    process: u32,
-    watched: Vec<Weak<Watched>>,
-}
+/// Where the thread of this process gets what it watches. The thread itself never locks it: a forked
+/// process finds it free.
+static THREAD: Mutex<Option<Own<Sender<Weak<Watched>>>>> = Mutex::new(None);
 
 /// Calls of one simulator, one after the other.
 pub(crate) struct Watched {
+    /// The process whose thread watches.
+    process: AtomicU32,
     /// When the present call began, milliseconds; 0 between two calls.
     begun: AtomicU64,
     late: Arc<AtomicBool>,
@@ -34,21 +34,37 @@ pub(crate) struct Watched {
 }
 
 impl Watched {
-    pub(crate) fn new() -> io::Result<Arc<Watched>> {
-        let watched = Arc::new(Watched {
+    pub(crate) fn new() -> Arc<Watched> {
+        Arc::new(Watched {
+            process: AtomicU32::new(0),
             begun: AtomicU64::new(0),
             late: Arc::new(AtomicBool::new(false)),
             slow: AtomicBool::new(false),
-        });
-        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
-        if all.process != std::process::id() {
-            *all = All { process: std::process::id(), watched: Vec::new() };
+        })
+    }
+
+    /// Has the thread of this process watch it, which begins where there is none.
+    ///
+    /// # Errors
+    ///
+    /// There are no more threads to be had.
+    pub(crate) fn watch(self: &Arc<Watched>) -> io::Result<()> {
+        let process = std::process::id();
+        if self.process.load(Ordering::Relaxed) == process {
+            return Ok(());
         }
-        if all.watched.is_empty() {
-            std::thread::Builder::new().name("gapilib-watch".to_owned()).spawn(watch)?;
+        let mut thread = THREAD.lock().unwrap_or_else(PoisonError::into_inner);
+        if thread.as_ref().and_then(Own::get).is_none() {
+            let (to, new) = mpsc::channel();
+            std::thread::Builder::new().name("gapilib-watch".to_owned()).spawn(|| watch(new))?;
+            *thread = Some(Own::new(to));
         }
-        all.watched.push(Arc::downgrade(&watched));
-        Ok(watched)
+        if let Some(to) = thread.as_ref().and_then(Own::get) {
+            // The thread ends with the process.
+            let _ = to.send(Arc::downgrade(self));
+        }
+        self.process.store(process, Ordering::Relaxed);
+        Ok(())
     }
 
     /// Whether the next call is likely to be long.
@@ -82,11 +98,18 @@ fn now() -> u64 {
     1 + u64::try_from(BEGIN.elapsed().as_millis()).unwrap_or(u64::MAX - 1)
 }
 
-fn watch() {
+fn watch(new: Receiver<Weak<Watched>>) {
+    let mut all: Vec<Weak<Watched>> = Vec::new();
     loop {
+        if all.is_empty() {
+            match new.recv() {
+                Ok(first) => all.push(first),
+                Err(_) => return,
+            }
+        }
         std::thread::sleep(TICK);
-        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
-        all.watched.retain(|one| {
+        all.extend(new.try_iter());
+        all.retain(|one| {
             one.upgrade().is_some_and(|one| {
                 let begun = one.begun.load(Ordering::SeqCst);
                 if begun != 0 && now() > begun + LONG {
@@ -95,8 +118,5 @@ fn watch() {
                 true
             })
         });
-        if all.watched.is_empty() {
-            return;
-        }
     }
 }

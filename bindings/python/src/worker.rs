@@ -1,5 +1,6 @@
 //! A session on a thread of its own.
 
+use crate::forked::{AtWork, Own};
 use crate::screen::{Channel, Event};
 use gapilib::script::world::Screen;
 use gapilib::script::{Session, with_stack};
@@ -9,7 +10,7 @@ use pyo3::sync::MutexExt as _;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -24,33 +25,45 @@ type Work = Box<dyn FnOnce(&mut Session) + Send>;
 
 /// The thread of a session; it ends with this value.
 pub(crate) struct Worker {
-    /// The process that it was made in: a forked one has no such thread.
-    process: u32,
-    /// `None` at its end.
-    work: Option<Sender<Work>>,
-    thread: Option<JoinHandle<()>>,
+    /// A forked process has no such thread.
+    link: Own<Link>,
     /// While one work is done, another one waits.
     busy: Mutex<()>,
-    events: Arc<Mutex<Receiver<Event>>>,
-    finished: Sender<Event>,
     stop: Arc<AtomicBool>,
     progress: Option<Py<PyAny>>,
 }
 
+/// What the thread is given and what comes from it.
+struct Link {
+    work: Sender<Work>,
+    thread: JoinHandle<()>,
+    events: Mutex<Receiver<Event>>,
+    finished: Sender<Event>,
+}
+
 impl Worker {
     /// Starts the thread, on which `open` makes the session; `progress` is called with a label, the
-    /// part that is done, the whole (0 where it is not known), and the best fitness.
+    /// part that is done, the whole (0 where it is not known), and the best fitness. `threads`: how
+    /// many the session spreads its work over, all cores without.
+    ///
+    /// # Errors
+    ///
+    /// The session cannot be made; `RuntimeError` in a process that was forked during other work.
     pub(crate) fn new(
+        py: Python<'_>,
+        threads: Option<usize>,
         open: impl FnOnce(Box<dyn Screen>, Arc<AtomicBool>) -> io::Result<Session> + Send + 'static,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Worker> {
+        let _at_work = AtWork::begin(py)?;
         let (work, jobs) = mpsc::channel::<Work>();
         let (events, received) = mpsc::channel();
         let (opened, is_open) = mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let (screen, flag) = (Box::new(Channel(events.clone())), stop.clone());
         let live = move || {
-            let mut session = match open(screen, flag) {
+            let session = own_threads(threads).and_then(|pool| Ok((pool, open(screen, flag)?)));
+            let (_pool, mut session) = match session {
                 Ok(session) => session,
                 Err(error) => return drop(opened.send(Err(error))),
             };
@@ -60,16 +73,8 @@ impl Worker {
         let thread = std::thread::Builder::new().name("gapilib".to_owned()).stack_size(STACK);
         let thread = thread.spawn(live)?;
         is_open.recv().map_err(|_| PyRuntimeError::new_err("the session did not start"))??;
-        Ok(Worker {
-            process: std::process::id(),
-            work: Some(work),
-            thread: Some(thread),
-            busy: Mutex::new(()),
-            events: Arc::new(Mutex::new(received)),
-            finished: events,
-            stop,
-            progress,
-        })
+        let link = Link { work, thread, events: Mutex::new(received), finished: events };
+        Ok(Worker { link: Own::new(link), busy: Mutex::new(()), stop, progress })
     }
 
     /// Stops the work that is being done.
@@ -100,39 +105,45 @@ impl Worker {
         py: Python<'_>,
         job: impl FnOnce(&mut Session) -> T + Send + 'static,
     ) -> PyResult<(T, String)> {
-        if self.process != std::process::id() {
+        let Some(link) = self.link.get() else {
             return Err(PyRuntimeError::new_err(format!(
                 "the session belongs to the process {}: make a session in each process, or start \
                  processes with the method \"spawn\"",
-                self.process
+                self.link.process()
             )));
-        }
+        };
         let _alone = self.busy.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let at_work = AtWork::begin(py)?;
         self.stop.store(false, Ordering::SeqCst);
         let (answer, answered) = mpsc::channel();
-        let finished = self.finished.clone();
+        let finished = link.finished.clone();
         let work: Work = Box::new(move |session| {
-            // Said also where the work panics.
+            // Said also where the work panics, and last: whoever hears it may fork.
             let _done = Done(finished);
+            let _at_work = at_work;
             drop(answer.send(job(session)));
         });
         let gone = || PyRuntimeError::new_err("the session has ended after an internal error");
-        let sent = self.work.as_ref().map(|to| to.send(work));
-        sent.ok_or_else(gone)?.map_err(|_| gone())?;
+        link.work.send(work).map_err(|_| gone())?;
         let mut errors = String::new();
-        let interrupt = self.wait(py, &mut errors);
+        let interrupt = self.wait(py, &link.events, &mut errors);
         let answer = answered.recv().map_err(|_| gone());
         interrupt.and(answer).map(|answer| (answer, errors))
     }
 
     /// Shows what comes until the work is done, but for `errors`; what interrupted it meanwhile.
-    fn wait(&self, py: Python<'_>, errors: &mut String) -> PyResult<()> {
+    fn wait(
+        &self,
+        py: Python<'_>,
+        events: &Mutex<Receiver<Event>>,
+        errors: &mut String,
+    ) -> PyResult<()> {
         let mut interrupt = Ok(());
         let mut next = None;
         loop {
             let event = match next.take() {
                 Some(event) => Ok(event),
-                None => py.detach(|| self.events().recv_timeout(TICK)),
+                None => py.detach(|| locked(events).recv_timeout(TICK)),
             };
             let shown = match event {
                 Ok(Event::Done) | Err(RecvTimeoutError::Disconnected) => return interrupt,
@@ -141,7 +152,7 @@ impl Worker {
                     Ok(())
                 }
                 Ok(Event::Output(text)) => {
-                    let (text, other) = self.more(text);
+                    let (text, other) = more(events, text);
                     next = other;
                     written(py, "stdout", &text)
                 }
@@ -153,24 +164,6 @@ impl Worker {
                 interrupt = interrupt.and(Err(error));
             }
         }
-    }
-
-    fn events(&self) -> std::sync::MutexGuard<'_, Receiver<Event>> {
-        self.events.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// What has been printed meanwhile, as one text: a notebook takes longer for a line than a script.
-    /// And the event behind it.
-    fn more(&self, mut text: String) -> (String, Option<Event>) {
-        let events = self.events();
-        while text.len() < LARGE {
-            match events.try_recv() {
-                Ok(Event::Output(more)) => text.push_str(&more),
-                Ok(event) => return (text, Some(event)),
-                Err(_) => break,
-            }
-        }
-        (text, None)
     }
 
     fn show(&self, py: Python<'_>, event: Event) -> PyResult<()> {
@@ -192,12 +185,41 @@ impl Worker {
 impl Drop for Worker {
     /// Waits for the end of the session: what it has locked is free afterwards.
     fn drop(&mut self) {
-        self.work = None;
-        if self.process == std::process::id() {
+        if let Some(Link { work, thread, .. }) = self.link.take() {
+            drop(work);
             // It has shown what is wrong already.
-            let _ = self.thread.take().map(JoinHandle::join);
+            let _ = thread.join();
         }
     }
+}
+
+/// Threads that the calling one, which is one of them, spreads its work over. Those that all threads of a
+/// process share are not there in a forked one.
+fn own_threads(count: Option<usize>) -> io::Result<rayon::ThreadPool> {
+    // 0: all cores.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0)).use_current_thread();
+    let pool = pool.build().map_err(io::Error::other)?;
+    // All have begun: what a thread locks when it begins is free when the process forks.
+    pool.broadcast(|_| ());
+    Ok(pool)
+}
+
+fn locked(events: &Mutex<Receiver<Event>>) -> MutexGuard<'_, Receiver<Event>> {
+    events.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What has been printed meanwhile, as one text: a notebook takes longer for a line than a script. And
+/// the event behind it.
+fn more(events: &Mutex<Receiver<Event>>, mut text: String) -> (String, Option<Event>) {
+    let events = locked(events);
+    while text.len() < LARGE {
+        match events.try_recv() {
+            Ok(Event::Output(more)) => text.push_str(&more),
+            Ok(event) => return (text, Some(event)),
+            Err(_) => break,
+        }
+    }
+    (text, None)
 }
 
 /// Says at its end that a work is done.

@@ -61,6 +61,43 @@ def test_a_problem_as_a_dict(problem, capsys):
     assert isinstance(table, pandas.DataFrame) and table.loc["k", "low"] < k < table.loc["k", "high"]
 
 
+def test_profiles_and_plots(problem, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    solution = gapilib.identify(problem, profile=True, out=str(tmp_path / "out"), overwrite=True, progress=False)
+    profiles = solution.profiles()
+    written = pandas.read_csv(tmp_path / "out" / "profiles.csv")
+    pandas.testing.assert_frame_equal(profiles, written)
+    assert list(profiles["parameter"].unique()) == ["k", "a"]
+    # Where a profile is least is the solution; where it crosses the limit ends the interval of the report.
+    times = np.linspace(0.1, 2, 20)
+    measured = 1.3 * np.exp(-2.1 * times) + 1e-3 * np.sin(37 * np.arange(20))
+    for name, one in profiles.groupby("parameter"):
+        least = one.loc[one["sum_of_squares"].idxmin()]
+        assert least["value"] == pytest.approx(solution.parameters[name], rel=1e-4)
+    of_k = profiles[profiles["parameter"] == "k"]
+    for k, found in zip(of_k["value"], of_k["sum_of_squares"]):
+        # With k held, the best a is that of linear least squares.
+        shape = np.exp(-k * times)
+        residuals = measured - shape * (shape @ measured) / (shape @ shape)
+        assert found == pytest.approx(residuals @ residuals, rel=1e-3)
+
+    assert list(solution.plots) == ["fit", "convergence", "profile-k", "profile-a"]
+    for name, plot in solution.plots.items():
+        assert plot._repr_svg_() == plot.svg and plot.svg.startswith("<svg") and plot.svg.rstrip().endswith("</svg>")
+        file = tmp_path / "out" / f"{name}.svg"
+        if not name.startswith("profile"):
+            assert plot.svg == file.read_text()
+    assert "profile of k" in solution.plots["profile-k"].svg
+    solution.plots["fit"].save(tmp_path / "copy.svg")
+    assert (tmp_path / "copy.svg").read_text() == solution.plots["fit"].svg
+
+
+def test_without_profiles_there_are_none(problem):
+    solution = gapilib.identify(problem, progress=False)
+    assert solution.profiles() is None
+    assert list(solution.plots) == ["fit", "convergence"]
+
+
 def test_a_problem_in_a_file_gives_the_same(problem, tmp_path):
     from gapilib import _toml
 

@@ -19,6 +19,7 @@ NOTEBOOKS = [
     ("least_squares", ["scipy", "matplotlib"], 1e-3),
     ("pypesto", ["pypesto", "matplotlib"], 0.02),
     ("posterior", ["emcee", "arviz", "matplotlib"], 0.15),
+    ("pymc", ["pymc", "arviz", "matplotlib"], 0.15),
 ]
 
 

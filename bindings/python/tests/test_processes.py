@@ -2,6 +2,7 @@
 
 import copy
 import multiprocessing
+import os
 import pickle
 import signal
 import subprocess
@@ -13,6 +14,8 @@ import numpy as np
 import pytest
 
 import gapilib
+
+from conftest import DECAY
 
 TIMES = [0.5, 1.0]
 
@@ -70,6 +73,8 @@ def _forked(work):
     if process.is_alive():
         process.kill()
         pytest.fail("the forked process hangs")
+    # One that has died has said nothing.
+    assert process.exitcode == 0 and not answers.empty()
     return answers.get()
 
 
@@ -93,12 +98,72 @@ def test_a_forked_process_needs_a_session_of_its_own(session, decay):
     assert isinstance(error, RuntimeError) and "session in each process" in str(error)
     assert isinstance(_forked(lambda: session.execute("a = 1;")), RuntimeError)
 
+    # What is read in pieces is spread over threads, which a forked process does not have.
+    classes = "".join(f"model M{k} Real x = {k}; end M{k}; " for k in range(40))
+
     def own():
         session = gapilib.Session(cache=False)
+        session.load_text(classes)
         session.execute("a = 6*7;")
-        return session["a"]
+        return session["a"], session.model("M7").simulate(stop=1.0)["x"][-1]
 
-    assert _forked(own) == 42
+    assert own() == (42, 7)
+    assert _forked(own) == (42, 7)
+
+
+@needs_fork
+def test_what_a_call_has_used_is_free_behind_it(decay):
+    simulator = decay.simulator(["k"], "x", TIMES)
+    rows = [[1.0], [2.0], [3.0]]
+    expected = simulator.many(rows)
+    for _ in range(20):
+        simulator.many(rows)
+        np.testing.assert_array_equal(_forked(lambda: simulator.many(rows)), expected)
+
+
+@needs_fork
+def test_a_process_that_was_forked_during_other_work_is_refused(tmp_path, decay):
+    (tmp_path / "data.csv").write_text("t,x\n0.5,0.4\n1.0,0.1\n1.5,0.05\n")
+    (tmp_path / "Decay.mo").write_text(DECAY)
+    simulator = decay.simulator(["k"], "x", TIMES)
+    errors = []
+
+    def fork(*_):
+        # Called while the session's thread works.
+        if not errors:
+            errors.extend(_forked(work) for work in (lambda: simulator([1.0]), gapilib.Session))
+
+    gapilib.identify(
+        {
+            "model": "Decay",
+            "files": ["Decay.mo"],
+            "parameters": {"k": {"min": 0.1, "max": 10.0}},
+            "experiment": [{"data": "data.csv", "x": {"variable": "time", "column": "t"}, "outputs": {"x": "x"}}],
+        },
+        progress=fork,
+    )
+    assert len(errors) == 2
+    for error in errors:
+        assert isinstance(error, RuntimeError) and "forked while another thread was at work" in str(error)
+    # Behind it a process is sound again.
+    np.testing.assert_array_equal(_forked(lambda: simulator([1.0])), simulator([1.0]))
+
+
+@needs_fork
+def test_long_work_in_a_forked_process_is_interrupted(session):
+    session.load_text(SLOW)
+    simulator = session.model("Slow").simulator(["w"], "x", [5000.0])
+    short = session.model("Slow").simulator(["w"], "x", [1e-3])
+    short([1.0])
+
+    def interrupted():
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        try:
+            return simulator([1e6])
+        except KeyboardInterrupt:
+            return "interrupted"
+
+    assert _forked(interrupted) == "interrupted"
 
 
 INTERRUPTED = """

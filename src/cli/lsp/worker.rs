@@ -9,11 +9,12 @@ use crate::script::with_stack;
 use lsp_server::{ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{Notification as _, PublishDiagnostics};
 use lsp_types::{Diagnostic, PublishDiagnosticsParams, Uri};
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
-/// Of a document with more models, what is wrong with its text is shown before they are examined.
+/// Of a document with more models, what is wrong with its text is always shown before they are examined.
 const MANY: usize = 8;
 
 /// Works until the connection ends.
@@ -27,7 +28,12 @@ pub(super) struct Worker {
     count: usize,
     /// Whether a model is being examined.
     is_busy: bool,
+    /// What was wrong with the texts of open documents.
+    shown: BTreeMap<String, Messages>,
 }
+
+/// What is wrong, wherever: what moves while someone types is nothing new.
+type Messages = BTreeSet<String>;
 
 /// An examination of a version of a document.
 struct Begun {
@@ -37,7 +43,8 @@ struct Begun {
 
 impl Worker {
     pub(super) fn new(workspace: Workspace, queue: Arc<Queue>, client: Sender<Message>) -> Worker {
-        Worker { workspace, queue, client, begun: None, count: 0, is_busy: false }
+        let shown = BTreeMap::new();
+        Worker { workspace, queue, client, begun: None, count: 0, is_busy: false, shown }
     }
 
     /// Does what is in the queue; the exit code of the process.
@@ -52,6 +59,7 @@ impl Worker {
                 Work::Close(document) => {
                     self.drop_examination(&document);
                     self.workspace.close(&document);
+                    self.shown.remove(document.uri.as_str());
                     self.publish(&document.uri, None, Vec::new());
                 }
                 Work::Forget => {
@@ -75,12 +83,21 @@ impl Worker {
             self.queue.put_off(&former.document);
         }
         let examination = self.workspace.examine(&document, documents);
-        if Workspace::models_left(&examination) > MANY {
-            let found = self.workspace.diagnostics(&examination);
-            self.publish(&document.uri, Some(document.version), found);
-        }
+        self.show_first(&document, &examination);
         self.count += 1;
         self.begun = Some(Begun { document, examination });
+    }
+
+    /// Shows what is wrong with the text of a document before its models are examined, if that is something
+    /// new. It is not all that there is about this version, and does not name it.
+    fn show_first(&mut self, document: &Document, examination: &Examination) {
+        let found = self.workspace.diagnostics(examination);
+        let messages: Messages = found.iter().map(|one| one.message.clone()).collect();
+        let before = self.shown.insert(document.uri.as_str().to_owned(), messages.clone());
+        let left = Workspace::models_left(examination);
+        if left > MANY || left > 0 && before != Some(messages) {
+            self.publish(&document.uri, None, found);
+        }
     }
 
     /// Lets the next model be examined, or shows what was found if none is left.

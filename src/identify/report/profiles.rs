@@ -6,7 +6,7 @@ use super::explanations::PROFILE;
 use super::parts::{axis, explained, number, one_panel, series, small_figure};
 use super::view::{View, is_logarithmic};
 use crate::elementary;
-use crate::identify::problem::{Profile, SolvedParameter};
+use crate::identify::problem::{Profile, Solution, SolvedParameter};
 use crate::plot::{Axis, Figure, Mark};
 use maud::{Markup, html};
 
@@ -14,6 +14,18 @@ use maud::{Markup, html};
 const SHOWN: f64 = 2.5;
 /// Points of the parabola of the linearized model.
 const PARABOLA: usize = 60;
+
+impl Solution {
+    /// The profile of each parameter, by its name; empty without profiles.
+    pub fn profile_figures(&self) -> Vec<(String, Figure)> {
+        let profiles = self.profiles.iter().flat_map(|profiles| &profiles.profiles);
+        let titled = |(parameter, profile): (&SolvedParameter, &Profile)| {
+            let title = format!("{}: profile of {}", self.model, profile.name);
+            (profile.name.clone(), Figure { title, ..drawing(parameter, profile) })
+        };
+        self.parameters.iter().zip(profiles).map(titled).collect()
+    }
+}
 
 pub fn section(view: &View) -> Option<Section> {
     let profiles = view.solution.profiles.as_ref()?;

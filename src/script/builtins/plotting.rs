@@ -7,7 +7,7 @@ use crate::plot::{Axis, Figure, Mark, Panel, Picture, Series};
 use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::{Dialect, Echo, Session};
-use crate::value::Value;
+use crate::value::{RealMatrix, Value};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -19,10 +19,12 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: PLOT, run: plot },
         Builtin { header: CREATE_PLOT, run: create_plot },
         Builtin { header: PLOT_ARRAY, run: plot_array },
+        Builtin { header: PLOT_ARRAYS, run: plot_arrays },
         Builtin { header: PLOT_SCATTER, run: plot_scatter },
         Builtin { header: PLOT_PARAMETRIC_CURVE, run: plot_parametric_curve },
         Builtin { header: PLOT_EXPRESSION, run: plot_expression },
         Builtin { header: EXPORT_PLOT_AS_IMAGE, run: export_plot_as_image },
+        Builtin { header: CLEAR_PLOT, run: clear_plot },
         Builtin { header: REMOVE_PLOTS, run: remove_plots },
     ],
 };
@@ -44,7 +46,7 @@ struct Plots {
     drawn: usize,
     last_drawn: Option<Figure>,
     last_results: Option<String>,
-    /// What `plotArray` and `plotScatter` draw on: drawn already when it has series.
+    /// What `plotArray`, `plotArrays` and `plotScatter` draw on: drawn already when it has series.
     vectors: Option<Figure>,
 }
 
@@ -164,6 +166,24 @@ function plotArray "Plots one vector over another as a line."
 end plotArray;
 "#;
 
+const PLOT_ARRAYS: &str = r#"
+function plotArrays "Plots the columns of a matrix over a vector as lines."
+  input Real x[:];
+  input Real y[:, :] "one row for each element of x";
+  input Integer style[:] = {0} "has no effect";
+  input String legend[:] = fill("", 0) "one for each column, or none";
+  input Integer id = 0 "has no effect";
+  input String title = "";
+  input Any colors = 0 "has no effect";
+  input Any patterns = 0 "has no effect";
+  input Any markers = 0 "has no effect";
+  input Any thicknesses = 0 "has no effect";
+  input Any axes = 0 "has no effect";
+  input String units[:] = fill("", 0) "one for each column, or none";
+  output Boolean ok;
+end plotArrays;
+"#;
+
 const PLOT_SCATTER: &str = r#"
 function plotScatter "Plots one vector over another as points."
   input Real x[:];
@@ -185,6 +205,58 @@ fn plot_array(session: &mut Session, args: Args) -> Result<Value, Failure> {
 
 fn plot_scatter(session: &mut Session, args: Args) -> Result<Value, Failure> {
     draw_vectors(session, args, Mark::Points)
+}
+
+fn plot_arrays(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    let drawn = drawn_columns(session, args);
+    Ok(answer(session, drawn))
+}
+
+fn drawn_columns(session: &mut Session, mut args: Args) -> Result<(), Fault> {
+    let (x, y): (Vec<f64>, RealMatrix) = (args.take("x")?, args.take("y")?);
+    let (legends, units): (Vec<String>, Vec<String>) = (args.take("legend")?, args.take("units")?);
+    if x.len() != y.rows {
+        bail!(BAD_ARGUMENT, "`x` has {} values and `y` has {} rows", x.len(), y.rows);
+    }
+    let of_column = |all: &[String], at: usize| all.get(at).cloned().unwrap_or_default();
+    let all_units: Vec<String> = (0..y.columns).map(|at| of_column(&units, at)).collect();
+    let have_one_unit = all_units.windows(2).all(|pair| pair[0] == pair[1]);
+    let columns = (0..y.columns).map(|at| Series {
+        name: labelled(of_column(&legends, at), &all_units[at], have_one_unit),
+        x: x.clone(),
+        y: (0..y.rows).map(|row| y.row(row)[at]).collect(),
+        mark: Mark::Line,
+        colour: at + 1,
+    });
+    let y_unit = all_units.first().filter(|_| have_one_unit).map_or("", String::as_str);
+    let axes = [Axis::linear("", ""), Axis::linear("", y_unit)];
+    let drawn = figure(args.take("title")?, axes, columns.collect());
+    write(session, &drawn)?;
+    session.extension::<Plots>().vectors = Some(drawn);
+    Ok(())
+}
+
+/// The name of a series, with its unit where the axis has none.
+fn labelled(name: String, unit: &str, have_one_unit: bool) -> String {
+    match unit {
+        "" => name,
+        _ if have_one_unit => name,
+        unit => format!("{name} [{unit}]"),
+    }
+}
+
+const CLEAR_PLOT: &str = r#"
+function clearPlot "Erases the curves of the diagram on which vectors are plotted; files that were written remain."
+  input Integer id = 0 "has no effect: the last diagram is cleared";
+  output Boolean ok;
+end clearPlot;
+"#;
+
+fn clear_plot(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    if let Some(figure) = &mut session.extension::<Plots>().vectors {
+        figure.panels.iter_mut().for_each(|panel| panel.series.clear());
+    }
+    Ok(true.into())
 }
 
 const REMOVE_PLOTS: &str = r#"
@@ -262,12 +334,9 @@ fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Faul
     let mut series = Vec::with_capacity(drawing.names.len());
     for (at, name) in drawing.names.iter().enumerate() {
         let legend = drawing.legends.get(at).filter(|legend| !legend.is_empty());
-        let own = match units[at].as_str() {
-            own if have_one_unit || own.is_empty() => name.clone(),
-            own => format!("{name} [{own}]"),
-        };
+        let own = || labelled(name.clone(), &units[at], have_one_unit);
         series.push(Series {
-            name: legend.cloned().unwrap_or(own),
+            name: legend.cloned().unwrap_or_else(own),
             x: x.clone(),
             y: table.column(name)?,
             mark: Mark::Line,
@@ -535,4 +604,30 @@ end plotParametricCurve;
 
 fn plot_parametric_curve(session: &mut Session, args: Args) -> Result<Value, Failure> {
     draw_vectors(session, args, Mark::Line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::script::world::MemoryWorld;
+
+    #[test]
+    fn columns_are_series_and_a_cleared_diagram_has_none() {
+        let mut session = Session::new(Box::new(MemoryWorld::new()));
+        let script = r#"
+plotArrays({0, 1, 2}, [1, 2; 4, 3; 9, 4], legend={"squares", "successors"}, title="Columns");
+clearPlot();
+plotArray({0, 1}, {0, 1}, legend="alone", erase=false);
+"#;
+        assert_eq!(session.run_text("plots", script).code, 0);
+        let folder = session.world.output_dir();
+        let drawn = |name: &str| {
+            let bytes = session.world.read(&folder.join(name)).expect("a figure");
+            String::from_utf8(bytes).expect("SVG")
+        };
+        let (columns, cleared) = (drawn("plot_1.svg"), drawn("plot_2.svg"));
+        assert!(["squares", "successors", "Columns"].iter().all(|name| columns.contains(name)));
+        assert!(["alone", "Columns"].iter().all(|name| cleared.contains(name)));
+        assert!(!cleared.contains("squares"), "{cleared}");
+    }
 }

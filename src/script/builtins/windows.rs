@@ -1,4 +1,5 @@
-//! Commands about windows of graphical tools: accepted, said once each, without effect.
+//! Commands about windows of graphical tools and what they show: accepted, said once each, without
+//! effect.
 
 use super::{Args, Builtin, Failure, Family};
 use crate::script::Session;
@@ -81,6 +82,8 @@ pub(super) const FAMILY: Family = Family {
         "setPlotColor",
         "variablesSetup",
         "logCommand",
+        "defineUnitConversion",
+        "defineDefaultDisplayUnit",
         "setDymolaCompiler",
     ],
 };

@@ -64,7 +64,7 @@ impl ModelCheck {
         let is_of_system = |error: &Diagnostic| {
             ["singular-system", "unbalanced-model", "clock-conflict"].contains(&error.code.slug)
         };
-        let error = causalize::causalize(&flattened.model).err();
+        let error = causalize::check(&flattened.model).err();
         found.extend(error.filter(|error| !is_component || !is_of_system(error)));
         open.faults(found)
     }

@@ -564,7 +564,7 @@ pub enum StatementKind {
         /// The call; in a script any expression, so that `(a, b) := (1, 2)` can be refused by name.
         value: Expression,
     },
-    /// A call whose value is not used.
+    /// A call whose value is not used; in a script any expression.
     Call(Expression),
     /// `if c then … end if`
     If {

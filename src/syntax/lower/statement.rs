@@ -54,7 +54,7 @@ fn kind(nodes: &mut Nodes<'_>) -> Lowered<StatementKind> {
         Rule::when_statement | Rule::script_when => {
             StatementKind::When { branches: branches(&mut inside)? }
         }
-        _ => return assignment_or_call(inside),
+        rule => return assignment_or_call(inside, rule == Rule::script_assignment_or_call),
     })
 }
 
@@ -73,11 +73,18 @@ fn list(inside: &mut Nodes<'_>) -> Lowered<Vec<Statement>> {
     }
 }
 
-fn assignment_or_call(mut inside: Nodes<'_>) -> Lowered<StatementKind> {
+/// In a script any expression is a statement, as the `"";` that some write behind a call; but for a name
+/// alone, which is a command or a call without its parentheses.
+fn assignment_or_call(mut inside: Nodes<'_>, is_in_script: bool) -> Lowered<StatementKind> {
     let left = expression::expression(&mut inside)?;
+    let is_statement = match left.kind {
+        ExpressionKind::Call { .. } => true,
+        ExpressionKind::Reference(_) => false,
+        _ => is_in_script,
+    };
     match expression::try_expression(&mut inside)? {
         Some(value) => assignment(left, value),
-        None if matches!(left.kind, ExpressionKind::Call { .. }) => Ok(StatementKind::Call(left)),
+        None if is_statement => Ok(StatementKind::Call(left)),
         None => Err(fault!(SYNTAX_ERROR, "this expression is not a statement")
             .help("assign it with `:=`, or write a call")
             .at(left.span)),

@@ -169,6 +169,25 @@ impl Client {
         message["params"]["diagnostics"].as_array().unwrap().clone()
     }
 
+    /// What is published next for a document, for whatever version.
+    pub fn next_published(&mut self, path: &Path) -> Value {
+        let is_wanted = |message: &Value| {
+            message["method"] == "textDocument/publishDiagnostics"
+                && message["params"]["uri"] == json!(uri(path))
+        };
+        loop {
+            let next = match self.pending.iter().position(is_wanted) {
+                Some(at) => self.pending.remove(at),
+                None => self.read(),
+            };
+            let message = next.expect("the server has ended");
+            if is_wanted(&message) {
+                return message["params"].clone();
+            }
+            self.pending.push_back(message);
+        }
+    }
+
     /// Ends the connection as the protocol says; the exit code.
     pub fn shut_down(mut self) -> i32 {
         self.request("shutdown", Value::Null);

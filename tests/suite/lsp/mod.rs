@@ -82,6 +82,38 @@ fn diagnostics_follow_what_is_typed() {
     assert_eq!(client.shut_down(), 0);
 }
 
+/// Models are examined one after the other, which may take long; what is wrong with the text is shown at
+/// once.
+#[test]
+fn what_is_wrong_with_a_text_is_shown_before_models_are_examined() {
+    let here = folder(&[]);
+    let mut client = Client::start(here.path());
+    let path = here.path().join("M.mo");
+    // One equation is missing in B.
+    let text = "model A input constant Real x; end A;\nmodel B Real x; Real z = 2*x; end B;\n";
+    client.open(&path, text);
+    let first = client.next_published(&path);
+    // Not all that is known of this version.
+    assert_eq!(first["version"], Value::Null);
+    let codes = |shown: &Value| -> Vec<String> {
+        let found = shown["diagnostics"].as_array().unwrap();
+        found.iter().map(|one| one["code"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(codes(&first), ["illegal-prefix"]);
+    let second = client.next_published(&path);
+    assert_eq!(second["version"], json!(1));
+    assert_eq!(codes(&second), ["illegal-prefix", "unbalanced-model"]);
+    // What is known already does not give way for a moment to less.
+    client.change(&path, 2, &text.replace("B Real", "B  Real"));
+    assert_eq!(client.next_published(&path)["version"], json!(2));
+    // What is mended is shown at once.
+    client.change(&path, 3, &text.replace("constant ", ""));
+    let third = client.next_published(&path);
+    assert_eq!((&third["version"], codes(&third)), (&Value::Null, Vec::new()));
+    assert_eq!(codes(&client.next_published(&path)), ["unbalanced-model"]);
+    client.shut_down();
+}
+
 #[test]
 fn places_count_utf16_units() {
     let here = folder(&[]);

@@ -14,9 +14,10 @@ models natively.
 from . import ga
 from ._gapilib import GapilibError, Model, Session, SimulationResult, Simulator, __version__
 from ._run import run
-from ._solution import Solution, identify
+from ._solution import Figure, Solution, identify
 
 __all__ = [
+    "Figure",
     "GapilibError",
     "Model",
     "Session",

@@ -99,10 +99,11 @@ def with_files(problem: Mapping[str, Any], folder: Any) -> Tuple[Dict[str, Any],
 
     They are named after their content: a problem with the same data is the same one, and can be resumed.
     """
-    problem, made = dict(problem), []  # type: Dict[str, Any], List[str]
-    experiments: Any = problem.get("experiment")
+    given: Dict[str, Any] = dict(problem)
+    made: List[str] = []
+    experiments: Any = given.get("experiment")
     if experiments is None:
-        return problem, made
+        return given, made
     changed: List[Any] = []
     try:
         for one in [experiments] if isinstance(experiments, Mapping) else experiments:
@@ -119,8 +120,8 @@ def with_files(problem: Mapping[str, Any], folder: Any) -> Tuple[Dict[str, Any],
     except BaseException:
         remove(made)
         raise
-    problem["experiment"] = changed
-    return problem, made
+    given["experiment"] = changed
+    return given, made
 
 
 def remove(files: List[str]) -> None:

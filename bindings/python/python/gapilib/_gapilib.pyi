@@ -1,10 +1,31 @@
+import os
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Literal, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _Progress = Optional[Callable[[str, int, int, Optional[float]], Any]]
+_Path = Union[str, "os.PathLike[str]"]
+
+__all__ = [
+    "GapilibError",
+    "Model",
+    "Optimizer",
+    "Random",
+    "Session",
+    "SimulationResult",
+    "Simulator",
+    "__version__",
+    "_restored",
+    "command",
+    "cross",
+    "identify",
+    "mutate",
+    "run",
+    "sample",
+    "select",
+]
 
 __version__: str
 
@@ -14,14 +35,14 @@ class GapilibError(Exception):
 
 def command(arguments: Sequence[str]) -> int: ...
 def run(
-    script: str,
+    script: _Path,
     *,
-    out: Optional[str] = None,
+    out: Optional[_Path] = None,
     overwrite: bool = False,
     resume: bool = False,
-    libraries: Sequence[str] = (),
+    libraries: Sequence[_Path] = ...,
     threads: Optional[int] = None,
-    allow_read: Sequence[str] = (),
+    allow_read: Sequence[_Path] = ...,
     allow_write: bool = False,
     allow_system: bool = False,
     allow_external: bool = False,
@@ -29,9 +50,9 @@ def run(
     progress: _Progress = None,
 ) -> Dict[str, Any]: ...
 def identify(
-    problem: str,
+    problem: _Path,
     *,
-    out: Optional[str] = None,
+    out: Optional[_Path] = None,
     overwrite: bool = False,
     resume: bool = False,
     fresh: bool = False,
@@ -42,46 +63,48 @@ def identify(
     sensitivity: Optional[str] = None,
     samples: int = 0,
     evaluations: Optional[int] = None,
-    libraries: Sequence[str] = (),
+    libraries: Sequence[_Path] = ...,
     threads: Optional[int] = None,
-    allow_read: Sequence[str] = (),
+    allow_read: Sequence[_Path] = ...,
     allow_external: bool = False,
     cache: bool = True,
     progress: _Progress = None,
-) -> Tuple[str, str, str]: ...
+) -> Tuple[str, str, str, Dict[str, str]]: ...
 
+@final
 class Session:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         *,
-        libraries: Sequence[str] = (),
+        libraries: Sequence[_Path] = ...,
         threads: Optional[int] = None,
-        allow_read: Sequence[str] = (),
+        allow_read: Sequence[_Path] = ...,
         allow_write: bool = False,
         allow_external: bool = False,
         cache: bool = True,
         dialogue: bool = False,
         progress: _Progress = None,
-    ) -> None: ...
-    def load(self, path: str) -> List[str]: ...
+    ) -> Session: ...
+    def load(self, path: _Path) -> List[str]: ...
     def load_text(self, text: str, name: str = "text") -> List[str]: ...
     def execute(self, text: str, name: str = "input") -> None: ...
-    def run(self, path: str) -> None: ...
+    def run(self, path: _Path) -> None: ...
     def eval(self, expression: str) -> Any: ...
     def variables(self) -> Dict[str, Any]: ...
     def check(self, name: str) -> List[Dict[str, Any]]: ...
     def flatten(self, name: str) -> str: ...
     def model(self, name: str) -> Model: ...
-    def allow_read(self, path: str) -> None: ...
+    def allow_read(self, path: _Path) -> None: ...
     def complete(self, beginning: str) -> List[str]: ...
     def help(self, name: str) -> Optional[str]: ...
     @property
     def output(self) -> Path: ...
     def interrupt(self) -> None: ...
-    def __getitem__(self, name: str) -> Any: ...
-    def __setitem__(self, name: str, value: Any) -> None: ...
-    def __contains__(self, name: str) -> bool: ...
+    def __getitem__(self, key: str, /) -> Any: ...
+    def __setitem__(self, key: str, value: Any, /) -> None: ...
+    def __contains__(self, key: str, /) -> bool: ...
 
+@final
 class Model:
     @property
     def name(self) -> str: ...
@@ -122,6 +145,7 @@ class Model:
         threads: Optional[int] = None,
     ) -> Simulator: ...
 
+@final
 class SimulationResult:
     @property
     def time(self) -> NDArray[np.float64]: ...
@@ -133,14 +157,15 @@ class SimulationResult:
     def descriptions(self) -> Dict[str, str]: ...
     @property
     def statistics(self) -> Dict[str, int]: ...
-    def __getitem__(self, name: str) -> NDArray[np.float64]: ...
-    def __contains__(self, name: str) -> bool: ...
+    def __getitem__(self, key: str, /) -> NDArray[np.float64]: ...
+    def __contains__(self, key: str, /) -> bool: ...
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[str]: ...
     def at(self, name: str, times: ArrayLike) -> NDArray[np.float64]: ...
     def to_pandas(self, names: Optional[Sequence[str]] = None) -> Any: ...
-    def write(self, path: str) -> None: ...
+    def write(self, path: _Path) -> None: ...
 
+@final
 class Simulator:
     @property
     def parameters(self) -> List[str]: ...
@@ -152,9 +177,10 @@ class Simulator:
     def many(self, values: ArrayLike, *, failures: bool = False) -> Any: ...
     def jacobian(self, values: ArrayLike) -> Tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
+@final
 class Optimizer:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         bounds: Sequence[Tuple[float, float]],
         *,
         method: str = "genetic",
@@ -163,8 +189,8 @@ class Optimizer:
         budget: Optional[int] = None,
         objectives: int = 1,
         data_norm: float = 1.0,
-        settings: Mapping[str, Union[float, str]] = {},
-    ) -> None: ...
+        settings: Mapping[str, Union[float, str]] = ...,
+    ) -> Optimizer: ...
     @staticmethod
     def methods() -> List[str]: ...
     def ask(self) -> NDArray[np.float64]: ...
@@ -181,8 +207,9 @@ class Optimizer:
     @property
     def phase(self) -> str: ...
 
+@final
 class Random:
-    def __init__(self, seed: Optional[Sequence[float]] = None) -> None: ...
+    def __new__(cls, seed: Optional[Sequence[float]] = None) -> Random: ...
     def uniform(self, count: int) -> NDArray[np.float64]: ...
     def normal(self, count: int) -> NDArray[np.float64]: ...
     @property
@@ -202,3 +229,9 @@ def mutate(
     generation: int = 0,
     random: Random,
 ) -> NDArray[np.float64]: ...
+def _restored(
+    model: str,
+    time: NDArray[np.float64],
+    series: Sequence[Tuple[str, str, str, Any]],
+    numbers: Sequence[int],
+) -> SimulationResult: ...

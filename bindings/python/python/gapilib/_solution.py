@@ -5,11 +5,14 @@ import json
 import os
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Union
 
 import numpy as np
 
 from . import _data, _gapilib, _progress, _toml
+
+if TYPE_CHECKING:
+    import pandas as _pandas
 
 
 def identify(
@@ -78,19 +81,37 @@ class _problem_file:
         _data.remove(self._made)
 
 
+class Figure:
+    """A figure as SVG. A notebook shows it."""
+
+    def __init__(self, svg: str) -> None:
+        #: The document.
+        self.svg = svg
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes it."""
+        Path(path).write_text(self.svg, encoding="utf-8")
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+
 class Solution:
     """The identified parameters, how well the data determine them, and the fit.
 
     Everything that the report shows is in `data`, as in `result.json`. A notebook shows the report.
     """
 
-    def __init__(self, text_json: str, text: str, page: str) -> None:
+    def __init__(self, text_json: str, text: str, page: str, plots: Mapping[str, str]) -> None:
         #: All of it, as in `result.json`.
         self.data: Dict[str, Any] = json.loads(text_json)
         #: What `gapi identify` prints.
         self.text = text
         #: The report, an HTML page.
         self.html = page
+        #: Figures by their names: "fit" ("fit-2", ... for further series), "convergence", and where there
+        #: are profiles "profile-" and a parameter.
+        self.plots: Dict[str, Figure] = {name: Figure(svg) for name, svg in plots.items()}
 
     @property
     def parameters(self) -> Dict[str, float]:
@@ -123,7 +144,7 @@ class Solution:
         """What is noteworthy about the data and the fit."""
         return self.data.get("findings", [])
 
-    def table(self):
+    def table(self) -> "_pandas.DataFrame":
         """The parameters as a data frame of pandas: value, unit, standard deviation, bounds of the 95 %
         interval, range, verdict."""
         import pandas
@@ -143,6 +164,22 @@ class Solution:
 
         rows = self.data["parameters"]
         return pandas.DataFrame([row(p) for p in rows], index=[p["name"] for p in rows])
+
+    def profiles(self) -> "Optional[_pandas.DataFrame]":
+        """The profile likelihoods as a data frame of pandas: parameter, a value that it was held at, the
+        smallest sum of squares there, and the limit that the sum stays below within the 95 % interval. None where
+        there are none: without `profile=True`, or where the search has not ended at a minimum."""
+        import pandas
+
+        found = self.data.get("profiles")
+        if found is None:
+            return None
+        rows = [
+            (one["name"], value, smallest, one["limit"])
+            for one in found["profiles"]
+            for value, smallest in one["points"]
+        ]
+        return pandas.DataFrame(rows, columns=["parameter", "value", "sum_of_squares", "limit"])
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the report."""

@@ -15,7 +15,7 @@ GAPILib. Operators are named with their settings: ``"sbx(eta = 5)"``.
 """
 
 from concurrent.futures import Executor
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -26,13 +26,13 @@ __all__ = ["Optimizer", "Random", "cross", "minimize", "mutate", "sample", "sele
 
 def minimize(
     objective: Callable[[np.ndarray], float],
-    bounds: Sequence[tuple],
+    bounds: Sequence[Tuple[float, float]],
     *,
     generations: int = 100,
     executor: Optional[Executor] = None,
     callback: Optional[Callable[[int, np.ndarray, float], Any]] = None,
     **settings: Any,
-) -> tuple:
+) -> Tuple[np.ndarray, float]:
     """The best genes and their objective after so many questions of a search.
 
     The individuals of one question are evaluated by `executor.map` where an executor is given (threads,
@@ -44,18 +44,24 @@ def minimize(
     search = Optimizer(list(bounds), **settings)
     if search.wants != "fitness":
         raise ValueError("this method needs residuals: use `Optimizer` itself, or `scipy.optimize`")
+    if generations < 1:
+        raise ValueError("`generations` must be 1 or more")
     each = _Guarded(objective)
+    best: Optional[Tuple[np.ndarray, float]] = None
     for question in range(generations):
         rows = search.ask()
         if not len(rows):
             break
         found = executor.map(each, list(rows)) if executor is not None else map(each, rows)
         search.tell(np.fromiter(found, dtype=float, count=len(rows)))
-        if callback is not None:
-            callback(question + 1, *search.best)
+        best = search.best
+        if callback is not None and best is not None:
+            callback(question + 1, *best)
         if search.wants != "fitness":
             break
-    return search.best
+    if best is None:
+        raise ValueError("the search has asked for no individual")
+    return best
 
 
 class _Guarded:

@@ -136,7 +136,8 @@ class GapilibKernel(Kernel):
         self._picture = _Picture(self)
         self._session = Session(dialogue=True, progress=self._picture)
 
-    def do_execute(
+    # Kernels may answer at once or later; the types of ipykernel know only the latter.
+    def do_execute(  # type: ignore[override]
         self,
         code: str,
         silent: bool,
@@ -159,6 +160,7 @@ class GapilibKernel(Kernel):
             return self._failed("unknown-command", text)
         begun = time.time()
         self._picture.begin(f"run-{self.execution_count}")
+        streams: Tuple[io.TextIOBase, io.TextIOBase]
         streams = (_Stream(self, "stdout"), _Stream(self, "stderr"))
         if silent:
             streams = (io.StringIO(), io.StringIO())
@@ -175,7 +177,9 @@ class GapilibKernel(Kernel):
                 self._show_pictures(begun)
         return self._done()
 
-    def do_complete(self, code: str, cursor_pos: int) -> Dict[str, Any]:
+    def do_complete(  # type: ignore[override]
+        self, code: str, cursor_pos: int
+    ) -> Dict[str, Any]:
         word, rest = _word_at(code, cursor_pos)
         return {
             "status": "ok",
@@ -186,7 +190,7 @@ class GapilibKernel(Kernel):
             "metadata": {},
         }
 
-    def do_inspect(
+    def do_inspect(  # type: ignore[override]
         self, code: str, cursor_pos: int, detail_level: int = 0, omit_sections: Any = ()
     ) -> Dict[str, Any]:
         word = "".join(_word_at(code, cursor_pos))
@@ -194,7 +198,9 @@ class GapilibKernel(Kernel):
         data = {"text/plain": found} if found else {}
         return {"status": "ok", "found": bool(found), "data": data, "metadata": {}}
 
-    def do_is_complete(self, code: str) -> Dict[str, str]:
+    def do_is_complete(  # type: ignore[override]
+        self, code: str
+    ) -> Dict[str, str]:
         opened = len(re.findall(r"\b(?:for|while|when|if)\b(?!.*\bend\b)", code))
         if code.count("(") > code.count(")") or code.count("{") > code.count("}"):
             return {"status": "incomplete", "indent": "  "}
