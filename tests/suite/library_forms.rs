@@ -756,3 +756,38 @@ fn what_a_condition_excludes_is_not_evaluated() {
         Real x = if n > 0 and v[1] > 0.5 then 1 else 2; end M;";
     assert_eq!(at_end(nothing), 2.0);
 }
+
+/// LinearSystems2: the sizes of a redeclaration name what the function around it declares, not what
+/// the record has under the same names (MLS §7.3).
+const STATE_SPACE: &str = "operator record S Real A[:, size(A, 1)]; Real B[size(A, 1), :]; \
+    encapsulated operator 'constructor' \
+    function fromMatrices import P.S; input Real A[:, size(A, 1)]; input Real B[size(A, 1), :]; \
+    output S s(redeclare Real A[size(A, 1), size(A, 2)], \
+    redeclare Real B[size(B, 1), size(B, 2)]); algorithm s.A := A; \
+    for i in 1:size(B, 1) loop s.B[i, :] := 2*B[i, :]; end for; end fromMatrices; \
+    function numbered import P.S; input Real A[:, size(A, 1)]; input Integer m; \
+    output S s(redeclare Real A[n, n], redeclare Real B[n, m]); \
+    protected Integer n = size(A, 1); algorithm s.A := A; \
+    for i in 1:n loop for j in 1:m loop s.B[i, j] := 10*i + j; end for; end for; end numbered; \
+    end 'constructor'; end S; ";
+
+#[test]
+fn sizes_of_redeclared_components_name_the_function() {
+    let known = "model M parameter S a = S([1, 2; 3, 4], [5; 6]); \
+        parameter Real b[:, :] = a.B; Real x = a.A[2, 1] + b[2, 1] + time; end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {known}")), 3.0 + 12.0 + 1.0);
+    let at_run_time = "function f input Real a; output Real y; \
+        protected S s(redeclare Real A[2, 2], redeclare Real B[2, 1]); \
+        algorithm s := S([a, 2; 3, 4], [5; 6]); \
+        y := s.A[1, 1] + s.B[2, 1]; end f; model M Real x = f(time); end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {at_run_time}")), 1.0 + 12.0);
+}
+
+/// The second argument is a scalar: no constructor whose input is a matrix is called element by
+/// element where another one takes it.
+#[test]
+fn a_constructor_with_the_right_numbers_of_dimensions_is_chosen() {
+    let model = "model M parameter S a = S([1, 2; 3, 4], 3); \
+        Real x = a.B[2, 3] + size(a.B, 2)*time; end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {model}")), 23.0 + 3.0);
+}
