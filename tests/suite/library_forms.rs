@@ -791,3 +791,15 @@ fn a_constructor_with_the_right_numbers_of_dimensions_is_chosen() {
         Real x = a.B[2, 3] + size(a.B, 2)*time; end M;";
     assert_eq!(at_end(&format!("{STATE_SPACE} {model}")), 23.0 + 3.0);
 }
+
+/// FCSys ElectricalConduction: nothing tells the sizes of the elements of a sum over no connectors.
+#[test]
+fn a_sum_over_no_components_adds_nothing_to_an_array() {
+    let model = "connector C Real v[2]; flow Real q[2]; end C; \
+        model M parameter Integer n = 0; C c[n]; \
+        Real y[2] = {time, 2*time} + sum(c[i].v for i in 1:n); \
+        Real z[2] = sum(c[i].q for i in 1:n) + {3, 4*time}; \
+        Real w[2] = {5, 6*time} - 3*sum(c[i].q for i in 1:n); \
+        Real x = y[2] + 10*z[2] + 100*w[2]; end M;";
+    assert_eq!(at_end(model), 2.0 + 40.0 + 600.0);
+}
