@@ -803,3 +803,17 @@ fn a_sum_over_no_components_adds_nothing_to_an_array() {
         Real x = y[2] + 10*z[2] + 100*w[2]; end M;";
     assert_eq!(at_end(model), 2.0 + 40.0 + 600.0);
 }
+
+/// SolarTherm connects inputs and variables of type Real, which no connector declares (MLS §9.1).
+#[test]
+fn connected_variables_are_equal() {
+    let model = "model Cooler input Real T; Real y = 2*T; end Cooler; \
+        model M Cooler cooler; Real T; Real x = cooler.y; \
+        equation connect(cooler.T, T); T = 3 + time; end M;";
+    assert_eq!(at_end(model), 8.0);
+    let two = "model M Real a; Real b; Real x = b; equation connect(a, b); a = time; end M;";
+    assert_eq!(at_end(two), 1.0);
+    let record = "record R Real a; end R; model M R a; R b; Real x = b.a; \
+        equation connect(a, b); a.a = time; end M;";
+    assert!(attempted(record).is_err());
+}
