@@ -817,3 +817,21 @@ fn connected_variables_are_equal() {
         equation connect(a, b); a.a = time; end M;";
     assert!(attempted(record).is_err());
 }
+
+/// TRANSFORM MFBS: the size of a local variable follows from what the function computed before, with
+/// a parameter that could be set otherwise.
+#[test]
+fn parameters_of_functions_with_computed_sizes_are_evaluated() {
+    let model = "function changes input Real a[:]; input Real bias; \
+        output Real y[integer(sum(a)) + 1]; \
+        protected Real b[size(a, 1)] = a .+ bias; Integer n = integer(sum(b)); Real c[n]; \
+        algorithm for i in 1:n loop c[i] := i*i; end for; \
+        for i in 1:size(y, 1) loop y[i] := sum(c[1:min(i, n)]); end for; end changes; \
+        model M parameter Real w[2] = {1, 2}; parameter Real bias = 1; \
+        final parameter Real t[:] = changes(w, bias); Real x = t[end] + 100*size(t, 1)*time; end M;";
+    assert_eq!(at_end(model), 1.0 + 4.0 + 9.0 + 16.0 + 400.0);
+    let program = Program::compile(causalize(&flattened(model).model).expect("it can be sorted"));
+    let program = program.expect("it compiles");
+    let at = program.find_variable("bias").expect("there is a bias");
+    assert!(matches!(program.variables()[at].access, Access::Constant(_)), "it can be set");
+}
