@@ -69,11 +69,6 @@ impl Outside for Resources {
         Ok(())
     }
 
-    /// Dropped as what is logged: a size that a function reads from a file is no place for output.
-    fn print(&mut self, _: &str) -> Result<(), Fault> {
-        Ok(())
-    }
-
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         Ok(self.provider(path)?.is_folder(path))
     }
