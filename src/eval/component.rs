@@ -71,7 +71,8 @@ impl Evaluator<'_> {
         is_input: bool,
     ) -> Result<Variable, Diagnostic> {
         let (dims, given) = self.dimensions_with(component, given)?;
-        let declared = Declared { value_type: component.value_type.clone(), dims };
+        let value_type = self.sized_type(component)?;
+        let declared = Declared { value_type, dims };
         if given.is_none()
             && !is_input
             && is_given_in_part(component)
@@ -98,6 +99,17 @@ impl Evaluator<'_> {
             }
             None => self.unassigned(declared).map_err(|d| d.related(component.span, "")),
         }
+    }
+
+    /// The type of a component, the sizes of a record's components with it.
+    fn sized_type(&mut self, component: &FunctionComponent) -> Result<ValueType, Diagnostic> {
+        Ok(match &component.value_type {
+            ValueType::Record(name, fields) => {
+                let fields = component.sized_fields(fields, |size| self.dimension(size))?;
+                ValueType::Record(name.clone(), fields)
+            }
+            other => other.clone(),
+        })
     }
 
     /// The sizes of a component and its value: a size may be another one of the value given, as in

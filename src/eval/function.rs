@@ -93,6 +93,9 @@ pub struct FunctionComponent {
     pub value_type: ValueType,
     /// Its dimensions; [`ast::Subscript::All`] where any size is accepted.
     pub dims: Vec<ast::Subscript>,
+    /// Of a record: sizes of components that the declaration gives with names of its own class, as
+    /// in `output R r(redeclare Real A[size(A, 1)])`.
+    pub field_dims: Vec<(Ident, Vec<ast::Subscript>)>,
     /// Default of an input, initial value of an output or local.
     pub binding: Option<ast::Expression>,
     /// The string behind it.
@@ -102,14 +105,48 @@ pub struct FunctionComponent {
 }
 
 impl FunctionComponent {
+    /// The sizes that it declares, with those of its own components.
+    pub fn sizes(&self) -> impl Iterator<Item = &ast::Expression> {
+        let of_fields = self.field_dims.iter().flat_map(|(_, dims)| dims);
+        self.dims.iter().chain(of_fields).filter_map(|dim| match dim {
+            ast::Subscript::Index(size) => Some(size),
+            ast::Subscript::All(_) => None,
+        })
+    }
+
+    /// The components of a record with the sizes that the declaration gives them, once they are
+    /// numbers.
+    ///
+    /// # Errors
+    /// Those of `known`.
+    pub fn sized_fields<E>(
+        &self,
+        fields: &Arc<IndexMap<Ident, FunctionComponent>>,
+        mut known: impl FnMut(&ast::Expression) -> Result<usize, E>,
+    ) -> Result<Arc<IndexMap<Ident, FunctionComponent>>, E> {
+        let mut fields = fields.clone();
+        for (name, dims) in &self.field_dims {
+            let mut numbers = Vec::with_capacity(dims.len());
+            for dim in dims {
+                numbers.push(match dim {
+                    ast::Subscript::All(_) => dim.clone(),
+                    ast::Subscript::Index(size) => {
+                        let number = ast::ExpressionKind::Integer(known(size)? as i64);
+                        ast::Subscript::Index(ast::Expression::new(number, size.span))
+                    }
+                });
+            }
+            if let Some(field) = Arc::make_mut(&mut fields).get_mut(name) {
+                field.dims = numbers;
+            }
+        }
+        Ok(fields)
+    }
+
     /// Whether its size or its value names one of these, itself aside.
     fn needs_any_of(&self, names: &[Ident]) -> bool {
         let mut search = Search { own: self.name, names, found: false };
-        for subscript in &self.dims {
-            if let ast::Subscript::Index(size) = subscript {
-                search.expression(size);
-            }
-        }
+        self.sizes().for_each(|size| search.expression(size));
         self.binding.iter().for_each(|binding| search.expression(binding));
         search.found
     }

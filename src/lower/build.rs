@@ -113,7 +113,7 @@ impl<'a> Builder<'a> {
             (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
                 self.scalars.folding[position] = Folding::InProgress;
                 self.calls.functions.take_exhausted();
-                let array = self.sized(binding, &variable.dims)?;
+                let array = self.parameter_value(binding, &variable.dims)?;
                 if let (Some(words), Variability::Constant) =
                     (self.calls.functions.take_exhausted(), variable.variability)
                 {

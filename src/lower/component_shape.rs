@@ -85,7 +85,11 @@ impl<T: Target> Declaration<'_, '_, T> {
         self.path.push(component.name);
         let dims = self.sizes(component, value.as_ref(), around)?;
         let declared = match &component.value_type {
-            ValueType::Record(_, fields) => self.record(fields, value, &dims),
+            ValueType::Record(_, fields) => {
+                let fields =
+                    component.sized_fields(fields, |size| self.lowering.known_size(size))?;
+                self.record(&fields, value, &dims)
+            }
             ValueType::String => Ok(text(value, dims)),
             ValueType::Function => Err(fault!(
                 NOT_SUPPORTED,

@@ -1,15 +1,58 @@
-//! Values of parameters that shape the sorted system: those in `fixed` and `stateSelect`.
+//! Values of parameters that shape the sorted system: those in `fixed` and `stateSelect`, and those that
+//! decide sizes in the functions which give other parameters their values.
 
 use super::builder::Builder;
 use super::dae::Kind;
+use super::errors::NO_CONSTANT_VALUE;
+use super::expressions::{Array, Lowering};
 use crate::diag::Diagnostic;
-use crate::flatten::BaseType;
+use crate::flatten::{BaseType, Variability};
 use crate::symbolic::{Expr, VarId, evaluate};
+use crate::syntax::ast::{ComponentReference, Expression};
+use crate::syntax::visit::{Visit, walk_reference};
 
 /// Deepest chain of parameters.
 const MAX_DEPTH: usize = 100;
 
 impl Builder<'_> {
+    /// The value of a parameter. Where a function in it has variables whose sizes follow from what the
+    /// function computes, the parameters that it is called with are evaluated when compiling; they
+    /// cannot be set any more.
+    pub(super) fn parameter_value(
+        &mut self,
+        binding: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let error = match self.sized(binding, dims) {
+            Err(error) if error.code == NO_CONSTANT_VALUE => error,
+            result => return result,
+        };
+        let mut named = Named(Vec::new());
+        named.expression(binding);
+        for reference in named.0 {
+            self.settle_named(&reference)?;
+        }
+        self.sized(binding, dims).map_err(|_| error)
+    }
+
+    /// Evaluates the parameter that a reference names, if its value is known.
+    fn settle_named(&mut self, reference: &ComponentReference) -> Result<(), Diagnostic> {
+        let path = Lowering::new(self).path(reference)?;
+        let Some((position, _, variable)) = self.flat.variables.get_full(&*path) else {
+            return Ok(());
+        };
+        if variable.variability != Variability::Parameter || variable.base == BaseType::String {
+            return Ok(());
+        }
+        let first = self.scalars.first[position].0;
+        for scalar in first..first + variable.len() as u32 {
+            if let Some(value) = self.settled_parameter(VarId(scalar), MAX_DEPTH)? {
+                self.dae.variables[scalar as usize].kind = Kind::Constant(value);
+            }
+        }
+        Ok(())
+    }
+
     /// The value that parameters give an expression when compiling; they cannot be set any more.
     /// `None` if it depends on variables, or on parameters without values.
     pub(super) fn settled(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
@@ -85,5 +128,15 @@ impl Builder<'_> {
     /// The flat variable that a scalar is an element of: the last that does not begin behind it.
     pub(super) fn flat_position(&self, variable: VarId) -> Option<usize> {
         self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
+    }
+}
+
+/// Collects what expressions name.
+struct Named(Vec<ComponentReference>);
+
+impl Visit for Named {
+    fn reference(&mut self, reference: &ComponentReference) {
+        walk_reference(self, reference);
+        self.0.push(reference.clone());
     }
 }

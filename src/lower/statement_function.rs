@@ -305,7 +305,8 @@ fn component(
     let size =
         |n: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*n as i64), span));
     let dims = dims.iter().map(size).collect();
-    FunctionComponent { name, value_type, dims, binding, description: None, span }
+    let field_dims = Vec::new();
+    FunctionComponent { name, value_type, dims, field_dims, binding, description: None, span }
 }
 
 fn reference_to(name: Ident, span: Span) -> ComponentReference {

@@ -292,3 +292,37 @@ fn functions_of_c_need_no_headers() {
     assert_eq!(code, 0, "{out}{errors}");
     assert!(out.ends_with("7\n"), "{out}");
 }
+
+/// FCSys calls `ModelicaStrings_skipWhiteSpace`, which nothing that it includes declares.
+#[test]
+fn code_may_call_functions_of_the_standard_library() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let own = "package P function next output Integer n; external \"C\" n = next() \
+        annotation(Include = \"int next() { return ModelicaStrings_behind(atoi(\\\"7\\\")); }\"); \
+        end next; end P;";
+    let call = "openModel(\"P.mo\");\nP.next()\n";
+    let with = format!("loadModel(Modelica);\n{call}");
+    let alone = folder(&[("P.mo", own), ("a.mos", call), ("b.mos", &with)]);
+    let (code, _, errors) = run(&alone, &["run", "a.mos"]);
+    assert!(code == 1 && errors.contains("ModelicaStrings_behind"), "{errors}");
+
+    let sources = "Modelica/Resources/C-Sources";
+    std::fs::create_dir_all(alone.path().join(sources)).expect("a folder");
+    let header = "int ModelicaStrings_behind(int i);";
+    let source = "#include \"ModelicaStrings.h\"\n\
+        int ModelicaStrings_behind(int i) { if (i < 0) ModelicaError(\"no\"); return i + 1; }";
+    let source = format!("#include \"ModelicaUtilities.h\"\n{source}");
+    for (file, text) in [
+        ("Modelica/package.mo", "package Modelica annotation(version=\"4.0.0\"); end Modelica;"),
+        (&*format!("{sources}/ModelicaStrings.h"), header),
+        (&*format!("{sources}/ModelicaStrings.c"), &*source),
+    ] {
+        std::fs::write(alone.path().join(file), text).expect("writable");
+    }
+    let here = alone.path().display().to_string();
+    let (code, out, errors) = run(&alone, &["run", "b.mos", "--library", &here]);
+    assert_eq!(code, 0, "{out}{errors}");
+    assert!(out.ends_with("8\n"), "{out}");
+}

@@ -137,6 +137,7 @@ fn function(model: &mut FlatModel, class: &ClassDefinition) {
                                 _ => ValueType::Real,
                             },
                             dims: component.subscripts.clone(),
+                            field_dims: Vec::new(),
                             binding,
                             description: None,
                             span: component.span,

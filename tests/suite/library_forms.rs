@@ -756,3 +756,82 @@ fn what_a_condition_excludes_is_not_evaluated() {
         Real x = if n > 0 and v[1] > 0.5 then 1 else 2; end M;";
     assert_eq!(at_end(nothing), 2.0);
 }
+
+/// LinearSystems2: the sizes of a redeclaration name what the function around it declares, not what
+/// the record has under the same names (MLS §7.3).
+const STATE_SPACE: &str = "operator record S Real A[:, size(A, 1)]; Real B[size(A, 1), :]; \
+    encapsulated operator 'constructor' \
+    function fromMatrices import P.S; input Real A[:, size(A, 1)]; input Real B[size(A, 1), :]; \
+    output S s(redeclare Real A[size(A, 1), size(A, 2)], \
+    redeclare Real B[size(B, 1), size(B, 2)]); algorithm s.A := A; \
+    for i in 1:size(B, 1) loop s.B[i, :] := 2*B[i, :]; end for; end fromMatrices; \
+    function numbered import P.S; input Real A[:, size(A, 1)]; input Integer m; \
+    output S s(redeclare Real A[n, n], redeclare Real B[n, m]); \
+    protected Integer n = size(A, 1); algorithm s.A := A; \
+    for i in 1:n loop for j in 1:m loop s.B[i, j] := 10*i + j; end for; end for; end numbered; \
+    end 'constructor'; end S; ";
+
+#[test]
+fn sizes_of_redeclared_components_name_the_function() {
+    let known = "model M parameter S a = S([1, 2; 3, 4], [5; 6]); \
+        parameter Real b[:, :] = a.B; Real x = a.A[2, 1] + b[2, 1] + time; end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {known}")), 3.0 + 12.0 + 1.0);
+    let at_run_time = "function f input Real a; output Real y; \
+        protected S s(redeclare Real A[2, 2], redeclare Real B[2, 1]); \
+        algorithm s := S([a, 2; 3, 4], [5; 6]); \
+        y := s.A[1, 1] + s.B[2, 1]; end f; model M Real x = f(time); end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {at_run_time}")), 1.0 + 12.0);
+}
+
+/// The second argument is a scalar: no constructor whose input is a matrix is called element by
+/// element where another one takes it.
+#[test]
+fn a_constructor_with_the_right_numbers_of_dimensions_is_chosen() {
+    let model = "model M parameter S a = S([1, 2; 3, 4], 3); \
+        Real x = a.B[2, 3] + size(a.B, 2)*time; end M;";
+    assert_eq!(at_end(&format!("{STATE_SPACE} {model}")), 23.0 + 3.0);
+}
+
+/// FCSys ElectricalConduction: nothing tells the sizes of the elements of a sum over no connectors.
+#[test]
+fn a_sum_over_no_components_adds_nothing_to_an_array() {
+    let model = "connector C Real v[2]; flow Real q[2]; end C; \
+        model M parameter Integer n = 0; C c[n]; \
+        Real y[2] = {time, 2*time} + sum(c[i].v for i in 1:n); \
+        Real z[2] = sum(c[i].q for i in 1:n) + {3, 4*time}; \
+        Real w[2] = {5, 6*time} - 3*sum(c[i].q for i in 1:n); \
+        Real x = y[2] + 10*z[2] + 100*w[2]; end M;";
+    assert_eq!(at_end(model), 2.0 + 40.0 + 600.0);
+}
+
+/// SolarTherm connects inputs and variables of type Real, which no connector declares (MLS §9.1).
+#[test]
+fn connected_variables_are_equal() {
+    let model = "model Cooler input Real T; Real y = 2*T; end Cooler; \
+        model M Cooler cooler; Real T; Real x = cooler.y; \
+        equation connect(cooler.T, T); T = 3 + time; end M;";
+    assert_eq!(at_end(model), 8.0);
+    let two = "model M Real a; Real b; Real x = b; equation connect(a, b); a = time; end M;";
+    assert_eq!(at_end(two), 1.0);
+    let record = "record R Real a; end R; model M R a; R b; Real x = b.a; \
+        equation connect(a, b); a.a = time; end M;";
+    assert!(attempted(record).is_err());
+}
+
+/// TRANSFORM MFBS: the size of a local variable follows from what the function computed before, with
+/// a parameter that could be set otherwise.
+#[test]
+fn parameters_of_functions_with_computed_sizes_are_evaluated() {
+    let model = "function changes input Real a[:]; input Real bias; \
+        output Real y[integer(sum(a)) + 1]; \
+        protected Real b[size(a, 1)] = a .+ bias; Integer n = integer(sum(b)); Real c[n]; \
+        algorithm for i in 1:n loop c[i] := i*i; end for; \
+        for i in 1:size(y, 1) loop y[i] := sum(c[1:min(i, n)]); end for; end changes; \
+        model M parameter Real w[2] = {1, 2}; parameter Real bias = 1; \
+        final parameter Real t[:] = changes(w, bias); Real x = t[end] + 100*size(t, 1)*time; end M;";
+    assert_eq!(at_end(model), 1.0 + 4.0 + 9.0 + 16.0 + 400.0);
+    let program = Program::compile(causalize(&flattened(model).model).expect("it can be sorted"));
+    let program = program.expect("it compiles");
+    let at = program.find_variable("bias").expect("there is a bias");
+    assert!(matches!(program.variables()[at].access, Access::Constant(_)), "it can be set");
+}

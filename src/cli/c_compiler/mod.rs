@@ -37,8 +37,11 @@ const LENIENT: &[&str] = &[
     "-include", "stdlib.h", "-include", "string.h", "-include", "stdio.h", "-include", "time.h",
     "-include", "ctype.h", "-include", "math.h",
 ];
-/// What the compiler says then.
-const UNDECLARED: &str = "implicit declaration of function";
+/// What the compiler or the linker says then.
+const UNDECLARED: &[&str] = &["implicit declaration of function", "undefined reference"];
+
+/// Families of functions of the standard library in C whose sources stand alone.
+const STANDARD: &[&str] = &["ModelicaStrings", "ModelicaInternal", "ModelicaFFT"];
 
 /// Longest part of a compiler's complaints that is shown, in lines.
 const SHOWN: usize = 12;
@@ -146,27 +149,55 @@ fn compiled(unit: &Unit) -> Result<(Vec<FileState>, Loaded), Fault> {
         std::fs::write(folder.path().join(name), text).map_err(|error| cache::cannot(&error))?;
     }
     let preprocessed = run(&compiler, folder.path(), unit, &["-E", "unit.c"])?.stdout;
-    let linked = linked_files(unit);
+    let standard = standard_sources(unit, &preprocessed);
+    let linked = [linked_files(unit), standard.clone()].concat();
     let key = key(&compiler, unit, &preprocessed, &linked);
     let object = match cache::find(&key) {
         Some(object) => object,
         None => {
-            let linking = linking(unit);
-            let mut arguments = vec!["-shared", "-o", "unit.so", "unit.c", "utilities.c"];
-            arguments.extend(linking.iter().map(String::as_str));
-            if let Err(fault) = run(&compiler, folder.path(), unit, &arguments) {
-                if !fault.message.contains(UNDECLARED) {
-                    return Err(fault);
-                }
-                arguments.splice(0..0, LENIENT.iter().copied());
-                run(&compiler, folder.path(), unit, &arguments).map_err(|_| fault)?;
-            }
+            build(&compiler, folder.path(), unit, &standard)?;
             cache::keep(&key, &folder.path().join("unit.so"))?
         }
     };
     let included = included_files(&preprocessed, folder.path()).into_iter();
     let files = included.chain(linked).map(state_of).collect();
     Ok((files, Loaded::open(&object, key)?))
+}
+
+/// Compiles and links `unit.so`. Code that calls what it does not declare gets the headers of C, and
+/// the standard library's functions, which other tools link to every model.
+fn build(
+    compiler: &Compiler,
+    folder: &Path,
+    unit: &Unit,
+    standard: &[PathBuf],
+) -> Result<(), Fault> {
+    let linking = linking(unit);
+    let mut arguments = vec!["-shared", "-o", "unit.so", "unit.c", "utilities.c"];
+    arguments.extend(linking.iter().map(String::as_str));
+    let Err(fault) = run(compiler, folder, unit, &arguments) else { return Ok(()) };
+    if !UNDECLARED.iter().any(|words| fault.message.contains(words)) {
+        return Err(fault);
+    }
+    let mut lenient: Vec<String> = LENIENT.iter().map(|&word| word.to_owned()).collect();
+    for source in standard {
+        // On its own: it says which functions of the system it needs before it includes headers.
+        let file = source.display().to_string();
+        run(compiler, folder, unit, &["-c", &file])?;
+        let object = Path::new(source.file_name().unwrap_or_default()).with_extension("o");
+        let header = source.with_extension("h").display().to_string();
+        lenient.extend(["-include".to_owned(), header, object.display().to_string()]);
+    }
+    arguments.splice(0..0, lenient.iter().map(String::as_str));
+    run(compiler, folder, unit, &arguments).map(drop).map_err(|_| fault)
+}
+
+/// The sources of the standard library's functions that the code may call.
+fn standard_sources(unit: &Unit, preprocessed: &[u8]) -> Vec<PathBuf> {
+    let Some(folder) = &unit.standard_sources else { return Vec::new() };
+    let text = String::from_utf8_lossy(preprocessed);
+    let called = STANDARD.iter().filter(|family| text.contains(&format!("{family}_")));
+    called.map(|family| folder.join(family).with_extension("c")).filter(|s| s.is_file()).collect()
 }
 
 fn run(

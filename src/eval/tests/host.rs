@@ -141,6 +141,7 @@ impl TestHost {
                 name: declaration.name.node,
                 value_type: value_type.clone(),
                 dims: [declaration.subscripts.as_slice(), &clause.subscripts].concat(),
+                field_dims: Vec::new(),
                 binding: match modification.and_then(|m| m.binding.clone()) {
                     Some(Binding::Expression(expression)) => Some(expression),
                     _ => None,
@@ -158,6 +159,7 @@ fn component_of(value_type: ValueType) -> FunctionComponent {
         name: Ident::new("result"),
         value_type,
         dims: Vec::<Subscript>::new(),
+        field_dims: Vec::new(),
         binding: None,
         description: None,
         span: Span::NONE,

@@ -35,6 +35,8 @@ pub struct Unit {
     pub libraries: Vec<String>,
     /// Where libraries are looked for.
     pub library_directories: Vec<PathBuf>,
+    /// The sources of the standard library's own functions in C, if it is at hand.
+    pub standard_sources: Option<PathBuf>,
 }
 
 /// Compiles and loads C.

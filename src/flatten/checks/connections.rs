@@ -6,6 +6,7 @@ use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::INVALID_CONNECTION;
+use crate::flatten::library::LegacyConstruct;
 use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Equation, EquationKind, Restriction, Section, VariabilityPrefix,
@@ -58,11 +59,25 @@ impl Walk<'_, '_> {
                 Restriction::Type | Restriction::Record | Restriction::Model | Restriction::Block
             ),
         };
-        (!is_connector && !in_connector).then(|| {
+        if is_connector || in_connector || self.is_tolerated(component, reference.span) {
+            return None;
+        }
+        Some(
             fault!(INVALID_CONNECTION, "`{}` is not a connector", component.name();
                 help: "connect connectors; for variables, write an equation")
-            .at(reference.span)
-        })
+            .at(reference.span),
+        )
+    }
+
+    /// A variable of a predefined type. Libraries connect them as they connect inputs and outputs that are
+    /// connectors, other programs accept that, and it can only mean that both are equal.
+    fn is_tolerated(&self, component: &Component<'_>, span: Span) -> bool {
+        let library = self.class.library;
+        if library.is_strict() || !is_variable(component) {
+            return false;
+        }
+        library.meet(self.class.name(), LegacyConstruct::ConnectedVariable, span);
+        true
     }
 
     /// A connector of a component of a component. Libraries use them, and what is meant is clear:

@@ -26,6 +26,35 @@ const MAX_SUMMANDS: usize = 1000;
 /// The most elements that are written out.
 const MAX_ELEMENTS: usize = 100_000;
 
+/// `sum(e for i in 1:0)` of components of an array without elements, or a multiple of it: nothing tells
+/// the sizes of e (MLS §10.3.4.1), and added to an array it is that array of zeros.
+pub fn is_sum_of_nothing(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Call { function, arguments } => {
+            function.as_ident().is_some_and(|name| name == "sum")
+                && arguments.iterators.is_empty()
+                && matches!(&arguments.positional[..], [array] if has_no_elements(array))
+        }
+        ExpressionKind::Binary { operator: BinaryOperator::Multiply, left, right } => {
+            is_sum_of_nothing(left) || is_sum_of_nothing(right)
+        }
+        _ => false,
+    }
+}
+
+/// `{}` or `zeros(0)`.
+fn has_no_elements(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Array(elements) => elements.is_empty(),
+        ExpressionKind::Call { function, arguments } => {
+            let is_zero = |size: &Expression| size.kind == ExpressionKind::Integer(0);
+            function.as_ident().is_some_and(|name| name == "zeros")
+                && matches!(&arguments.positional[..], [size] if is_zero(size))
+        }
+        _ => false,
+    }
+}
+
 impl Instantiation<'_> {
     /// `{element for i in range}`.
     pub fn comprehension(

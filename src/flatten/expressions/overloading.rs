@@ -114,12 +114,25 @@ impl Instantiation<'_> {
         if self.classes.text(class).restriction() != Restriction::OperatorRecord {
             return Ok(None);
         }
-        for (name, function) in self.operator_functions(class, "'constructor'")? {
-            if self.types().fits_call(&function, arguments, local) {
-                return Ok(Some(name));
-            }
-        }
-        Ok(None)
+        self.fitting_function(class, "'constructor'", arguments, local)
+    }
+
+    /// The function of an operator that fits resolved arguments: rather one whose inputs have their
+    /// numbers of dimensions than one that is called for each element.
+    fn fitting_function(
+        &mut self,
+        class: ScopeId,
+        sign: &str,
+        arguments: &Arguments,
+        local: &Local,
+    ) -> Result<Option<Name>, Diagnostic> {
+        let functions = self.operator_functions(class, sign)?;
+        let types = self.types();
+        let mut fitting =
+            functions.iter().filter(|(_, function)| types.fits_call(function, arguments, local));
+        let first = fitting.clone().next();
+        let found = fitting.find(|(_, function)| types.fits_ranks(function, arguments)).or(first);
+        Ok(found.map(|(name, _)| name.clone()))
     }
 
     /// `String(a, …)` of an operator record as a call of its operator `'String'` (MLS §14.4); `None` for
@@ -137,13 +150,10 @@ impl Instantiation<'_> {
             Some((record, class))
         };
         let Some((record, class)) = record.and_then(known) else { return Ok(None) };
-        for (name, function) in self.operator_functions(class, "'String'")? {
-            if self.types().fits_call(&function, arguments, local) {
-                let function = ComponentReference::from_name(&name, span);
-                let kind =
-                    ExpressionKind::Call { function, arguments: Box::new(arguments.clone()) };
-                return Ok(Some(Expression::new(kind, span)));
-            }
+        if let Some(name) = self.fitting_function(class, "'String'", arguments, local)? {
+            let function = ComponentReference::from_name(&name, span);
+            let kind = ExpressionKind::Call { function, arguments: Box::new(arguments.clone()) };
+            return Ok(Some(Expression::new(kind, span)));
         }
         Err(fault!(TYPE_MISMATCH, "`{record}` has no operator 'String' for these arguments")
             .at(span))
@@ -161,14 +171,12 @@ impl Instantiation<'_> {
             return Ok(None);
         };
         let arguments = Arguments { positional: operands.to_vec(), ..Arguments::default() };
-        for (name, function) in self.operator_functions(class, sign)? {
-            if self.types().fits_call(&function, &arguments, local) {
-                let function = ComponentReference::from_name(&name, span);
-                let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
-                return Ok(Some(Expression::new(kind, span)));
-            }
-        }
-        Ok(None)
+        let found = self.fitting_function(class, sign, &arguments, local)?;
+        Ok(found.map(|name| {
+            let function = ComponentReference::from_name(&name, span);
+            let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
+            Expression::new(kind, span)
+        }))
     }
 
     /// The functions of an operator, made ready: itself, or those inside it.
@@ -265,6 +273,19 @@ impl Types<'_> {
             }
         }
         function.inputs.iter().zip(given).all(|(input, given)| given || input.binding.is_some())
+    }
+
+    /// Whether no argument shows another number of dimensions than its input has.
+    fn fits_ranks(&self, function: &Function, arguments: &Arguments) -> bool {
+        let positional = function.inputs.iter().zip(&arguments.positional);
+        let named = arguments.named.iter().filter_map(|argument| {
+            let input = function.inputs.iter().find(|input| input.name == argument.name.node);
+            Some((input?, &argument.value))
+        });
+        let fits = |(input, argument): (&FunctionComponent, &Expression)| {
+            self.rank_of(argument).is_none_or(|rank| rank == input.dims.len())
+        };
+        positional.chain(named).all(fits)
     }
 
     fn fits_input(&self, input: &FunctionComponent, argument: &Expression, local: &Local) -> bool {

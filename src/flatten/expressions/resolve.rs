@@ -4,6 +4,7 @@
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::expressions::comprehensions::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::ScopeId;
@@ -148,9 +149,14 @@ impl Instantiation<'_> {
             true => [left, right].map(|side| self.types().number_of_enumeration(side, local)),
             false => [left, right],
         };
-        let kind =
-            ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
-        Ok(Expression::new(kind, span))
+        Ok(match operator {
+            BinaryOperator::Add | BinaryOperator::Subtract if is_sum_of_nothing(&right) => left,
+            BinaryOperator::Add if is_sum_of_nothing(&left) => right,
+            _ => {
+                let (left, right) = (Box::new(left), Box::new(right));
+                Expression::new(ExpressionKind::Binary { operator, left, right }, span)
+            }
+        })
     }
 
     /// Branches whose conditions hold no variables are chosen at once: the others may name what

@@ -14,7 +14,7 @@ use crate::flatten::instantiate::instance::{Declaration, MemberState, Shape};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::library::{LegacyConstruct, Library};
 use crate::flatten::lookup::classes::Classes;
-use crate::flatten::lookup::modification::Modifier;
+use crate::flatten::lookup::modification::{Modifier, Replacement};
 use crate::flatten::lookup::scope::Text;
 use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
@@ -344,6 +344,7 @@ impl Instantiation<'_> {
             name: Ident::new("'constructed record'"),
             value_type: ValueType::Record(name.clone(), Arc::new(table)),
             dims: Vec::new(),
+            field_dims: Vec::new(),
             binding: None,
             description: None,
             span,
@@ -381,6 +382,7 @@ impl Instantiation<'_> {
             let dims = declared.dims.iter().chain(&expanded.dims);
             let dims = dims.map(|(size, context)| self.declared_size(size, *context, &local));
             let dims = dims.collect::<Result<Vec<Subscript>, Diagnostic>>()?;
+            let field_dims = self.field_dims(&expanded.modifier, &lineage, &local)?;
             let value_type = self.value_type(&expanded.shape, declared.span)?;
             let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
@@ -407,6 +409,7 @@ impl Instantiation<'_> {
                     name: declared.name,
                     value_type,
                     dims,
+                    field_dims,
                     binding,
                     description: declared.description.clone(),
                     span: declared.span,
@@ -414,6 +417,32 @@ impl Instantiation<'_> {
             });
         }
         Ok(components)
+    }
+
+    /// The sizes that redeclarations in the declaration of a record give its components: their names
+    /// are those of the class that it stands in (MLS §7.3).
+    fn field_dims(
+        &mut self,
+        modifier: &Modifier,
+        lineage: &[ScopeId],
+        local: &Local,
+    ) -> Result<Vec<(Ident, Vec<Subscript>)>, Diagnostic> {
+        let mut given = Vec::new();
+        for (name, modifier) in &modifier.elements {
+            let Some(redeclaration) = &modifier.redeclaration else { continue };
+            let Replacement::Component(clause) = &redeclaration.replacement else { continue };
+            let own = clause.components.first().map_or(&[][..], |one| &one.subscripts);
+            let context = redeclaration.context;
+            let outside = Local::default();
+            let local = if lineage.contains(&context) { local } else { &outside };
+            let dims = own.iter().chain(&clause.subscripts);
+            let dims = dims.map(|size| self.declared_size(size, context, local));
+            let dims = dims.collect::<Result<Vec<Subscript>, Diagnostic>>()?;
+            if !dims.is_empty() {
+                given.push((*name, dims));
+            }
+        }
+        Ok(given)
     }
 
     /// A dimension with its names resolved; the number of values of a type that is one.

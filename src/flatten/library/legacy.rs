@@ -27,6 +27,8 @@ pub(in crate::flatten) enum LegacyConstruct {
     OuterValue,
     /// A variable of a function that is neither input nor output, and not protected.
     PublicVariable,
+    /// A `connect` equation of variables that are not connectors.
+    ConnectedVariable,
 }
 
 /// The legacy constructs found in each library.
@@ -68,6 +70,10 @@ impl LegacyConstruct {
             LegacyConstruct::OuterValue => (
                 "`outer` components with modifiers, which are ignored",
                 "set the values in the inner components",
+            ),
+            LegacyConstruct::ConnectedVariable => (
+                "`connect` equations of variables that are not connectors, which are taken as equal",
+                "write an equation, or give the variables the type of a connector",
             ),
             LegacyConstruct::PublicVariable => (
                 "public variables of functions that are neither input nor output",

@@ -15,7 +15,7 @@ use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::text_array::Texts;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Subscript};
+use crate::syntax::ast::ComponentReference;
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
@@ -387,11 +387,7 @@ fn names_in_sizes(function: &Function) -> FxHashSet<Ident> {
     }
     let mut names = Names(FxHashSet::default());
     for component in function.outputs.iter().chain(&function.locals) {
-        for dim in &component.dims {
-            if let Subscript::Index(size) = dim {
-                names.expression(size);
-            }
-        }
+        component.sizes().for_each(|size| names.expression(size));
     }
     names.0
 }

@@ -60,6 +60,7 @@ fn component(clause: &ComponentClause, declaration: &ComponentDeclaration) -> Fu
         } else {
             [clause.subscripts.as_slice(), &declaration.subscripts].concat()
         },
+        field_dims: Vec::new(),
         binding,
         description: declaration.comment.text.clone(),
         span: Span::NONE,

@@ -28,6 +28,9 @@ const PLATFORM: &str = if cfg!(target_os = "macos") {
     "linux64"
 };
 
+/// Where the standard library has its functions in C, which code of others calls.
+const STANDARD_SOURCES: &str = "modelica://Modelica/Resources/C-Sources";
+
 /// Where a name of a file or folder, a path or a URI, leads.
 type Find<'a> = &'a dyn Fn(&str) -> Option<PathBuf>;
 
@@ -47,7 +50,8 @@ pub(super) fn compiled(
 }
 
 fn unit(declarations: &[Declaration], files: &dyn FileReader, find: Find<'_>) -> Unit {
-    let mut unit = Unit { source: source(declarations), ..Unit::default() };
+    let standard_sources = find(STANDARD_SOURCES);
+    let mut unit = Unit { source: source(declarations), standard_sources, ..Unit::default() };
     let mut seen = BTreeSet::new();
     let mut new = |path: &PathBuf| seen.insert(path.clone());
     for declaration in declarations {
