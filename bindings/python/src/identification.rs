@@ -21,7 +21,7 @@ type Solved = (String, String, String, IndexMap<String, String>);
 #[pyfunction]
 #[pyo3(signature = (problem, *, out=None, overwrite=false, resume=false, fresh=false, profile=false,
     design=false, bootstrap=false, posterior=false, sensitivity=None, samples=0, evaluations=None,
-    libraries=Vec::new(), threads=None, allow_read=Vec::new(), allow_external=false, cache=true,
+    searches=None, libraries=Vec::new(), threads=None, allow_read=Vec::new(), allow_external=false, cache=true,
     progress=None))]
 #[allow(clippy::too_many_arguments, reason = "arguments of Python, all named")]
 pub(crate) fn identify(
@@ -38,6 +38,7 @@ pub(crate) fn identify(
     sensitivity: Option<String>,
     samples: usize,
     evaluations: Option<u64>,
+    searches: Option<usize>,
     libraries: Vec<PathBuf>,
     threads: Option<usize>,
     allow_read: Vec<PathBuf>,
@@ -63,6 +64,7 @@ pub(crate) fn identify(
         sensitivity,
         samples,
         evaluations,
+        searches,
         ..RunOptions::default()
     };
     let file = problem.clone();

@@ -1,33 +1,15 @@
 //! Several searches with different seeds: the best one counts, and how many came as far says how far
 //! its result can be trusted.
 
-use super::{Best, Finding, FindingKind, Run, Solution};
+use super::{Best, Finding, FindingKind, Run, Solution, SolvedSearch};
 use crate::ga::has_failed;
 use crate::identify::table::{quoted, significant};
-use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Objectives above the smallest by less than this part of it count as equal.
 const EQUAL: f64 = 0.01;
 /// Sums of squares below this part of that of the measured values are errors of rounding.
 const OF_ROUNDING: f64 = 1e-16;
-
-/// A finished search.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct SolvedSearch {
-    /// Its seed.
-    pub seed: [f64; 6],
-    /// The smallest objective that it found; infinite where no simulation succeeded.
-    pub objective: f64,
-    /// Values of the parameters there.
-    pub values: Vec<f64>,
-    /// Questions of the method.
-    pub generations: u64,
-    /// Individuals evaluated.
-    pub evaluations: u64,
-    /// Whether its objective counts as equal to the best of all.
-    pub as_good: bool,
-}
 
 impl SolvedSearch {
     /// What a run has found.

@@ -70,7 +70,7 @@ pub struct Solution {
     pub other_minima: Vec<OtherMinimum>,
     /// All searches with different seeds, where there were several; the best is this one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub searches: Vec<super::SolvedSearch>,
+    pub searches: Vec<SolvedSearch>,
     /// Questions of the method.
     pub generations: u64,
     /// Individuals evaluated.
@@ -122,6 +122,23 @@ pub struct Solution {
     /// Evenly chosen individuals.
     #[serde(skip)]
     pub individuals: Vec<(Vec<f64>, f64)>,
+}
+
+/// A finished search.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SolvedSearch {
+    /// Its seed.
+    pub seed: [f64; 6],
+    /// The smallest objective that it found; infinite where no simulation succeeded.
+    pub objective: f64,
+    /// Values of the parameters there.
+    pub values: Vec<f64>,
+    /// Questions of the method.
+    pub generations: u64,
+    /// Individuals evaluated.
+    pub evaluations: u64,
+    /// Whether its objective counts as equal to the best of all.
+    pub as_good: bool,
 }
 
 /// An identified parameter.

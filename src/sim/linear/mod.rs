@@ -1,6 +1,7 @@
 //! Linear systems of a pattern that stays: analysed once, factorised and solved often.
 
 mod dense;
+mod factor_pattern;
 mod sparse;
 #[cfg(feature = "jit")]
 mod straight_line;

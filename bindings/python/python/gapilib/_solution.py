@@ -37,8 +37,8 @@ def identify(
     a column (dates in seconds from the first one), units are those of pint, of a second level of the headings,
     of ``frame.attrs["units"]`` or of headings such as ``U [mV]``. Options:
     `out` and `overwrite` (where results go), `resume` and `fresh`, `profile`, `design`, `bootstrap`,
-    `posterior`, `sensitivity` ("morris" or "sobol") with `samples`, `evaluations`, `libraries`, `threads`,
-    `allow_read`, `allow_external`, `cache`.
+    `posterior`, `sensitivity` ("morris" or "sobol") with `samples`, `evaluations`,
+    `searches` (with how many seeds to search), `libraries`, `threads`, `allow_read`, `allow_external`, `cache`.
 
     Raises `GapilibError` with all that is wrong, `KeyboardInterrupt` when interrupted; then `resume=True`
     continues it.
