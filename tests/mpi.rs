@@ -337,7 +337,7 @@ name = \"genetic\"
 population = 200
 polish = false
 [stop]
-generations = 8
+generations = 4
 stagnation = 100
 ";
 
@@ -360,7 +360,7 @@ fn timing(folder: &Path) -> [f64; 3] {
 #[allow(clippy::print_stdout, reason = "that is what it is for")]
 fn the_job_on_paper_takes_as_long_as_here() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    for (stop_time, what) in [(60, "short"), (1500, "long")] {
+    for (stop_time, what) in [(60, "short"), (300, "long")] {
         let here = here();
         let model = MODEL.replace("StopTime = 10", &format!("StopTime = {stop_time}"));
         fs::write(here.path().join("Oscillator.mo"), model).unwrap();
@@ -385,7 +385,7 @@ fn the_job_on_paper_takes_as_long_as_here() {
             let used = ranks.min(cores) as f64;
             let measured = one / seconds / used;
             // The mean generation; the simulator draws other durations than these.
-            let generations = 8.0;
+            let generations = 4.0;
             let (individuals, simulation) = (200, one / generations / 200.0);
             let paper = Cluster { ranks, cores, individuals, simulation, message, handling };
             let predicted = one / generations / paper.seconds() / used;

@@ -136,3 +136,63 @@ fn several_objectives_have_no_best_search() {
     let (code, _, errors) = gapi(&here, &["identify", "p.toml", "--searches", "3"]);
     assert!(code == 1 && errors.contains("has several"), "{errors}");
 }
+
+/// Where the first seed finds nothing, the others do.
+#[test]
+fn a_shard_whose_first_search_fails_leaves_the_others() {
+    let here = here();
+    let model = MODEL.replace(
+        "  Real y = a*sin(w*time);",
+        "  Real y = a*sin(w*time);\nequation\n  assert(w > 0.14 and w < 0.17, \"too fast\");",
+    );
+    fs::write(here.path().join("Wave.mo"), model).unwrap();
+    let problem = PROBLEM.replace("generations = 4", "generations = 1");
+    fs::write(here.path().join("p.toml"), problem).unwrap();
+    let text = identify(&here, &["--searches", "5", "--out", "whole"]);
+    let whole = searches(&here.path().join("whole"));
+    assert!(whole[0].1.is_infinite() && whole.iter().any(|own| own.1.is_finite()), "{whole:?}");
+    assert!(text.contains("without any simulation that succeeded"), "{text}");
+    for (number, out) in [("1/2", "s1"), ("2/2", "s2")] {
+        let shard = ["identify", "p.toml", "--searches", "5", "--shard", number, "--out", out];
+        assert_eq!(gapi(&here, &shard).0, 1, "a shard alone has no result");
+    }
+    let (code, _, errors) = gapi(&here, &["report", "--merge", "s1", "s2", "--out", "merged"]);
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(files(&here.path().join("whole")), files(&here.path().join("merged")));
+}
+
+#[test]
+fn numbers_of_searches_are_checked() {
+    let here = here();
+    for wrong in ["0", "1000000000"] {
+        fs::write(here.path().join("p.toml"), format!("searches = {wrong}\n{PROBLEM}")).unwrap();
+        let (code, _, errors) = gapi(&here, &["identify", "p.toml"]);
+        assert!(code == 1 && errors.contains("from 1 to 100000"), "{errors}");
+    }
+}
+
+/// A journal of an earlier study is seen before anything is simulated, and a run that ends removes it.
+#[test]
+fn journals_of_earlier_searches_are_not_forgotten() {
+    let here = here();
+    let out = here.path().join("out");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("run-2.journal"), "of another time").unwrap();
+    let study = ["identify", "p.toml", "--searches", "3", "--out", "out"];
+    let (code, text, errors) = gapi(&here, &study);
+    assert!(code == 1 && errors.contains("run-2.journal") && text.is_empty(), "{text}{errors}");
+    identify(&here, &["--out", "out", "--fresh"]);
+    assert!(!out.join("run-2.journal").exists());
+}
+
+#[test]
+fn searches_that_do_not_depend_on_the_seed_are_told() {
+    let here = here();
+    let problem = PROBLEM.replace(
+        "name = \"genetic\"\npopulation = 8\npolish = false",
+        "name = \"levenberg_marquardt\"",
+    );
+    fs::write(here.path().join("p.toml"), problem).unwrap();
+    let text = identify(&here, &["--searches", "3", "--out", "out"]);
+    assert!(text.contains("they do not show that no other result exists"), "{text}");
+}

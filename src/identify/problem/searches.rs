@@ -8,6 +8,9 @@ use std::fmt::Write;
 
 /// Objectives above the smallest by less than this part of it count as equal.
 const EQUAL: f64 = 0.01;
+/// Negative log-likelihoods above the smallest by less than this count as equal: half of the 95 % quantile of
+/// chi-square with one degree of freedom. Their size depends on the units of the data.
+const EQUALLY_LIKELY: f64 = 1.92;
 /// Sums of squares below this part of that of the measured values are errors of rounding.
 const OF_ROUNDING: f64 = 1e-16;
 
@@ -38,9 +41,17 @@ pub fn best_of(run: &Run, searches: &mut [SolvedSearch]) -> Option<usize> {
         true => run.evaluation.size() * run.evaluation.size(),
         false => 0.0,
     };
-    let allowed = (EQUAL * objective.abs()).max(OF_ROUNDING * squares);
+    let allowed = match is_likelihood(&run.problem.objectives[0].0) {
+        true => EQUALLY_LIKELY,
+        false => (EQUAL * objective.abs()).max(OF_ROUNDING * squares),
+    };
     searches.iter_mut().for_each(|own| own.as_good = own.objective - objective <= allowed);
     Some(best)
+}
+
+/// Whether an objective is a negative logarithm of a likelihood.
+fn is_likelihood(objective: &str) -> bool {
+    objective.replace(['-', '_'], " ").ends_with("log likelihood")
 }
 
 impl Solution {
@@ -53,9 +64,18 @@ impl Solution {
         let mut all: Vec<f64> = self.searches.iter().map(|own| own.objective).collect();
         all.sort_by(f64::total_cmp);
         let [best, median, worst] = [0, (count - 1) / 2, count - 1].map(|k| significant(all[k], 5));
+        let within = match is_likelihood(&self.fitness_name) {
+            true => EQUALLY_LIKELY.to_string(),
+            false => "1 %".to_owned(),
+        };
+        let failed = all.iter().filter(|objective| has_failed(**objective)).count();
+        let failures = match failed {
+            0 => String::new(),
+            failed => format!("; {failed} without any simulation that succeeded"),
+        };
         Some(format!(
-            "{} of {count} with different seeds found the best objective within 1 %: best {best}, \
-             median {median}, worst {worst}",
+            "{} of {count} with different seeds found the best objective within {within}: best {best}, \
+             median {median}, worst {worst}{failures}",
             self.as_good()
         ))
     }
@@ -64,11 +84,23 @@ impl Solution {
         self.searches.iter().filter(|own| own.as_good).count()
     }
 
-    /// Adds the searches that were made, and what they say.
-    pub fn add_searches(&mut self, searches: Vec<SolvedSearch>) {
+    /// Adds the searches that were made, and what they say. `searched`: the objective before profiles, which
+    /// may have come upon a better fit than any search.
+    pub fn add_searches(&mut self, searches: Vec<SolvedSearch>, searched: f64) {
         self.searches = searches;
+        if searched - self.fitness > EQUAL * searched.abs() {
+            self.searches.iter_mut().for_each(|own| own.as_good = false);
+        }
         let (count, as_good) = (self.searches.len(), self.as_good());
-        if count > 1 && 2 * as_good < count {
+        let Some(first) = self.searches.first().filter(|_| count > 1) else { return };
+        if self.searches.iter().all(|own| own.values == first.values) {
+            let sentence = format!(
+                "All searches have found the same values to the last digit, as `{}` hardly depends on \
+                 the seed: they do not show that no other result exists.",
+                self.method
+            );
+            self.findings.push(Finding::new(FindingKind::Search, sentence));
+        } else if 2 * as_good < count {
             let sentence = format!(
                 "Only {as_good} of {count} searches with different seeds found the best objective: \
                  further ones may find a better one. Use more individuals or generations."

@@ -162,6 +162,12 @@ fn solve_text(
     }
     let every =
         (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
+    if let Some(count) = file.searches.filter(|count| !(1..=searches::MOST).contains(count)) {
+        let most = searches::MOST;
+        return Err(one(
+            fault!(BAD_OPTION, "`searches` is {count}"; help: "write a number from 1 to {most}"),
+        ));
+    }
     let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
     let mut again = |session: &mut Session, seed| {
         file.seed = Some(seed);
@@ -210,24 +216,37 @@ fn solve_built(
     session.note_idle_ranks(run.evaluation.alone());
     let importance = analysed(session, &run, &folder, options)?;
     let files = Journalled { folder: &folder, origins: &origins, every };
+    searches::refuse_leftovers(session, &folder, options)?;
     let path_of_first = folder.join(JOURNAL);
     let known = options.division.journal();
     let checkpoint = open(session, &mut run, (&path_of_first, known), &files, options)?;
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
     let ending = search.run_to_end(session)?;
     let Search { run, checkpoint, .. } = search;
-    let Searched { mut run, ending, all, journals, seconds } =
+    let Searched { mut run, ending, all, seconds } =
         searches::search_on(session, (run, ending), &files, options, again)?;
     if !ending.is_interrupted {
         solving::conclude(&mut run);
     }
     let solved = |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?);
-    let mut solution = solved(&run)?;
+    let keep = |session: &mut Session, run: &Run| {
+        let files = (path, checkpoint.path(), folder.as_path());
+        shards::keep(session, run, files, (&origins, options))
+    };
+    let mut solution = match solved(&run) {
+        // The searches of this shard count, whatever became of the first one.
+        Err(fault) if !ending.is_interrupted && options.searches > Some(1) => {
+            keep(session, &run)?;
+            return Err(fault);
+        }
+        solution => solution?,
+    };
     solution.importance = importance;
+    let searched = solution.fitness;
     if options.profile && !ending.is_interrupted {
         solution = solution.with_profiles(&mut run, solved)?;
     }
-    solution.add_searches(all);
+    solution.add_searches(all, searched);
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
     let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
@@ -235,10 +254,9 @@ fn solve_built(
     session.print(&solution.text());
     write(session, &folder, &solution, seconds)?;
     if !is_interrupted {
-        let files = (path, checkpoint.path(), folder.as_path());
-        shards::keep(session, &run, files, (&origins, options))?;
+        keep(session, &run)?;
     }
-    close(session, (&checkpoint, &journals), is_interrupted);
+    close(session, (&checkpoint, &folder), is_interrupted);
     Ok(solution)
 }
 
@@ -251,11 +269,7 @@ fn infer(session: &mut Session, run: &mut Run, solution: &mut Solution) -> Resul
 }
 
 /// Removes the checkpoint of a run that came to its end.
-fn close(
-    session: &mut Session,
-    (checkpoint, others): (&Checkpoint, &[PathBuf]),
-    is_interrupted: bool,
-) {
+fn close(session: &mut Session, (checkpoint, folder): (&Checkpoint, &Path), is_interrupted: bool) {
     if let Some(why) = checkpoint.broken() {
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
@@ -263,8 +277,14 @@ fn close(
         session.print("\n  resume the run from here with --resume\n");
         return;
     }
-    for journal in std::iter::once(checkpoint.path()).chain(others.iter().map(PathBuf::as_path)) {
-        discard(session, journal);
+    discard(session, checkpoint.path());
+    // Those of an earlier run that made more searches, too.
+    for number in 2.. {
+        let journal = searches::journal(folder, number);
+        if !session.world.exists(&journal) {
+            break;
+        }
+        discard(session, &journal);
     }
 }
 

@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 
 /// Streams of the random numbers between two searches; one search uses some dozens.
 const STREAMS: u64 = 1 << 32;
+/// The largest number of searches.
+pub(super) const MOST: usize = 100_000;
 /// What the parts of shards are called.
 const KIND: &str = "searches";
 
@@ -36,8 +38,6 @@ pub(super) struct Searched {
     pub ending: Ending,
     /// All; empty where only one was wanted, or others belong to other shards.
     pub all: Vec<SolvedSearch>,
-    /// Journals beside that of the first search.
-    pub journals: Vec<PathBuf>,
     /// What the searches of this process took.
     pub seconds: f64,
 }
@@ -45,6 +45,33 @@ pub(super) struct Searched {
 /// The seed of search `number`, the first of which has the problem's own.
 fn seed(own: &[f64; 6], number: usize) -> Result<[f64; 6], Fault> {
     Ok(Mrg32k3a::new(own)?.stream(STREAMS * number as u64).state())
+}
+
+/// The journal of a search behind the first.
+pub(super) fn journal(folder: &Path, number: usize) -> PathBuf {
+    folder.join(format!("run-{number}.journal"))
+}
+
+/// Refuses journals of an earlier run before anything is simulated.
+///
+/// # Errors
+///
+/// `bad-option` where there is one that is neither to be resumed nor to be discarded.
+pub(super) fn refuse_leftovers(
+    session: &Session,
+    folder: &Path,
+    options: &RunOptions,
+) -> Result<(), Fault> {
+    let all = (2..=options.searches.unwrap_or(1)).map(|number| journal(folder, number));
+    let mut left = all.filter(|path| session.world.exists(path));
+    match left.next() {
+        Some(path) if !options.resume && !options.fresh => bail!(
+            BAD_OPTION,
+            "`{}` contains an earlier run that did not finish", path.display();
+            help: "continue it with `--resume`, or discard it with `--fresh`"
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// Searches as often as it is wanted, `first` included.
@@ -61,13 +88,12 @@ pub(super) fn search_on(
 ) -> Result<Searched, Fault> {
     let count = options.searches.unwrap_or(1);
     let seconds = first.seconds;
-    let (all, journals) = (Vec::new(), Vec::new());
-    let mut searched = Searched { run: first, ending, all, journals, seconds };
+    let mut searched = Searched { run: first, ending, all: Vec::new(), seconds };
     if count < 2 || searched.ending.is_interrupted {
         return Ok(searched);
     }
     if searched.run.problem.objectives.len() > 1 {
-        bail!(BAD_OPTION, "`searches` compares one objective, and this problem has several");
+        bail!(BAD_OPTION, "`searches` compares one objective, and this problem has several"; help: "leave one `fitness`, or search once");
     }
     let own = searched.run.problem.seed;
     let missing = searched.run.evaluation.parts.missing::<Finished>((KIND, &own), count - 1);
@@ -75,11 +101,10 @@ pub(super) fn search_on(
     for part in missing {
         let number = part + 1;
         let built = again(session, seed(&own, number)?)?;
-        let path = files.folder.join(format!("run-{}.journal", number + 1));
+        let path = journal(files.folder, number + 1);
         session.print(&format!("search {} of {count}\n", number + 1));
         let run = Run::on(built.problem, &session.world.processors())?;
         let run = searched_to_end(session, run, &path, files, options)?;
-        searched.journals.push(path.clone());
         let Some(run) = run else {
             let reason = "interrupted: these are the best values of the first search".to_owned();
             searched.ending = Ending { reason, is_interrupted: true };

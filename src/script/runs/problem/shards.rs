@@ -114,7 +114,7 @@ pub fn read_shards(
             missing.len(),
             if missing.len() == 1 { "is" } else { "are" },
             names.join(", ");
-            help: "compute them with `gapi identify {} --shard {}`", problem.display(), names[0]
+            help: "compute them with the options of the others: `gapi identify {} --shard {} …`", problem.display(), names[0]
         );
     }
     let division = Division::Merged(files);
@@ -150,7 +150,8 @@ fn agreeing(
             BAD_OPTION,
             "`{}` and `{}` are not shards of one study: {differs}",
             first_path.display(),
-            path.display()
+            path.display();
+            help: "compute all shards with the same problem, options and program"
         );
     }
     if let Some((twice, _)) = before.iter().find(|(_, known)| known.shard == file.shard) {
