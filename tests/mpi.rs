@@ -337,7 +337,7 @@ name = \"genetic\"
 population = 200
 polish = false
 [stop]
-generations = 4
+generations = 40
 stagnation = 100
 ";
 
@@ -352,48 +352,39 @@ fn timing(folder: &Path) -> [f64; 3] {
     [of("wall_seconds"), of("message_seconds"), of("handling_seconds")]
 }
 
-/// The job on paper is that of the program: what 2 to 8 ranks take here, on however many cores.
-/// Run it on a machine that does nothing else:
+/// The job on paper takes about as long as 2 to 8 ranks here, on however many cores; it leaves out that
+/// each rank translates tapes to machine code by itself. Run it on a machine that does nothing else:
 /// `cargo test --release --features mpi --test mpi -- --ignored --nocapture`
 #[test]
 #[ignore = "measures times"]
 #[allow(clippy::print_stdout, reason = "that is what it is for")]
 fn the_job_on_paper_takes_as_long_as_here() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    for (stop_time, what) in [(60, "short"), (300, "long")] {
-        let here = here();
-        let model = MODEL.replace("StopTime = 10", &format!("StopTime = {stop_time}"));
-        fs::write(here.path().join("Oscillator.mo"), model).unwrap();
-        fs::write(here.path().join("p.toml"), POPULATIONS).unwrap();
-        let stop = format!("[[experiment]]\nstop_time = {stop_time}\n");
-        let problem = POPULATIONS.replace("[[experiment]]\n", &stop);
-        fs::write(here.path().join("p.toml"), problem).unwrap();
-        let mut one = 0.0;
-        for ranks in [1, 2, 3, 4, 6, 8] {
-            let out = format!("r{ranks}");
-            let arguments = ["identify", "p.toml", "--threads", "1", "--quiet", "--out", &out];
-            let mut command = command(here.path(), ranks, &arguments);
-            command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
-            let (code, text) = ended(&mut command);
-            assert_eq!(code, Some(0), "{text}");
-            let [seconds, message, handling] = timing(&here.path().join(&out));
-            if ranks == 1 {
-                one = seconds;
-                println!("{what}: one rank {one:.2} s");
-                continue;
-            }
-            let used = ranks.min(cores) as f64;
-            let measured = one / seconds / used;
-            // The mean generation; the simulator draws other durations than these.
-            let generations = 4.0;
-            let (individuals, simulation) = (200, one / generations / 200.0);
-            let paper = Cluster { ranks, cores, individuals, simulation, message, handling };
-            let predicted = one / generations / paper.seconds() / used;
-            println!(
-                "{what}, {ranks} ranks on {cores} cores: {seconds:.2} s, efficiency {measured:.3}, \
-                 on paper {predicted:.3}, message {message:.1e} s, handling {handling:.1e} s"
-            );
-            assert!((measured - predicted).abs() < 0.15, "{measured} and {predicted}");
-        }
+    let here = here();
+    fs::write(here.path().join("p.toml"), POPULATIONS).unwrap();
+    let of = |ranks: usize| {
+        let out = format!("r{ranks}");
+        let arguments = ["identify", "p.toml", "--threads", "1", "--quiet", "--out", &out];
+        let mut command = command(here.path(), ranks, &arguments);
+        command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
+        let (code, text) = ended(&mut command);
+        assert_eq!(code, Some(0), "{text}");
+        timing(&here.path().join(&out))
+    };
+    let (generations, individuals) = (40.0, 200);
+    let one = of(1)[0];
+    let simulation = one / generations / individuals as f64;
+    println!("one rank {one:.2} s, {simulation:.1e} s for each simulation");
+    for ranks in [2, 3, 4, 6, 8] {
+        let [seconds, message, handling] = of(ranks);
+        let used = ranks.min(cores) as f64;
+        let paper = Cluster { ranks, cores, individuals, simulation, message, handling };
+        let (measured, predicted) =
+            (one / seconds / used, one / generations / paper.seconds() / used);
+        println!(
+            "{ranks} ranks on {cores} cores: {seconds:.2} s, efficiency {measured:.3}, on paper \
+             {predicted:.3}, message {message:.1e} s, handling {handling:.1e} s"
+        );
+        assert!((measured - predicted).abs() < 0.25, "{measured} and {predicted}");
     }
 }
