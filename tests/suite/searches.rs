@@ -152,6 +152,9 @@ fn a_shard_whose_first_search_fails_leaves_the_others() {
     let whole = searches(&here.path().join("whole"));
     assert!(whole[0].1.is_infinite() && whole.iter().any(|own| own.1.is_finite()), "{whole:?}");
     assert!(text.contains("without any simulation that succeeded"), "{text}");
+    // An infinite objective survives `result.json`.
+    let (code, _, errors) = gapi(&here, &["report", "whole"]);
+    assert_eq!(code, 0, "{errors}");
     for (number, out) in [("1/2", "s1"), ("2/2", "s2")] {
         let shard = ["identify", "p.toml", "--searches", "5", "--shard", number, "--out", out];
         assert_eq!(gapi(&here, &shard).0, 1, "a shard alone has no result");

@@ -28,7 +28,7 @@ pub(super) struct Worker {
     count: usize,
     /// Whether a model is being examined.
     is_busy: bool,
-    /// What was wrong with the texts of open documents.
+    /// Errors in the text of open documents.
     shown: BTreeMap<String, Messages>,
 }
 

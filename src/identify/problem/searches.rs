@@ -88,7 +88,11 @@ impl Solution {
     /// may have come upon a better fit than any search.
     pub fn add_searches(&mut self, searches: Vec<SolvedSearch>, searched: f64) {
         self.searches = searches;
-        if searched - self.fitness > EQUAL * searched.abs() {
+        let equal = match is_likelihood(&self.fitness_name) {
+            true => EQUALLY_LIKELY,
+            false => EQUAL * searched.abs(),
+        };
+        if searched - self.fitness > equal {
             self.searches.iter_mut().for_each(|own| own.as_good = false);
         }
         let (count, as_good) = (self.searches.len(), self.as_good());

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::elementary;
 use crate::ga::Generation;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A parameter counts as identifiable when its standard error is below this fraction of its value:
 /// the 95 % interval then excludes 0, and on a logarithmic scale spans less than a decade.
@@ -130,6 +130,7 @@ pub struct SolvedSearch {
     /// Its seed.
     pub seed: [f64; 6],
     /// The smallest objective that it found; infinite where no simulation succeeded.
+    #[serde(serialize_with = "finite", deserialize_with = "or_infinite")]
     pub objective: f64,
     /// Values of the parameters there.
     pub values: Vec<f64>,
@@ -320,6 +321,16 @@ impl SolvedParameter {
 }
 
 /// What is not a number is written as null.
+/// JSON has no infinite numbers; both ways are the same for other formats, too.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn finite<S: Serializer>(value: &f64, writer: S) -> Result<S::Ok, S::Error> {
+    Some(*value).filter(|value| value.is_finite()).serialize(writer)
+}
+
+fn or_infinite<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(reader)?.unwrap_or(f64::INFINITY))
+}
+
 fn number<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(reader)?.unwrap_or(f64::NAN))
 }

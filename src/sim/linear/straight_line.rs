@@ -71,8 +71,8 @@ impl std::fmt::Debug for Code {
 }
 
 impl StraightLine {
-    /// Computes the factors and the matrix that is eliminated last; `None` where there is no code and
-    /// the caller has to.
+    /// Computes the factors and the matrix that is eliminated last; returns `None` before the matrix has
+    /// been translated, and then loops over the pattern compute them.
     pub fn factorize(
         &mut self,
         shape: &Shape<'_>,

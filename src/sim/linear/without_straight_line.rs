@@ -3,7 +3,7 @@
 use super::SingularMatrix;
 use super::factor_pattern::Shape;
 
-/// There is no code in any case.
+/// Nothing is ever translated.
 pub fn interpret() {}
 
 /// The code that factors never get.
@@ -11,7 +11,7 @@ pub fn interpret() {}
 pub(super) struct StraightLine;
 
 impl StraightLine {
-    /// The caller has to.
+    /// Loops over the pattern compute them.
     pub fn factorize(
         &mut self,
         _: &Shape<'_>,
@@ -22,7 +22,7 @@ impl StraightLine {
         None
     }
 
-    /// The caller has to.
+    /// Loops over the pattern solve.
     pub fn solve(
         &self,
         _: &mut [f64],
