@@ -177,6 +177,15 @@ impl Diagnostic {
         self
     }
 
+    /// Adds why another way failed too, unless it failed for the same reason.
+    #[must_use]
+    pub fn or_else(self, tried: &str, other: &Diagnostic) -> Diagnostic {
+        match self.message == other.message {
+            true => self,
+            false => self.related(other.span(), format!("{tried}: {}", other.message)),
+        }
+    }
+
     /// Adds the next outer call.
     #[must_use]
     pub fn called_from(mut self, span: Span, what: impl Into<String>) -> Diagnostic {

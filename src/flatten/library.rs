@@ -7,6 +7,7 @@ mod conversion_rules;
 mod element_index;
 mod files;
 mod legacy;
+mod machine_constants;
 mod modifier_conversion;
 mod old_names;
 mod reading;

@@ -174,6 +174,7 @@ fn flattened(
     let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
     let unit_warnings = instantiation.classes.unit_warnings(&model);
     let mut warnings = instantiation.warnings;
+    warnings.extend(instantiation.values.outside.notes());
     for (name, function) in instantiation.functions.table {
         model.functions.extend(function.map(|function| (name, function)));
     }

@@ -32,7 +32,7 @@ impl Builder<'_> {
         for reference in named.0 {
             self.settle_named(&reference)?;
         }
-        self.sized(binding, dims).map_err(|_| error)
+        self.sized(binding, dims).map_err(|why| error.or_else("with the values of parameters", &why))
     }
 
     /// Evaluates the parameter that a reference names, if its value is known.

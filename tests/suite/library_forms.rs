@@ -11,11 +11,11 @@ use gapilib::source::SourceId;
 use gapilib::syntax::parse_stored_definition;
 
 /// The model `P.M` of a package whose contents these are.
-fn flattened(contents: &str) -> Flattened {
+pub fn flattened(contents: &str) -> Flattened {
     attempted(contents).expect("a model")
 }
 
-fn attempted(contents: &str) -> Result<Flattened, Vec<Diagnostic>> {
+pub fn attempted(contents: &str) -> Result<Flattened, Vec<Diagnostic>> {
     let text = format!("package P {contents} end P;");
     let file = parse_stored_definition(SourceId::NONE, &text).expect("Modelica");
     let mut library = Library::new();
@@ -42,7 +42,7 @@ fn both_ends(contents: &str) -> [f64; 2] {
     }
 }
 
-fn at_end(contents: &str) -> f64 {
+pub fn at_end(contents: &str) -> f64 {
     both_ends(contents)[1]
 }
 

@@ -53,6 +53,7 @@ mod lazy_reading;
 mod lessons;
 mod libraries;
 mod library_forms;
+mod library_models;
 mod limits;
 mod linear_algebra;
 mod linear_loops;

@@ -362,7 +362,7 @@ impl Host for Functions<'_, '_> {
     }
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
-        Some(&mut self.0.values.resources)
+        Some(&mut self.0.values.outside)
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -1,6 +1,6 @@
 //! The values of constants and parameters found so far, with the parameters that each needed.
 
-use crate::external::Resources;
+use super::at_translation::AtTranslation;
 use crate::value::Value;
 use indexmap::IndexSet;
 use rustc_hash::FxHashMap;
@@ -19,6 +19,6 @@ pub struct Values {
     pub read: Read,
     /// Statements run so far to find values.
     pub steps: u64,
-    /// Files that values are read from.
-    pub resources: Resources,
+    /// Files that values are read from, and what was printed.
+    pub outside: AtTranslation,
 }

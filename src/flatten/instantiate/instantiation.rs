@@ -5,6 +5,7 @@
 use super::growth::Growth;
 use crate::diag::Diagnostic;
 use crate::flatten::connections::sets::Connections;
+use crate::flatten::expressions::at_translation::AtTranslation;
 use crate::flatten::expressions::values::Values;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::library::Library;
@@ -32,7 +33,10 @@ impl<'a> Instantiation<'a> {
         Instantiation {
             classes: Classes::new(library),
             functions: FunctionTable::default(),
-            values: Values { resources: library.resources().clone(), ..Values::default() },
+            values: Values {
+                outside: AtTranslation::new(library.resources().clone()),
+                ..Values::default()
+            },
             connections: None,
             warnings: Vec::new(),
             depth: 0,

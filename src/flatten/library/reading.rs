@@ -2,6 +2,7 @@
 
 use super::files::{Entry, Folder};
 use super::legacy::{self, LegacyConstruct};
+use super::machine_constants;
 use super::{Class, ClassId, Declared, Library, Origin, Slot};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -38,6 +39,7 @@ impl Library {
                 Err(problem) => (unreadable(&slot.name, problem.span()), None, Some(problem)),
             },
         };
+        let definition = machine_constants::provided(&slot.name, definition);
         let mut class = Class {
             name: slot.name.clone(),
             definition: definition.clone(),

@@ -61,7 +61,10 @@ impl<T: Target> Lowering<'_, T> {
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
                     && !self.target.gives_up() =>
             {
-                self.settled_call(user, &values, span).ok_or(error)
+                self.settled_call(user, &values, span).map_err(|why| match why {
+                    Some(why) => error.or_else("evaluated at translation", &why),
+                    None => error,
+                })
             }
             outputs => outputs,
         }

@@ -188,7 +188,7 @@ impl<T: Target> Lowering<'_, T> {
             return self.choice_of_strings(condition, first, second, span);
         }
         let (Some(a), Some(b)) = (first.shape(), second.shape()) else {
-            return Err(fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span));
+            return Err(super::varying_strings::depends_on_conditions(span));
         };
         let Some(shape) = a.joined(&b) else {
             self.target.end_if(branch, &[]);

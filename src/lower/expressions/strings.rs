@@ -72,24 +72,27 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// The outputs of a function that cannot be compiled, run now; `None` if an argument is not
-    /// known or the interpreter cannot run it either. Parameters among the arguments are settled.
+    /// The outputs of a function that cannot be compiled, run now. Parameters among the arguments are
+    /// settled.
+    ///
+    /// # Errors
+    /// An argument is not known, or the interpreter cannot run it either and says why.
     pub(super) fn settled_call(
         &mut self,
         function: &Arc<Function>,
         arguments: &[Lowered<T::Scalar>],
         span: Span,
-    ) -> Option<Vec<Lowered<T::Scalar>>> {
+    ) -> Result<Vec<Lowered<T::Scalar>>, Option<Diagnostic>> {
         if function.impure {
-            return None;
+            return Err(None);
         }
         let known = function
             .inputs
             .iter()
             .zip(arguments)
             .map(|(input, argument)| self.known_argument(argument, input, true));
-        let values = known.collect::<Option<Vec<Value>>>()?;
-        self.interpreted(function, values, span).ok().flatten()
+        let values = known.collect::<Option<Vec<Value>>>().ok_or(None)?;
+        self.interpreted(function, values, span).map_err(Some)?.ok_or(None)
     }
 
     /// The outputs of a function as numbers and texts; `None` if one of them is neither.

@@ -3,7 +3,7 @@
 use super::{Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::lower::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
@@ -26,7 +26,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Text(text) => self
                 .target
                 .text_number(&text)
-                .ok_or_else(|| fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span)),
+                .ok_or_else(|| depends_on_conditions(span)),
             Lowered::Array(_) | Lowered::Record(_) | Lowered::Texts(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a scalar String").at(span))
             }
@@ -81,4 +81,13 @@ impl<T: Target> Lowering<'_, T> {
         };
         Ok(Lowered::scalar(self.target.relation(relation, a, b, self.live, span)))
     }
+}
+
+/// In a function, whose Strings have no numbers: it is compiled again for the known values of its
+/// arguments, which may decide the condition.
+pub(super) fn depends_on_conditions(span: Span) -> Diagnostic {
+    fault!(NO_CONSTANT_VALUE, "a String in a function depends on a condition that is not known at \
+                               translation";
+        help: "choose among calls with Strings that are known at translation")
+    .at(span)
 }

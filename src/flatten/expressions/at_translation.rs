@@ -1,0 +1,64 @@
+//! What functions that are evaluated at translation may do outside: read files, and print.
+
+use crate::diag::{Diagnostic, Fault};
+use crate::external::c::Request;
+use crate::external::{Entry, Outside, Resources};
+use crate::fault;
+use crate::flatten::errors::PRINTED;
+use crate::source::Span;
+
+/// Most lines that are kept; a function may print in a loop.
+const MAX_LINES: usize = 20;
+
+/// Files that may be read, and what was printed so far.
+#[derive(Debug, Default)]
+pub struct AtTranslation {
+    resources: Resources,
+    lines: Vec<String>,
+    dropped: usize,
+}
+
+impl AtTranslation {
+    /// Nothing printed yet.
+    pub fn new(resources: Resources) -> AtTranslation {
+        AtTranslation { resources, ..AtTranslation::default() }
+    }
+
+    /// The lines as notes. The value is a constant of the model, whose simulation does not call the
+    /// function again.
+    pub fn notes(&self) -> Vec<Diagnostic> {
+        let line = |text: &String| fault!(PRINTED, "a function called at translation: {text}");
+        let mut faults: Vec<Fault> = self.lines.iter().map(line).collect();
+        if self.dropped > 0 {
+            faults.push(fault!(PRINTED, "functions called at translation printed {} more lines",
+                self.dropped));
+        }
+        faults.into_iter().map(|fault| fault.at(Span::NONE).note()).collect()
+    }
+}
+
+impl Outside for AtTranslation {
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        self.resources.read(path)
+    }
+
+    fn print(&mut self, text: &str) -> Result<(), Fault> {
+        match self.lines.len() < MAX_LINES {
+            true => self.lines.push(text.trim_end().to_owned()),
+            false => self.dropped += 1,
+        }
+        Ok(())
+    }
+
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        self.resources.is_folder(path)
+    }
+
+    fn full_path(&mut self, path: &str) -> Result<String, Fault> {
+        self.resources.full_path(path)
+    }
+
+    fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
+        self.resources.c_function(request)
+    }
+}
