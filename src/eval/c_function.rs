@@ -172,6 +172,25 @@ fn component(function: &Function, name: Ident) -> Option<&FunctionComponent> {
     all.find(|component| component.name == name)
 }
 
+/// The component that an argument is, or a component of a record that is an input, and whether it is
+/// an input.
+fn passed<'f>(
+    function: &'f Function,
+    reference: &ComponentReference,
+) -> Option<(&'f FunctionComponent, bool)> {
+    if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
+        return None;
+    }
+    let (first, rest) = reference.parts.split_first()?;
+    let whole = component(function, first.name)?;
+    let is_input = function.inputs.iter().any(|input| input.name == first.name);
+    let member = |of: &'f FunctionComponent, name: Ident| match &of.value_type {
+        ValueType::Record(_, fields) if is_input && of.dims.is_empty() => fields.get(&name),
+        _ => None,
+    };
+    Some((rest.iter().try_fold(whole, |of, part| member(of, part.name))?, is_input))
+}
+
 fn scalar(value_type: &ValueType) -> Option<Scalar> {
     Some(match value_type {
         ValueType::Real => Scalar::Real,
@@ -200,9 +219,8 @@ fn argument(function: &Function, e: &Expression) -> Result<Argument, Diagnostic>
             Argument::Size
         }
         ExpressionKind::Reference(reference) => {
-            let component = reference.as_ident().and_then(|name| component(function, name));
-            let component = component.ok_or_else(|| refused(function, what, e.span))?;
-            let is_input = function.inputs.iter().any(|input| input.name == component.name);
+            let passed = passed(function, reference);
+            let (component, is_input) = passed.ok_or_else(|| refused(function, what, e.span))?;
             let record = "is passed a record or a function";
             let scalar =
                 scalar(&component.value_type).ok_or_else(|| refused(function, record, e.span))?;

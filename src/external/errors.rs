@@ -32,4 +32,7 @@ crate::codes! {
         "## What it means\nAn `external` declaration cannot be called: it is in a language other than C, or has arguments that are not passed to C here: records, expressions other than names, constants and sizes.\n\n\
          ## Example\n`external \"FORTRAN 77\" f(x, y);`\n\n\
          ## What to do\nWrite a function in C that calls it, with numbers, strings, arrays and external objects as arguments.",
+    /// What functions print while a model is translated (a note).
+    PRINTED = "printed-at-translation":
+        "## What it means\n\nA function is called while the model is translated, because an array size, a condition of a component or another property of the structure depends on its value, and it prints. The simulation does not call it again.\n\n## Example\n\n`parameter Integer n = layers(\"wall.txt\"); Real T[n];`, where `layers` prints the name of the file.\n\n## What to do\n\nNothing, or remove the output from the function.",
 }

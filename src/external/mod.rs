@@ -18,6 +18,7 @@
 //! processor while the program runs. What nalgebra does not have, or has less accurately, is
 //! written here; each module says why. `tests/suite/lapack_accuracy.rs` compares all with LAPACK.
 
+mod at_translation;
 mod balancing;
 mod buildings;
 pub mod c;
@@ -43,6 +44,7 @@ mod sylvester;
 mod tables;
 mod xorshift;
 
+pub use at_translation::AtTranslation;
 pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub(crate) use messages::date_and_time;

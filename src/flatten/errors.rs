@@ -81,9 +81,6 @@ codes! {
     /// An equation or a statement in a place where it has no meaning.
     MISPLACED = "misplaced-equation":
         "## What it means\n\nAn equation or a statement is not allowed at this place: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside a loop (§11.2.4), `return` outside a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it is allowed; combine the conditions of nested when-clauses.",
-    /// What functions print while a model is translated (a note).
-    PRINTED = "printed-at-translation":
-        "## What it means\n\nA function is called while the model is translated, because an array size, a condition of a component or another property of the structure depends on its value, and it prints. The simulation does not call it again.\n\n## Example\n\n`parameter Integer n = layers(\"wall.txt\"); Real T[n];`, where `layers` prints the name of the file.\n\n## What to do\n\nNothing, or remove the output from the function.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe model uses a valid part of Modelica that this program does not translate yet. The message names it.\n\n## Example\n\n`Real x = tick();`, where `tick` is an impure function\n\n## What to do\n\nRewrite the model without it.",

@@ -174,7 +174,8 @@ fn flattened(
     let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
     let unit_warnings = instantiation.classes.unit_warnings(&model);
     let mut warnings = instantiation.warnings;
-    warnings.extend(instantiation.values.outside.notes());
+    let notes = instantiation.values.outside.notes().into_iter();
+    warnings.extend(notes.map(|note| note.at(Span::NONE).note()));
     for (name, function) in instantiation.functions.table {
         model.functions.extend(function.map(|function| (name, function)));
     }

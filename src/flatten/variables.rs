@@ -2,7 +2,7 @@
 //! the elements of arrays (MLS §4.4, §4.9, §7.2).
 
 use super::FlatModel;
-use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
 use super::flat_expression::literal;
 use super::instantiate::instance::Leaf;
 use super::instantiate::instance::MemberState;
@@ -93,7 +93,7 @@ impl Instantiation<'_> {
             let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
             // `each` is about the array that holds the component, whose own value may be an array.
             let each = each && self.types().rank_of(&binding) != Some(variable.dims.len());
-            self.check_value(&binding, &variable, each)?;
+            let binding = self.checked_value(binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }
         for name in ATTRIBUTES {
@@ -109,26 +109,36 @@ impl Instantiation<'_> {
         Ok(variable)
     }
 
-    /// Refuses a value that does not fit; an Integer as the ordinal of an enumeration, which old
-    /// libraries store in Integer parameters, is a warning.
-    fn check_value(
+    /// Refuses a value that does not fit. An Integer as the ordinal of an enumeration, which old
+    /// libraries store in Integer parameters, is a warning, and so is a constant that depends on a
+    /// parameter whose value is known: the parameter is evaluated.
+    fn checked_value(
         &mut self,
-        value: &Expression,
+        value: Expression,
         variable: &Variable,
         each: bool,
-    ) -> Result<(), Diagnostic> {
+    ) -> Result<Expression, Diagnostic> {
         let types = self.types();
         let is_ordinal = matches!(variable.base, BaseType::Enumeration(_))
             && variable.dims.is_empty()
-            && types.rank_of(value) == Some(0)
-            && types.type_of(value) == Some(BaseType::Integer);
-        match types.check_value(value, variable, each) {
-            Err(error) if is_ordinal && !self.classes.library.is_strict() => {
-                self.warnings.push(error.warning());
-                Ok(())
-            }
-            result => result,
+            && types.rank_of(&value) == Some(0)
+            && types.type_of(&value) == Some(BaseType::Integer);
+        let Err(error) = types.check_value(&value, variable, each) else { return Ok(value) };
+        if self.classes.library.is_strict() {
+            return Err(error);
         }
+        if is_ordinal {
+            self.warnings.push(error.warning());
+            return Ok(value);
+        }
+        if error.code == NOT_CONSTANT
+            && variable.variability == Variability::Constant
+            && let Ok(known) = self.flat_value(&value)
+        {
+            self.warn_once(error);
+            return Ok(literal(&known, value.span));
+        }
+        Err(error)
     }
 
     /// The value of an attribute that decides how a variable is treated.

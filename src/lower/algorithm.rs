@@ -17,6 +17,7 @@ use super::execution::Loops;
 use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
 use super::statement_function::may_be_a_function;
+use super::when::is_initial;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
@@ -411,9 +412,9 @@ impl Builder<'_> {
             guard,
             loops,
             |builder, loops| {
-                builder.place.in_when = true;
+                (builder.place.in_when, builder.place.at_start) = (true, is_initial(condition));
                 let flow = builder.statements(body, loops);
-                builder.place.in_when = false;
+                (builder.place.in_when, builder.place.at_start) = (false, false);
                 flow
             },
             |builder, loops| builder.when_statement(rest, earlier, span, loops),

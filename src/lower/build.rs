@@ -150,7 +150,12 @@ impl<'a> Builder<'a> {
             let instance = instances.get(holder).copied();
             let is_parameter = variable.variability <= Variability::Parameter
                 || matches!(variable.base, BaseType::ExternalObject(_));
-            if let Some(binding) = &variable.binding {
+            if let Some(values) = self.known_values(position) {
+                // Known from the pass before: a function that prints is not called again.
+                for (at, value) in values.into_iter().enumerate() {
+                    self.dae.variables[first + at].binding = Some(self.dae.pool.constant(value));
+                }
+            } else if let Some(binding) = &variable.binding {
                 let array = self.sized(binding, &variable.dims)?;
                 for (at, element) in array.elements.into_iter().enumerate() {
                     if is_parameter {
@@ -168,6 +173,19 @@ impl<'a> Builder<'a> {
             self.attributes(variable, first)?;
         }
         Ok(())
+    }
+
+    /// The values of a variable with a binding all of whose scalars are constants.
+    fn known_values(&self, position: usize) -> Option<Vec<f64>> {
+        let variable = &self.flat.variables[position];
+        variable.binding.as_ref()?;
+        let first = self.scalars.first[position].0 as usize;
+        let scalars = &self.dae.variables[first..first + variable.len()];
+        let value = |scalar: &Variable| match scalar.kind {
+            Kind::Constant(value) => Some(value),
+            _ => None,
+        };
+        scalars.iter().map(value).collect()
     }
 
     fn attributes(&mut self, variable: &flatten::Variable, first: usize) -> Result<(), Diagnostic> {

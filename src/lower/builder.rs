@@ -60,6 +60,8 @@ pub(super) struct Place {
     pub(super) initial: bool,
     /// Whether it is in the body of a when-clause.
     pub(super) in_when: bool,
+    /// Whether it is evaluated at the start alone: a parameter, or the body of `when initial()`.
+    pub(super) at_start: bool,
     /// How many branches of if-equations are around it whose conditions are not known.
     pub(super) branches: usize,
 }

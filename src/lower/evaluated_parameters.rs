@@ -23,6 +23,17 @@ impl Builder<'_> {
         binding: &Expression,
         dims: &[usize],
     ) -> Result<Array<Expr>, Diagnostic> {
+        let before = std::mem::replace(&mut self.place.at_start, true);
+        let value = self.value_at_start(binding, dims);
+        self.place.at_start = before;
+        value
+    }
+
+    fn value_at_start(
+        &mut self,
+        binding: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
         let error = match self.sized(binding, dims) {
             Err(error) if error.code == NO_CONSTANT_VALUE => error,
             result => return result,
@@ -32,7 +43,8 @@ impl Builder<'_> {
         for reference in named.0 {
             self.settle_named(&reference)?;
         }
-        self.sized(binding, dims).map_err(|why| error.or_else("with the values of parameters", &why))
+        self.sized(binding, dims)
+            .map_err(|why| error.or_else("with the values of parameters", &why))
     }
 
     /// Evaluates the parameter that a reference names, if its value is known.

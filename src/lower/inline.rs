@@ -551,6 +551,14 @@ impl Target for Call<'_, '_> {
         super::function::call(self.builder, function, arguments, span)
     }
 
+    fn runs_once(&self) -> bool {
+        self.builder.runs_once()
+    }
+
+    fn warn(&mut self, warnings: Vec<Diagnostic>) {
+        self.builder.warn(warnings);
+    }
+
     fn gives_up(&self) -> bool {
         self.builder.calls.inlined == 0
     }

@@ -242,6 +242,14 @@ impl Target for Builder<'_> {
         super::function::call(self, function, arguments, span)
     }
 
+    fn runs_once(&self) -> bool {
+        self.place.initial || self.place.at_start
+    }
+
+    fn warn(&mut self, warnings: Vec<Diagnostic>) {
+        self.dae.warnings.extend(warnings);
+    }
+
     fn is_clock(&self, e: &Expression) -> bool {
         super::clocks::is_clock(self.flat, e)
     }

@@ -326,3 +326,61 @@ fn code_may_call_functions_of_the_standard_library() {
     assert_eq!(code, 0, "{out}{errors}");
     assert!(out.ends_with("8\n"), "{out}");
 }
+
+/// The constructor of the objects that couple Buildings with EnergyPlus.
+#[test]
+fn components_of_records_are_passed() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let model = "model M\n  record Pair\n    Real factor;\n    Integer k[2];\n  end Pair;\n  \
+                 record Whole\n    Boolean on;\n    Pair pair;\n  end Whole;\n  \
+                 function f\n    input Whole o;\n    input Real x;\n    output Real y;\n    \
+                 external \"C\" y = f(o.on, o.pair.factor, o.pair.k, 2, x)\n      \
+                 annotation(Include = \"double f(int on, double a, const int *k, int n, double x) \
+                 { return (on ? a : 0)*x + k[0] + 10*k[n - 1]; }\");\n  end f;\n  \
+                 parameter Whole o = Whole(true, Pair(2, {3, 4}));\n  \
+                 Real y = f(o, time);\n  parameter Real p = f(o, 5);\nequation\n  \
+                 assert(abs(y - (2*time + 43)) < 1e-9 and p == 53, \"another result\");\nend M;\n";
+    let here = folder(&[("M.mo", model)]);
+    let (code, out, errors) =
+        gapi(&here, &["simulate", "M.mo", "--allow-external", "--output", "r.csv"]);
+    assert_eq!(code, 0, "{out}{errors}");
+}
+
+/// Modelica_DeviceDrivers: functions in C without outputs fill a package; the functions around them
+/// return a number on which the next one depends.
+#[test]
+fn functions_that_change_an_object_have_values() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let code = "typedef struct { double sum; } sum_t; \
+                static void *sum_new(void) { sum_t *s = malloc(sizeof *s); s->sum = 0; return s; } \
+                static void sum_free(void *s) { free(s); } \
+                static void sum_add(void *s, double x) { ((sum_t *)s)->sum += x; } \
+                static double sum_get(void *s, double t) { return ((sum_t *)s)->sum; }";
+    let code = format!("annotation(Include = \"#include <stdlib.h>\n{code}\")");
+    let model = format!(
+        "model M\n  class Sum\n    extends ExternalObject;\n    function constructor\n      \
+         output Sum s;\n      external \"C\" s = sum_new() {code};\n    end constructor;\n    \
+         function destructor\n      input Sum s;\n      external \"C\" sum_free(s) {code};\n    \
+         end destructor;\n  end Sum;\n  \
+         function add_\n    input Sum s;\n    input Real x;\n    \
+         external \"C\" sum_add(s, x) {code};\n  end add_;\n  \
+         function get_\n    input Sum s;\n    input Real t;\n    output Real y;\n    \
+         external \"C\" y = sum_get(s, t) {code};\n  end get_;\n  \
+         function add\n    input Sum s;\n    input Real x;\n    input Real before;\n    \
+         output Real after;\n  algorithm\n    add_(s, x);\n    after := before;\n  end add;\n  \
+         Sum s = Sum();\n  Real t(start = 0, fixed = true);\n  \
+         Real last(start = 0, fixed = true);\nequation\n  \
+         when sample(0.25, 0.25) then\n    t = add(s, 3, time);\n    last = get_(s, t);\n  \
+         end when;\n  when sample(0.3, 0.25) then\n    \
+         assert(abs(last - 3*floor(time/0.25)) < 1e-9, \"another sum\");\n  end when;\n\
+         end M;\n"
+    );
+    let here = folder(&[("M.mo", &model)]);
+    let arguments = ["simulate", "M.mo", "--allow-external", "--output", "r.csv"];
+    let (code, out, errors) = gapi(&here, &arguments);
+    assert_eq!(code, 0, "{out}{errors}");
+}

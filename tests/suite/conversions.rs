@@ -19,6 +19,7 @@ const PUMPS: &str = "package Pumps
     model Base parameter Real size = 1; Real level = size; end Base;
     function scaled input Real x; input Real factor = 1; output Real y; algorithm y := x*factor; end scaled;
     type Kind = enumeration(slow, swift);
+    package Medium replaceable model State Real level(start = 1); Real size; end State; end Medium;
   end Machines;
   annotation(version = \"2.0\", conversion(noneFromVersion = \"1.9\", from(version = {\"1.0\", \"1.1\"},
     script = \"modelica://Pumps/Scripts/to2.mos\")));
@@ -31,6 +32,8 @@ convertClass("Pumps.Pump", "Pumps.Machines.Pump");
 convertClassIf("Pumps.Pump", "quick", "true", "Pumps.Machines.FastPump");
 convertClass("Pumps.Base", "Pumps.Machines.Base");
 convertClass("Pumps.times", "Pumps.Machines.scaled");
+convertClass("Pumps.Medium", "Pumps.Machines.Medium");
+convertElement("Pumps.Medium.State", {"extent", "height"}, {"size", "level"});
 convertClass("Pumps.Speed", "Pumps.Machines.Kind")
 convertElement("Pumps.Speed", "fast", "swift");
 convertElement({"Pumps.Pump", "Pumps.times"}, {"nom", "by"}, {"nominal", "factor"});
@@ -142,6 +145,26 @@ fn names_of_classes_are_converted_however_they_are_imported() {
     converted(
         "import F = Pumps.Flows; model M F.Flow f = 1; F.Icons.Length l = 2; end M;",
         &["Real f(unit = \"m3/s\") = 1;", "Real l = 2;"],
+    );
+}
+
+/// BrineProp: a medium that replaces and extends `BaseProperties`, whose `R` is `R_s` today.
+#[test]
+fn elements_of_a_class_that_is_replaced_and_extended_are_converted() {
+    converted(
+        "package Water extends Pumps.Medium; \
+           redeclare model extends State(height(start = 2)) Real twice = 2*extent; \
+           equation height = time; extent = 3; end State; end Water; \
+         package Salt extends Water; redeclare model extends State Real more = extent; \
+           end State; end Salt; \
+         model M Water.State p; Salt.State s; Real r = p.extent + s.height; end M;",
+        &[
+            "Real 'p.level'(start = 2);",
+            "Real 'p.twice' = 2 * 'p.size';",
+            "Real 's.more' = 's.size';",
+            "'p.size' = 3;",
+            "Real r = 'p.size' + 's.level';",
+        ],
     );
 }
 

@@ -1,7 +1,6 @@
 //! Expressions with their names resolved (MLS §5.6.2): references to components become flat paths,
 //! constants of packages their values, calls of functions their full names.
 
-pub mod at_translation;
 pub mod calls;
 pub mod comprehensions;
 pub mod constants;

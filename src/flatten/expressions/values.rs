@@ -1,6 +1,6 @@
 //! The values of constants and parameters found so far, with the parameters that each needed.
 
-use super::at_translation::AtTranslation;
+use crate::external::AtTranslation;
 use crate::value::Value;
 use indexmap::IndexSet;
 use rustc_hash::FxHashMap;

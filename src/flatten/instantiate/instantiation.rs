@@ -4,8 +4,8 @@
 
 use super::growth::Growth;
 use crate::diag::Diagnostic;
+use crate::external::AtTranslation;
 use crate::flatten::connections::sets::Connections;
-use crate::flatten::expressions::at_translation::AtTranslation;
 use crate::flatten::expressions::values::Values;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::library::Library;

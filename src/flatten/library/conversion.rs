@@ -103,6 +103,10 @@ impl<'a> Converter<'a> {
                 short.comment.annotation.iter_mut().for_each(|one| self.annotation(one));
             }
             ClassSpecifier::Long(long) => {
+                if let Some(given) = &mut long.class_extends {
+                    let replaced = self.names.replaced(self.scope);
+                    self.modifiers(replaced.as_ref(), given, class.name.span);
+                }
                 long.sections.iter_mut().for_each(|section| self.section(section));
             }
             ClassSpecifier::Derivative(derivative) => self.type_name(&mut derivative.target),

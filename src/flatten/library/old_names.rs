@@ -91,7 +91,15 @@ impl<'a> OldNames<'a> {
         if let Some(child) = self.class(id).child(name) {
             return Some(Meaning::Own(child));
         }
-        if !inherited || depth > MAX_DEPTH {
+        match inherited {
+            true => self.inherited(id, name, depth),
+            false => None,
+        }
+    }
+
+    /// What a class inherits under a name.
+    fn inherited(self, id: ClassId, name: Ident, depth: usize) -> Option<Meaning> {
+        if depth > MAX_DEPTH {
             return None;
         }
         self.bases(id, depth + 1).into_iter().find_map(|base| match base {
@@ -123,7 +131,20 @@ impl<'a> OldNames<'a> {
         }
         let extends: &[Extends] = &class.extends;
         let found = |one: &Extends| self.found(Some(id), &one.base.name, false, depth + 1);
-        extends.iter().filter_map(found).collect()
+        extends.iter().filter_map(found).chain(self.replaced_at(id, depth)).collect()
+    }
+
+    /// The inherited class that `redeclare model extends M` replaces and extends (MLS §7.3.1).
+    pub(super) fn replaced(self, id: ClassId) -> Option<Meaning> {
+        self.replaced_at(id, 0)
+    }
+
+    fn replaced_at(self, id: ClassId, depth: usize) -> Option<Meaning> {
+        let class = self.class(id);
+        let ClassSpecifier::Long(long) = &class.definition.specifier else { return None };
+        long.class_extends.as_ref()?;
+        let (parent, name) = (class.parent?, class.name.last()?);
+        self.inherited(parent, name, depth)
     }
 
     /// The old classes that a class of the user comes from: inheritance ends at the library

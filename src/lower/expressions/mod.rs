@@ -175,6 +175,14 @@ pub(crate) trait Target {
     fn gives_up(&self) -> bool {
         false
     }
+    /// Whether what is translated is evaluated once, when a simulation starts.
+    fn runs_once(&self) -> bool {
+        false
+    }
+    /// Takes warnings and notes about the model.
+    fn warn(&mut self, warnings: Vec<Diagnostic>) {
+        let _ = warnings;
+    }
     /// How many statements the interpreter has run while the model is compiled.
     fn interpreted(&self) -> &Cell<u64>;
     /// Calls a user function with all its arguments.

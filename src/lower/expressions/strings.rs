@@ -5,7 +5,7 @@ use super::{Array, Choice, Lowered, Lowering, Target};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, Host, Scope, ValueType, c_function};
-use crate::external::{Outside, Resources};
+use crate::external::{AtTranslation, Outside, Resources};
 use crate::fault;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
@@ -83,7 +83,7 @@ impl<T: Target> Lowering<'_, T> {
         arguments: &[Lowered<T::Scalar>],
         span: Span,
     ) -> Result<Vec<Lowered<T::Scalar>>, Option<Diagnostic>> {
-        if function.impure {
+        if function.impure && (!self.target.runs_once() || c_function::is_in_c(function)) {
             return Err(None);
         }
         let known = function
@@ -102,8 +102,11 @@ impl<T: Target> Lowering<'_, T> {
         arguments: Vec<Value>,
         span: Span,
     ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
-        let mut host = Compiling { target: &*self.target, resources: self.target.resources() };
-        let outputs = eval::call_function(function, arguments.into(), span, &mut host)?;
+        let mut host = Compiling::new(&*self.target);
+        let outputs = eval::call_function(function, arguments.into(), span, &mut host);
+        let notes = host.outside.notes();
+        let outputs = outputs?;
+        self.target.warn(notes.into_iter().map(|note| note.at(span).note()).collect());
         Ok(outputs.iter().map(|value| self.lowered_value(value)).collect())
     }
 
@@ -247,7 +250,7 @@ impl<T: Target> Lowering<'_, T> {
         for (input, argument) in constructor.inputs.iter().zip(&given) {
             values.push(self.known_argument(argument, input, true)?);
         }
-        let mut host = Compiling { target: &*self.target, resources: self.target.resources() };
+        let mut host = Compiling::new(&*self.target);
         let made = eval::call_function(&constructor, values.into(), binding.span, &mut host);
         made.ok()?.into_iter().next()
     }
@@ -297,6 +300,14 @@ fn unknown_subscript(span: Span) -> Diagnostic {
 struct Compiling<'a, T> {
     target: &'a T,
     resources: Resources,
+    outside: AtTranslation,
+}
+
+impl<'a, T: Target> Compiling<'a, T> {
+    fn new(target: &'a T) -> Compiling<'a, T> {
+        let resources = target.resources();
+        Compiling { target, outside: AtTranslation::new(resources.clone()), resources }
+    }
 }
 
 impl<T: Target> Host for Compiling<'_, T> {
@@ -318,8 +329,12 @@ impl<T: Target> Host for Compiling<'_, T> {
         Ok(None)
     }
 
+    /// What is printed at every event is not printed at translation.
     fn outside(&mut self) -> Option<&mut dyn Outside> {
-        Some(&mut self.resources)
+        match self.target.runs_once() {
+            true => Some(&mut self.outside),
+            false => Some(&mut self.resources),
+        }
     }
 
     fn c_companions(&mut self, _: &Function) -> Vec<Arc<Function>> {

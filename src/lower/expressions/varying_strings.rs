@@ -23,10 +23,9 @@ impl<T: Target> Lowering<'_, T> {
                     help: "select among Strings that are known at translation")
                 .at(span))
             }
-            Lowered::Text(text) => self
-                .target
-                .text_number(&text)
-                .ok_or_else(|| depends_on_conditions(span)),
+            Lowered::Text(text) => {
+                self.target.text_number(&text).ok_or_else(|| depends_on_conditions(span))
+            }
             Lowered::Array(_) | Lowered::Record(_) | Lowered::Texts(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a scalar String").at(span))
             }

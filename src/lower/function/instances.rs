@@ -5,7 +5,7 @@ use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, ValueType};
-use crate::external::Effect;
+use crate::external::{Effect, Kind, Slot};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
@@ -150,7 +150,11 @@ impl Instances {
             found = self.general_or_special(flat, function, arguments, span);
         }
         let found = found?;
-        if found.writes && !self.may_write && self.depth == 0 {
+        if found.writes
+            && !self.may_write
+            && self.depth == 0
+            && (found.outputs.is_empty() || !self.changes_objects_alone(found.code))
+        {
             return Err(fault!(NOT_SUPPORTED, "the function `{}` writes output, so its value \
                 cannot be used",
                 function.name;
@@ -338,10 +342,28 @@ impl Instances {
 
     /// Whether a function and all that it calls are compiled to their ends.
     fn is_finished(&self, function: u32) -> bool {
+        self.all_called(function, |function| self.finished[function as usize])
+    }
+
+    /// Whether all that a function writes, itself or by what it calls, are external objects in C: a
+    /// package that is filled before it is sent. It is called where its value is used.
+    fn changes_objects_alone(&self, function: u32) -> bool {
+        let is_object = |slot: &Slot| slot.kind == Kind::Object;
+        let is_harmless = |call: &ExternalCall| {
+            call.entry.effect != Effect::Writes
+                || call.entry.c.is_some() && call.arguments.iter().any(is_object)
+        };
+        self.all_called(function, |function| {
+            self.functions.codes[function as usize].externals.iter().all(is_harmless)
+        })
+    }
+
+    /// Whether something holds for a function and for all that it calls.
+    fn all_called(&self, function: u32, holds: impl Fn(u32) -> bool) -> bool {
         let mut seen = FxHashSet::default();
         let mut stack = vec![function];
         while let Some(function) = stack.pop() {
-            if !self.finished[function as usize] {
+            if !holds(function) {
                 return false;
             }
             if seen.insert(function) {

@@ -5,7 +5,7 @@ use super::instances::Argument;
 use super::statements::{Body, Loops, elements};
 use crate::bytecode::{Instruction, Register};
 use crate::diag::Diagnostic;
-use crate::eval::FunctionComponent;
+use crate::eval::{FunctionBody, FunctionComponent};
 use crate::fault;
 use crate::lower::component_shape::{Declared, declared};
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
@@ -80,7 +80,13 @@ impl Body<'_, '_> {
         self.emitter.open();
         let mut assigned_shape = |body: &mut Self, path: &[Ident]| body.assigned(path, statements);
         let lowering = &mut self.lowering(&Vec::new());
-        let Declared { mut shape, scalars } = declared(lowering, component, &mut assigned_shape)?;
+        let Declared { mut shape, mut scalars } =
+            declared(lowering, component, &mut assigned_shape)?;
+        if matches!(self.function.body, FunctionBody::External(_)) {
+            // Memory that it need not write to: LAPACK leaves workspaces and what was not asked for.
+            let zero = Operand::Constant(0.0);
+            scalars.iter_mut().for_each(|scalar| *scalar = scalar.or(Some(zero)));
+        }
         let is_known = |scalar: &Option<Operand>| matches!(scalar, Some(Operand::Constant(_)));
         let is_assigned = assigned.contains(&component.name);
         if component.binding.is_some() && !is_assigned && scalars.iter().all(is_known) {

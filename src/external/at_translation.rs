@@ -1,11 +1,10 @@
 //! What functions that are evaluated at translation may do outside: read files, and print.
 
-use crate::diag::{Diagnostic, Fault};
-use crate::external::c::Request;
-use crate::external::{Entry, Outside, Resources};
+use super::c::Request;
+use super::errors::PRINTED;
+use super::{Entry, Outside, Resources};
+use crate::diag::Fault;
 use crate::fault;
-use crate::flatten::errors::PRINTED;
-use crate::source::Span;
 
 /// Most lines that are kept; a function may print in a loop.
 const MAX_LINES: usize = 20;
@@ -26,14 +25,17 @@ impl AtTranslation {
 
     /// The lines as notes. The value is a constant of the model, whose simulation does not call the
     /// function again.
-    pub fn notes(&self) -> Vec<Diagnostic> {
+    pub fn notes(&self) -> Vec<Fault> {
         let line = |text: &String| fault!(PRINTED, "a function called at translation: {text}");
         let mut faults: Vec<Fault> = self.lines.iter().map(line).collect();
         if self.dropped > 0 {
-            faults.push(fault!(PRINTED, "functions called at translation printed {} more lines",
-                self.dropped));
+            faults.push(fault!(
+                PRINTED,
+                "functions called at translation printed {} more lines",
+                self.dropped
+            ));
         }
-        faults.into_iter().map(|fault| fault.at(Span::NONE).note()).collect()
+        faults
     }
 }
 
