@@ -52,16 +52,7 @@ fn equation_targets<'a>(
         body.iter().for_each(|e| equation_targets(e, in_when, targets));
     };
     match &equation.kind {
-        EquationKind::Equal { left, .. } if in_when => match &left.kind {
-            ExpressionKind::Reference(reference) => targets.push(reference),
-            ExpressionKind::Tuple(elements) => {
-                targets.extend(elements.iter().flatten().filter_map(|e| match &e.kind {
-                    ExpressionKind::Reference(reference) => Some(reference),
-                    _ => None,
-                }));
-            }
-            _ => {}
-        },
+        EquationKind::Equal { left, .. } if in_when => named_targets(left, targets),
         EquationKind::For { body, .. } => each(body, in_when, targets),
         EquationKind::If { branches, otherwise } => {
             branches.iter().for_each(|(_, body)| each(body, in_when, targets));
@@ -71,6 +62,20 @@ fn equation_targets<'a>(
             branches.iter().for_each(|(_, body)| each(body, true, targets));
         }
         EquationKind::Equal { .. } | EquationKind::Connect { .. } | EquationKind::Call(_) => {}
+    }
+}
+
+/// What a left side names: a component of an array of components stands there as an array.
+fn named_targets<'a>(left: &'a ast::Expression, targets: &mut Vec<&'a ComponentReference>) {
+    match &left.kind {
+        ExpressionKind::Reference(reference) => targets.push(reference),
+        ExpressionKind::Tuple(elements) => {
+            elements.iter().flatten().for_each(|e| named_targets(e, targets));
+        }
+        ExpressionKind::Array(elements) => {
+            elements.iter().for_each(|e| named_targets(e, targets));
+        }
+        _ => {}
     }
 }
 

@@ -5,7 +5,8 @@
 //! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
 //! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
 //! newton                 torn loops: Newton, then global_newton and levenberg_marquardt; zeros that
-//!                        are isolated though the Jacobian is singular: multiple_roots
+//!                        are isolated though the Jacobian is singular: multiple_roots; a start
+//!                        where the residual is flat: bracketing
 //! delay_buffer           the past of delayed expressions
 //! state_selection        dynamic state selection
 //! sliding                both sides of relations that chatter
@@ -13,6 +14,7 @@
 //! log_messages           warnings and printed strings; failure_messages, singular_systems
 //! ```
 
+mod bracketing;
 mod delay_buffer;
 mod delays;
 mod difference_quotients;

@@ -15,6 +15,7 @@
 //! one nearest to the values at hand is, with a warning as well, where equations that depend on each
 //! other leave unknowns open; at a turning point it is an error.
 
+use super::bracketing::solve_bracketed;
 use super::difference_quotients::quotient;
 use super::execution::run_loop;
 use super::global_newton::Continuation;
@@ -120,6 +121,12 @@ impl LoopSolver {
         if !initial {
             // A fan that starts needs half of its speed at once: the solution at rest has ended.
             outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
+        }
+        if initial && outcome.is_err() {
+            self.x.copy_from_slice(&self.guess);
+            let (newton, nominal) = (&mut self.newton, &self.nominal);
+            let found = solve_bracketed(newton, &mut equations, &mut self.x, nominal);
+            outcome = found.or(outcome);
         }
         let solution = if outcome.is_ok() { &self.x } else { &self.guess };
         // What follows from the unknowns is computed from the values they end with.

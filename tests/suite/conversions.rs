@@ -20,6 +20,7 @@ const PUMPS: &str = "package Pumps
     function scaled input Real x; input Real factor = 1; output Real y; algorithm y := x*factor; end scaled;
     type Kind = enumeration(slow, swift);
     package Medium replaceable model State Real level(start = 1); Real size; end State; end Medium;
+    package Fluid extends Medium; end Fluid;
   end Machines;
   annotation(version = \"2.0\", conversion(noneFromVersion = \"1.9\", from(version = {\"1.0\", \"1.1\"},
     script = \"modelica://Pumps/Scripts/to2.mos\")));
@@ -33,7 +34,9 @@ convertClassIf("Pumps.Pump", "quick", "true", "Pumps.Machines.FastPump");
 convertClass("Pumps.Base", "Pumps.Machines.Base");
 convertClass("Pumps.times", "Pumps.Machines.scaled");
 convertClass("Pumps.Medium", "Pumps.Machines.Medium");
+convertClass("Pumps.Fluid", "Pumps.Machines.Fluid");
 convertElement("Pumps.Medium.State", {"extent", "height"}, {"size", "level"});
+convertElement("Pumps.Fluid.State", {"extent", "height"}, {"size", "level"});
 convertClass("Pumps.Speed", "Pumps.Machines.Kind")
 convertElement("Pumps.Speed", "fast", "swift");
 convertElement({"Pumps.Pump", "Pumps.times"}, {"nom", "by"}, {"nominal", "factor"});
@@ -155,14 +158,17 @@ fn elements_of_a_class_that_is_replaced_and_extended_are_converted() {
         "package Water extends Pumps.Medium; \
            redeclare model extends State(height(start = 2)) Real twice = 2*extent; \
            equation height = time; extent = 3; end State; end Water; \
+         package Oil extends Pumps.Fluid; redeclare model extends State \
+           Real thrice = 3*extent; equation height = time; extent = 4; end State; end Oil; \
          package Salt extends Water; redeclare model extends State Real more = extent; \
            end State; end Salt; \
-         model M Water.State p; Salt.State s; Real r = p.extent + s.height; end M;",
+         model M Water.State p; Salt.State s; Oil.State o; Real r = p.extent + s.height; end M;",
         &[
             "Real 'p.level'(start = 2);",
             "Real 'p.twice' = 2 * 'p.size';",
             "Real 's.more' = 's.size';",
             "'p.size' = 3;",
+            "Real 'o.thrice' = 3 * 'o.size';",
             "Real r = 'p.size' + 's.level';",
         ],
     );

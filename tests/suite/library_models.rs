@@ -84,3 +84,49 @@ fn a_function_that_prints_gives_parameters_their_values() {
         Real x = sum(y)*time; end M;";
     assert_eq!(at_end(contents), 6.0);
 }
+
+/// Modelica_LinearSystems2: the sizes of a transfer function follow from its complex poles.
+#[test]
+fn functions_of_arrays_of_records_give_records_at_translation() {
+    let contents = "record Pole Real re; Real im; end Pole; \
+        record Factors Real first[:]; Real second[:]; end Factors; \
+        function real_poles input Pole p[:]; output Integer n; \
+        algorithm n := 0; for i in 1:size(p, 1) loop \
+        if p[i].im == 0 then n := n + 1; end if; end for; end real_poles; \
+        function factors input Pole p[:]; output Factors f(redeclare Real first[real_poles(p)], \
+        redeclare Real second[size(p, 1) - real_poles(p)]); \
+        protected Integer n = size(f.first, 1); Integer j = 0; Integer k = 0; \
+        algorithm for i in 1:size(p, 1) loop if p[i].im == 0 then j := j + 1; \
+        f.first[j] := p[i].re; else k := k + 1; f.second[k] := p[i].im; end if; end for; \
+        end factors; \
+        model M parameter Factors f = factors({Pole(3, 0), Pole(1, 5), Pole(7, 0)}); \
+        Real x = sum(f.first) + 100*f.second[1]*time + 1000*size(f.first, 1); end M;";
+    assert_eq!(at_end(contents), 10.0 + 500.0 + 2000.0);
+}
+
+/// Modelica_DeviceDrivers assigns a component of an array of connectors.
+#[test]
+fn components_of_arrays_of_components_are_assigned_in_when_clauses() {
+    let contents = "record A Real y; end A; \
+        model M A a[2]; Real x = a[1].y + 10*a[2].y; \
+        equation when time > 0.5 then a.y = {1, 2}; end when; end M;";
+    assert_eq!(at_end(contents), 21.0);
+    let called = "record A Real y; Real z; end A; \
+        function f input Real u; output Real y; output Real z; \
+        algorithm y := u; z := 2*u; end f; \
+        model M A a[2]; Real x = a[1].y + 10*a[2].z; \
+        equation when time > 0.5 then for i in 1:2 loop (a[i].y, a[i].z) = f(i); end for; \
+        end when; end M;";
+    assert_eq!(at_end(called), 1.0 + 40.0);
+}
+
+/// HelmholtzMedia: the density of butane at a pressure, from that of the critical point, around which
+/// the pressure does not depend on the density.
+#[test]
+fn a_start_value_may_lie_where_the_residual_is_flat() {
+    let contents = "function pressure input Real d; output Real p; algorithm \
+        p := if d < 5 then 0.4*d else if d < 600 then 2 else 2 + 10*(d - 600); end pressure; \
+        model M Real x(start = 227); Real y(start = 1, fixed = true); \
+        equation 1 + 0*y = pressure(x); der(y) = x; end M;";
+    assert!((at_end(contents) - 2.5).abs() < 1e-9);
+}

@@ -238,6 +238,13 @@ impl Conversion {
             .fold(None, |new: Option<Name>, rules| rules.class(new.as_ref().unwrap_or(old)).or(new))
     }
 
+    /// Whether a rule is about the elements or modifiers of a class.
+    pub(super) fn mentions(&self, old: &Name) -> bool {
+        self.along(old).any(|(rules, class)| {
+            rules.elements.contains_key(&class) || rules.modifiers.contains_key(&class)
+        })
+    }
+
     /// Whether the value of a modifier may decide what stands for a class.
     pub(super) fn has_choices(&self, old: &Name) -> bool {
         self.along(old).any(|(rules, class)| !rules.conditional(&class).is_empty())

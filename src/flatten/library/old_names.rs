@@ -79,9 +79,13 @@ impl<'a> OldNames<'a> {
         })
     }
 
-    /// Whether there is a class of a full name, converted where that must be.
+    /// Whether there is a class of a full name, converted where that must be; rules may also be about
+    /// a class that another one of the library inherits.
     fn is_known(self, full: &Name) -> bool {
         let rules = self.conversions.iter().find(|(library, _)| full.first() == Some(*library));
+        if rules.is_some_and(|(_, rules)| rules.mentions(full)) {
+            return true;
+        }
         let new = rules.and_then(|(_, rules)| rules.class(full));
         self.library.find(new.as_ref().unwrap_or(full)).is_some()
     }

@@ -195,6 +195,9 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Option<Value> {
         match argument {
             Lowered::Text(_) if !input.dims.is_empty() => None,
+            Lowered::Record(fields) if !input.dims.is_empty() => {
+                self.known_records(fields, &input.value_type, settle)
+            }
             _ => self.known_value(argument, &input.value_type, settle),
         }
     }
@@ -270,10 +273,38 @@ impl<T: Target> Lowering<'_, T> {
         Some(Value::Record(RecordValue { type_name: type_name.clone(), fields: known }))
     }
 
-    /// A value of the interpreter; `None` for records and external objects.
+    /// An array of records of scalars, whose fields are arrays here.
+    fn known_records(
+        &mut self,
+        fields: &[(Ident, Lowered<T::Scalar>)],
+        wanted: &ValueType,
+        settle: bool,
+    ) -> Option<Value> {
+        let Value::Record(of_arrays) = self.known_record(fields, wanted, settle)? else {
+            return None;
+        };
+        let Value::Array(first) = of_arrays.fields.values().next()? else { return None };
+        let dims = first.dims.clone();
+        let record = |at: usize| {
+            let field = |(name, value): (&Ident, &Value)| match value {
+                Value::Array(array) if array.dims == dims => Some((*name, array.elements.get(at))),
+                _ => None,
+            };
+            let fields = of_arrays.fields.iter().map(field).collect::<Option<_>>()?;
+            Some(RecordValue { type_name: of_arrays.type_name.clone(), fields })
+        };
+        let records = (0..dims.iter().product()).map(record).collect::<Option<Vec<_>>>()?;
+        Some(Value::Array(ArrayValue { dims, elements: Elements::Record(records) }))
+    }
+
+    /// A value of the interpreter; `None` for arrays of records and external objects.
     fn lowered_value(&mut self, value: &Value) -> Option<Lowered<T::Scalar>> {
         if let Value::String(text) = value {
             return Some(Lowered::Text(text.clone()));
+        }
+        if let Value::Record(record) = value {
+            let field = |(name, value): (&Ident, &Value)| Some((*name, self.lowered_value(value)?));
+            return record.fields.iter().map(field).collect::<Option<_>>().map(Lowered::Record);
         }
         if let Value::Array(ArrayValue { dims, elements: Elements::String(texts) }) = value {
             let texts = texts.as_slice().into();

@@ -80,7 +80,7 @@ fn inlined_or_compiled(
     {
         return Ok(outputs);
     }
-    let asserted = builder.dae.assertions.len();
+    let (asserted, warned) = (builder.dae.assertions.len(), builder.dae.warnings.len());
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
         result => return result,
@@ -90,6 +90,7 @@ fn inlined_or_compiled(
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);
+    builder.dae.warnings.truncate(warned);
     let mut result = compiled_call(builder, function, arguments.clone(), span);
     if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
         && settle_whole_numbers(builder, function, &mut arguments)
