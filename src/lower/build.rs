@@ -156,7 +156,13 @@ impl<'a> Builder<'a> {
                     self.dae.variables[first + at].binding = Some(self.dae.pool.constant(value));
                 }
             } else if let Some(binding) = &variable.binding {
-                let array = self.sized(binding, &variable.dims)?;
+                let array = match self.sized(binding, &variable.dims) {
+                    Err(e) if is_parameter && e.code == NOT_SUPPORTED => {
+                        // A function that prints is called now, and its value stays.
+                        self.parameter_value(binding, &variable.dims).map_err(|_| e)?
+                    }
+                    array => array?,
+                };
                 for (at, element) in array.elements.into_iter().enumerate() {
                     if is_parameter {
                         self.dae.variables[first + at].binding = Some(element);

@@ -83,6 +83,7 @@ fn a_function_that_prints_gives_parameters_their_values() {
         model M parameter Integer n = 3; final parameter Real y[n] = read(n); \
         Real x = sum(y)*time; end M;";
     assert_eq!(at_end(contents), 6.0);
+    assert_eq!(at_end(&contents.replace("final parameter", "parameter")), 6.0);
 }
 
 /// Modelica_LinearSystems2: the sizes of a transfer function follow from its complex poles.
