@@ -12,11 +12,13 @@ use crate::lower::{Dae, Equation, Kind};
 use crate::symbolic::{Expr, Solution, VarId, solve};
 use rustc_hash::FxHashMap;
 
-/// Sorts equations for unknowns.
+/// Sorts equations for unknowns, and solves the blocks that are needed: `is_needed` is given the numbers
+/// of their equations and their unknowns.
 pub(super) fn sort_blocks(
     dae: &mut Dae,
     equations: &[Equation],
     unknowns: &[VarId],
+    is_needed: impl Fn(&Dae, &[usize], &[VarId]) -> bool,
 ) -> Result<Vec<Block>, Diagnostic> {
     let graph = incidence(dae, equations, unknowns);
     let matching = match_equations(&graph);
@@ -31,7 +33,9 @@ pub(super) fn sort_blocks(
             .filter_map(|equation| matching.equation_to_unknown[*equation])
             .map(|unknown| unknowns[unknown])
             .collect();
-        sorted.push(solve_block(dae, equations, &block, &members)?);
+        if is_needed(dae, &block, &members) {
+            sorted.push(solve_block(dae, equations, &block, &members)?);
+        }
     }
     Ok(sorted)
 }

@@ -214,14 +214,15 @@ impl Level<'_> {
         let all = |places: Vec<usize>| places.into_iter().map(|at| columns[at]).collect();
         let by_value = pivots(entries.clone(), &preferences, false);
         let wanted = by_value.as_ref().filter(|chosen| is_wanted(chosen, &preferences));
-        let (dummies, is_static) = match (wanted, pivots(entries, &preferences, true)) {
-            (Some(chosen), _) => (all(chosen.clone()), true),
-            (None, Some(chosen)) => (all(chosen), true),
+        let lasting = match wanted {
+            Some(chosen) => Some(chosen.clone()),
+            None => pivots(entries, &preferences, true),
+        };
+        let (dummies, is_static) = match (lasting, by_value) {
+            (Some(chosen), _) => (all(chosen), true),
+            (None, Some(chosen)) => (all(chosen), columns.len() == self.equations.len()),
             (None, None) => {
-                let chosen = match by_value {
-                    Some(chosen) => chosen,
-                    None => self.by_structure(dae, &jacobian, &columns)?,
-                };
+                let chosen = self.by_structure(dae, &jacobian, &columns)?;
                 (all(chosen), columns.len() == self.equations.len())
             }
         };

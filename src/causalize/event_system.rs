@@ -25,6 +25,14 @@ pub(super) enum Purpose {
     Check,
 }
 
+impl Purpose {
+    /// Whether a block has to be solved.
+    pub(super) fn needs(self, dae: &Dae, members: &[VarId]) -> bool {
+        let is_real = |v: &VarId| dae.variable(*v).base == BaseType::Real;
+        self == Purpose::Solution || !members.iter().all(is_real)
+    }
+}
+
 /// Blocks, and the variables that are read before they are written.
 #[derive(Debug, Default)]
 pub(super) struct EventSystem {
@@ -97,10 +105,10 @@ pub(super) fn sort_mixed(
             .filter_map(|equation| matching.equation_to_unknown[*equation])
             .map(|unknown| unknowns[unknown])
             .collect();
-        let is_real = members.iter().all(|v| dae.variable(*v).base == BaseType::Real);
-        if is_real && purpose == Purpose::Check {
+        if !purpose.needs(dae, &members) {
             continue;
         }
+        let is_real = members.iter().all(|v| dae.variable(*v).base == BaseType::Real);
         if is_real || block.len() == 1 {
             sorted.blocks.push(solve_block(dae, equations, &block, &members)?);
         } else {

@@ -44,8 +44,10 @@ pub(super) fn hidden_constraints(
 ) -> Vec<(usize, Equation)> {
     let mut found = Vec::new();
     for block in blocks {
-        let Block::Linear(solved) = block else { continue };
-        let rows = without_own_unknowns(rows(dae, equations, solved, n_given));
+        let Block::Linear(LinearLoop { assignments, .. }) = block else { continue };
+        let numbers = assignments.iter().map(|a| a.equation);
+        let members = assignments.iter().map(|a| a.variable).collect();
+        let rows = without_own_unknowns(rows(dae, equations, (numbers, &members), n_given));
         if rows.len() > MOST_EQUATIONS {
             continue;
         }
@@ -58,18 +60,34 @@ pub(super) fn hidden_constraints(
     found
 }
 
-/// The equations of a loop whose unknowns have numbers as factors.
-fn rows(dae: &Dae, equations: &[Equation], solved: &LinearLoop, n_given: usize) -> Vec<Row> {
-    let members: FxHashSet<VarId> = solved.assignments.iter().map(|a| a.variable).collect();
+/// Whether the equations of a block may depend on each other, should the block be a linear loop: what
+/// is found out without solving it.
+pub(super) fn may_be_dependent(
+    dae: &Dae,
+    equations: &[Equation],
+    (block, members): (&[usize], &[VarId]),
+    n_given: usize,
+) -> bool {
+    let members = members.iter().copied().collect();
+    let rows = rows(dae, equations, (block.iter().copied(), &members), n_given);
+    !without_own_unknowns(rows).is_empty()
+}
+
+/// The equations of a loop, by their numbers, whose unknowns have numbers as factors.
+fn rows(
+    dae: &Dae,
+    equations: &[Equation],
+    (numbers, members): (impl Iterator<Item = usize>, &FxHashSet<VarId>),
+    n_given: usize,
+) -> Vec<Row> {
     let is_member = |e: Expr| dae.pool.as_variable(e).is_some_and(|v| members.contains(&v));
-    let numbers = solved.assignments.iter().map(|a| a.equation).filter(|at| *at < n_given);
     let row = |at: usize| {
         let sum = sum_of(dae, equations[at]);
         let (unknowns, known): (Sum, Sum) = sum.into_iter().partition(|(e, _)| is_member(*e));
         let is_known = |e: &Expr| !dae.pool.any_variable(*e, |v| members.contains(&v));
         known.keys().all(is_known).then_some(Row { equation: at, unknowns, known })
     };
-    numbers.filter_map(row).collect()
+    numbers.filter(|at| *at < n_given).filter_map(row).collect()
 }
 
 /// Left side − right side.

@@ -60,8 +60,9 @@ pub fn causalize(flat: &FlatModel) -> Result<CausalizedDae, Diagnostic> {
     with_zeros(flat).map(|(causalized, _)| causalized)
 }
 
-/// Finds out what is wrong with a flat model. What only the solution needs is not computed: blocks at
-/// events and at the start are not solved, and parameters of zero do not lead to a second structure.
+/// Finds out what is wrong with a flat model. What only the solution needs is not computed: blocks of
+/// Real variables are not solved, unless they may hide constraints, and parameters of zero do not lead
+/// to a second structure.
 ///
 /// # Errors
 /// Those of [`causalize`].

@@ -3,7 +3,7 @@
 use super::causalized::{Alias, CausalizedDae};
 use super::dummy_derivatives::ChosenStates;
 use super::event_system::{self, EventSystem, Purpose};
-use super::hidden_constraints::hidden_constraints;
+use super::hidden_constraints::{hidden_constraints, may_be_dependent};
 use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
 use super::{
@@ -225,7 +225,13 @@ impl<'a> Causalization<'a> {
         reinit::check_reinits(&self.dae, &self.aliases, states, selections)?;
         self.unknowns = index_reduction::unknowns(&self.dae, &self.aliases, states);
         self.actual = homotopy::actual_equations(&mut self.dae);
-        self.blocks = blt::sort_blocks(&mut self.dae, &self.actual, &self.unknowns)?;
+        let (purpose, equations) = (self.purpose, &self.actual);
+        let n_given = self.before.0.equations.len();
+        let is_needed = |dae: &Dae, block: &[usize], members: &[VarId]| {
+            purpose.needs(dae, members)
+                || may_be_dependent(dae, equations, (block, members), n_given)
+        };
+        self.blocks = blt::sort_blocks(&mut self.dae, equations, &self.unknowns, is_needed)?;
         Ok(())
     }
 
@@ -296,14 +302,18 @@ equation
 end Loops;
 ";
 
-    #[test]
-    fn a_check_solves_the_blocks_between_events_alone() {
+    fn flat(name: &str, text: &str) -> FlatModel {
         let sources = SourceMap::default();
-        let source = sources.add("Loops.mo", LOOPS);
-        let file = parse_stored_definition(source, LOOPS).expect("Modelica");
+        let source = sources.add(name, text);
+        let file = parse_stored_definition(source, text).expect("Modelica");
         let mut library = Library::new();
         let names = library.load(&file).expect("a class");
-        let flat = flatten(&library, &names[0], &[]).expect("a model").model;
+        flatten(&library, &names[0], &[]).expect("a model").model
+    }
+
+    #[test]
+    fn a_check_solves_discrete_blocks_alone() {
+        let flat = flat("Loops.mo", LOOPS);
         let solved = causalize(&flat).expect("it can be solved");
         let is_real = |v: VarId| solved.dae.variable(v).base == BaseType::Real;
         // The condition is a Boolean at events and at the start; what is left out is Real.
@@ -313,9 +323,33 @@ end Loops;
                 .filter(|block| matches!(block, Block::Assignment(a) if !is_real(a.variable)));
             assigned.count()
         };
-        let rest = discrete(&solved.event_blocks) + discrete(&solved.initial_blocks);
-        assert_eq!(check(&flat).expect("nothing is wrong"), solved.blocks.len() + rest);
-        let all = solved.blocks.len() + solved.event_blocks.len() + solved.initial_blocks.len();
-        assert!(2 * (solved.blocks.len() + rest) < all, "{rest} {all}");
+        let needed = discrete(&solved.event_blocks) + discrete(&solved.initial_blocks);
+        assert!(solved.blocks.len() >= 6 && needed > 0);
+        assert_eq!(check(&flat).expect("nothing is wrong"), needed);
+    }
+
+    /// The second equation says that `w` is twice `u`, so that one of them cannot be a state.
+    const HIDDEN: &str = "\
+model Hidden
+  Real u(start = 1, fixed = true, stateSelect = StateSelect.always);
+  Real w(stateSelect = StateSelect.always);
+  Real i[2];
+equation
+  3*i[1] + 5*i[2] = u;
+  6*i[1] + 10*i[2] = w;
+  der(u) = -i[1];
+  der(w) = -i[2];
+end Hidden;
+";
+
+    #[test]
+    fn a_check_finds_what_hidden_constraints_make_wrong() {
+        let mut flat = flat("Hidden.mo", HIDDEN);
+        assert_eq!(causalize(&flat).expect("it can be solved").states.len(), 1);
+        check(&flat).expect("a warning");
+        flat.strict = true;
+        let wrong = check(&flat).expect_err("two states are asked for");
+        assert_eq!(wrong.code, lower::errors::STATE_SELECT);
+        assert_eq!(Some(wrong), causalize(&flat).err());
     }
 }

@@ -13,7 +13,9 @@ static PROCESS: AtomicU32 = AtomicU32::new(0);
 static AT_WORK: AtomicUsize = AtomicUsize::new(0);
 
 /// A thread at work in the library until this is dropped: after everything that it has locked.
-pub(crate) struct AtWork(());
+pub(crate) struct AtWork {
+    process: u32,
+}
 
 impl AtWork {
     /// Work begins. Who calls it has the global lock, so that no other thread forks meanwhile.
@@ -34,7 +36,12 @@ impl AtWork {
             PROCESS.store(process, Ordering::SeqCst);
         }
         AT_WORK.fetch_add(1, Ordering::SeqCst);
-        Ok(AtWork(()))
+        Ok(AtWork { process })
+    }
+
+    /// The process: the system is asked for it once a call.
+    pub(crate) fn process(&self) -> u32 {
+        self.process
     }
 }
 

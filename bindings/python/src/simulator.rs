@@ -117,6 +117,21 @@ impl Simulator {
         self.points.outputs.len() * self.points.x.len()
     }
 
+    /// One answer as an array. With one output it is copied as it is: to make an array of a vector and
+    /// reshape it takes as long as a short simulation.
+    fn array<'py>(&self, py: Python<'py>, row: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+        if self.points.outputs.len() == 1 {
+            let array = PyArray1::from_slice(py, row);
+            return match self.points.is_single {
+                true => Ok(array.into_any()),
+                false => Ok(array.reshape(self.shape())?.into_any()),
+            };
+        }
+        let mut out = Vec::with_capacity(row.len());
+        self.by_points(row, 1, &mut out);
+        Ok(PyArray1::from_vec(py, out).reshape(self.shape())?.into_any())
+    }
+
     /// The shape of one answer: points, or points × outputs.
     fn shape(&self) -> Vec<usize> {
         match self.points.is_single {
@@ -208,8 +223,8 @@ impl Simulator {
         work: impl Fn(&mut ModelSimulator) -> Result<T, Failed> + Send + Sync + 'static,
     ) -> PyResult<Result<T, Failed>> {
         if !self.watched.is_slow() {
-            let _at_work = AtWork::begin(py)?;
-            self.watched.watch()?;
+            let at_work = AtWork::begin(py)?;
+            self.watched.watch(at_work.process())?;
             let answer = py.detach(|| {
                 let _alone = self.busy.lock().unwrap_or_else(PoisonError::into_inner);
                 let mut worker = self.workers[0].lock().unwrap_or_else(PoisonError::into_inner);
@@ -269,9 +284,7 @@ impl Simulator {
             worker.simulate(&values, &mut row).map(|()| row)
         });
         let row = row?.map_err(|failed| failure(py, failed))?;
-        let mut out = Vec::with_capacity(row.len());
-        self.by_points(&row, 1, &mut out);
-        Ok(PyArray1::from_vec(py, out).reshape(self.shape())?.into_any())
+        self.array(py, &row)
     }
 
     /// Simulates with the values of each row of a matrix, on all cores: an array of rows × points
@@ -336,14 +349,11 @@ impl Simulator {
         });
         let answer = answer?.map_err(|failed| failure(py, failed))?;
         let (row, derivatives) = answer.map_err(|refusal| without_derivatives(py, refusal))?;
-        let (mut out, mut by_point) = (Vec::new(), Vec::new());
-        self.by_points(&row, 1, &mut out);
+        let mut by_point = Vec::with_capacity(derivatives.len());
         self.by_points(&derivatives, width, &mut by_point);
         let shape = [self.shape(), vec![width]].concat();
-        Ok((
-            PyArray1::from_vec(py, out).reshape(self.shape())?.into_any(),
-            PyArray1::from_vec(py, by_point).reshape(shape)?.into_any(),
-        ))
+        let by_point = PyArray1::from_vec(py, by_point).reshape(shape)?;
+        Ok((self.array(py, &row)?, by_point.into_any()))
     }
 
     fn __repr__(&self) -> String {

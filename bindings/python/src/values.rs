@@ -165,12 +165,30 @@ fn owned<T: Element + Clone>(array: &Bound<'_, PyAny>) -> PyResult<(Vec<T>, Vec<
     Ok((copy.as_slice()?.to_vec(), shape))
 }
 
+/// An array of Real in one dimension, or a list or tuple of `float`: read without NumPy's help, which takes
+/// longer than a short simulation. `None` for anything else.
+fn plain_row(value: &Bound<'_, PyAny>) -> Option<Vec<f64>> {
+    fn floats<'py>(items: impl Iterator<Item = Bound<'py, PyAny>>) -> Option<Vec<f64>> {
+        items.map(|item| item.cast::<PyFloat>().ok().map(|float| float.value())).collect()
+    }
+    if let Ok(array) = value.cast::<PyArray1<f64>>() {
+        return array.try_readonly().ok()?.as_slice().ok().map(<[f64]>::to_vec);
+    }
+    if let Ok(list) = value.cast_exact::<PyList>() {
+        return floats(list.iter());
+    }
+    floats(value.cast_exact::<PyTuple>().ok()?.iter())
+}
+
 /// Rows of numbers: an array of one or two dimensions with so many columns.
 pub(crate) fn rows(
     value: &Bound<'_, PyAny>,
     columns: usize,
     what: &str,
 ) -> PyResult<(Vec<f64>, usize)> {
+    if let Some(row) = plain_row(value).filter(|row| row.len() == columns) {
+        return Ok((row, 1));
+    }
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("ascontiguousarray", (value, numpy.getattr("float64")?))?;
     let (values, shape) = owned(&array)?;

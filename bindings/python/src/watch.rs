@@ -48,8 +48,7 @@ impl Watched {
     /// # Errors
     ///
     /// There are no more threads to be had.
-    pub(crate) fn watch(self: &Arc<Watched>) -> io::Result<()> {
-        let process = std::process::id();
+    pub(crate) fn watch(self: &Arc<Watched>, process: u32) -> io::Result<()> {
         if self.process.load(Ordering::Relaxed) == process {
             return Ok(());
         }

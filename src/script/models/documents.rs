@@ -164,8 +164,11 @@ impl Session {
         self.ask(|library| flatten::check(library, class))
     }
 
-    /// The work of finding out what is wrong with a model, for any thread.
+    /// The work of finding out what is wrong with a model, for any thread. The libraries that the loaded
+    /// ones use are loaded before: a model that misses one of them is flattened again.
     pub fn model_check(&mut self, model: &Name) -> ModelCheck {
+        // A library that cannot be loaded is missed by what needs it.
+        let _ = self.load_used();
         let resources = self.resources_for(model);
         self.classes.library.set_resources(resources);
         ModelCheck { library: self.classes.library.clone(), model: model.clone() }
