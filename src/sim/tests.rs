@@ -482,3 +482,16 @@ fn costs_are_known() {
     insta::assert_snapshot!(cost(&mut problems::robertson(), 40.0), @"195 steps, 3 + 0 rejected, 454 right-hand sides, 4 Jacobians, 38 factorizations");
     insta::assert_snapshot!(cost(&mut problems::pendulum(), 5.0), @"390 steps, 10 + 0 rejected, 993 right-hand sides, 18 Jacobians, 42 factorizations");
 }
+
+#[test]
+fn a_jump_without_an_event_is_passed_months_after_the_start() {
+    let mut problem = TestProblem::new(&[0.0, 0.0], 2, |_, y, _, out| {
+        out[0] = 1e-2;
+        out[1] = if y[0] < 0.5 { 0.0 } else { 3.0 };
+    });
+    for method in ["dassl", "radau", "rodas4", "dopri5"] {
+        let settings = Settings { start: 5e6, ..by(method, settings(5e6 + 100.0, 1e-6)) };
+        let y = final_values(&mut problem, &settings);
+        assert!((y[1] / 150.0 - 1.0).abs() < 1e-5, "{method}: {}", y[1]);
+    }
+}

@@ -154,10 +154,12 @@ impl Problem<'_> {
         (self.system.n_differential()..self.n_tested()).collect()
     }
 
-    /// The smallest step that changes t noticeably.
+    /// The smallest step that changes t noticeably, by two or more of its last binary digits. Where the
+    /// right-hand side jumps without an event the error of a step is that jump times its length: two
+    /// months into a year, with 16 digits, a jump of 3 rad/s could not be passed at a tolerance of 1e-6.
     fn smallest_step(&self, t: f64) -> f64 {
         let span = (self.settings.stop - self.settings.start).abs();
-        16.0 * f64::EPSILON * t.abs().max(1e-10 * span)
+        2.0 * f64::EPSILON * t.abs().max(1e-10 * span)
     }
 
     /// A first step over which x changes little, from the relative speed of x at (t, y). It is not
