@@ -5,11 +5,13 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a measurement")]
 
+use gapilib::cli::embedding::Embedding;
 use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
 use gapilib::identify::{CompiledModel, Model};
-use gapilib::script::Session;
+use gapilib::name::Name;
 use gapilib::script::models::simulation;
-use gapilib::script::world::MemoryWorld;
+use gapilib::script::runs::view::Progress;
+use gapilib::script::world::Screen;
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,6 +19,15 @@ use std::time::Instant;
 const MODEL: &str = "CaseStudies.PolarizationCurve";
 const PARAMETERS: [&str; 6] = ["A", "In", "Io", "B", "R", "Ilim"];
 const VALUES: [f64; 6] = [0.039, 1.4e-3, 1.5856e-6, 0.0918, 7.286e-4, 0.2265];
+
+/// Nothing is printed meanwhile.
+struct Silent;
+
+impl Screen for Silent {
+    fn print(&mut self, _text: &str) {}
+    fn eprint(&mut self, _text: &str) {}
+    fn progress(&mut self, _progress: &Progress) {}
+}
 
 /// How many curves, and of how many points.
 fn arguments() -> Result<(u32, u32), Box<dyn Error>> {
@@ -26,7 +37,9 @@ fn arguments() -> Result<(u32, u32), Box<dyn Error>> {
 }
 
 fn simulator(points: u32) -> Result<ModelSimulator, Box<dyn Error>> {
-    let mut session = Session::new(Box::new(MemoryWorld::new()));
+    let embedding = Embedding { cache: false, ..Embedding::default() };
+    let mut session = embedding.session(Box::new(Silent), Arc::default())?;
+    session.autoload(&Name::parse(MODEL)).map_err(|wrong| format!("{wrong:?}"))?;
     let translated = simulation::translate(&mut session, MODEL);
     let translated = translated.map_err(|wrong| format!("{wrong:?}"))?;
     let model = Arc::new(CompiledModel::new(MODEL, translated.program.clone()));

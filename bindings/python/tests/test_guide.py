@@ -12,7 +12,6 @@ README = ROOT / "bindings" / "python" / "README.md"
 PROBLEM = """
 model = "Decay"
 files = ["Decay.mo"]
-seed = 1
 
 [parameters]
 k = { min = 0.1, max = 10.0 }

@@ -93,9 +93,11 @@ impl Worker {
     fn show_first(&mut self, document: &Document, examination: &Examination) {
         let found = self.workspace.diagnostics(examination);
         let messages: Messages = found.iter().map(|one| one.message.clone()).collect();
-        let before = self.shown.insert(document.uri.as_str().to_owned(), messages.clone());
+        let shown = self.shown.insert(document.uri.as_str().to_owned(), messages.clone());
+        // Nothing was shown of a document that is new, and nothing is nothing new about it.
+        let is_new = shown.unwrap_or_default() != messages;
         let left = Workspace::models_left(examination);
-        if left > MANY || left > 0 && before != Some(messages) {
+        if left > MANY || left > 0 && is_new {
             self.publish(&document.uri, None, found);
         }
     }

@@ -215,3 +215,25 @@ impl Session {
         names.chain(shipped).map(class).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::script::world::MemoryWorld;
+
+    #[test]
+    fn the_libraries_that_a_library_uses_are_there_when_a_model_is_examined() {
+        let pumps = "package Pumps model Pump Fluids.Port port; equation port.f = port.p; end Pump; \
+            annotation(uses(Fluids(version = \"1\"), Nowhere(version = \"1\"))); end Pumps;";
+        let fluids = "package Fluids connector Port Real p; flow Real f; end Port; end Fluids;";
+        let world = MemoryWorld::new()
+            .with_file("libraries/Pumps/package.mo", pumps)
+            .with_file("libraries/Fluids/package.mo", fluids);
+        let mut session = Session::new(Box::new(world));
+        session.add_library_dir(Path::new("libraries"));
+        let model = Name::parse("Pumps.Pump");
+        assert_eq!(session.autoload(&model), Ok(true));
+        let checked = session.model_check(&model).run();
+        assert!(checked.missing.is_empty() && checked.found.is_empty(), "{checked:?}");
+    }
+}

@@ -111,6 +111,10 @@ fn what_is_wrong_with_a_text_is_shown_before_models_are_examined() {
     let third = client.next_published(&path);
     assert_eq!((&third["version"], codes(&third)), (&Value::Null, Vec::new()));
     assert_eq!(codes(&client.next_published(&path)), ["unbalanced-model"]);
+    // Of a new text without errors there is nothing to be shown before.
+    let other = here.path().join("C.mo");
+    client.open(&other, "model C Real x; Real z = 2*x; end C;\n");
+    assert_eq!(client.next_published(&other)["version"], json!(1));
     client.shut_down();
 }
 
