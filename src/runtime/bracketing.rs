@@ -3,7 +3,7 @@
 //!
 //! The residual is evaluated farther and farther from the guess on both sides, and towards zero, until
 //! it has the opposite sign; the interval is halved, and Newton's method makes the last steps. A sign
-//! that changes at a pole or a jump is no solution.
+//! that changes at a pole or a jump does not count.
 
 use crate::elementary::powi;
 use crate::sim::{Equations, Newton};
