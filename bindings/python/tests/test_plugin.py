@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -21,13 +22,24 @@ a + 1;
 """
 
 
+def is_installed():
+    """Whether pytest finds the plugin by itself; otherwise it is named, once."""
+    try:
+        return any(point.name == "gapilib" for point in metadata.distribution("gapilib").entry_points)
+    except metadata.PackageNotFoundError:
+        return False
+
+
+NAMED = ["-p", "no:cacheprovider"] + ([] if is_installed() else ["-p", "pytest_gapilib"])
+
+
 @pytest.fixture
 def run(pytester):
-    # The tests are in a process of their own, where the plugin is named once, as it would be installed.
+    # The tests are in a process of their own.
     pytester.makepyprojecttoml("")
 
     def run(*arguments):
-        return pytester.runpytest_subprocess("-p", "pytest_gapilib", "-p", "no:cacheprovider", *arguments)
+        return pytester.runpytest_subprocess(*NAMED, *arguments)
 
     return run
 
@@ -102,7 +114,7 @@ def test_options_are_those_of_the_command(pytester, run):
 
 def test_pytest_starts_without_the_compiled_module(pytester):
     pytester.makepyfile("import sys\ndef test_it(): assert 'gapilib' not in sys.modules")
-    pytester.runpytest_subprocess("-p", "pytest_gapilib", "-p", "no:cacheprovider").assert_outcomes(passed=1)
+    pytester.runpytest_subprocess(*NAMED).assert_outcomes(passed=1)
 
 
 def test_the_settings_of_the_guide(pytester, run):

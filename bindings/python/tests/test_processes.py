@@ -30,6 +30,15 @@ equation
   der(v) = -w*x;
 end Slow;
 """
+# The same with so much to do at each step that the limit on the number of steps is reached after some
+# ten seconds: that of two states is reached within half a second.
+LONG = SLOW.replace("equation\n", """\
+  Real y[1000](each start = 0, each fixed = true);
+equation
+  for i in 1:1000 loop
+    der(y[i]) = w*v - i*y[i];
+  end for;
+""")
 
 
 def test_results_are_pickled_and_copied(decay):
@@ -151,7 +160,7 @@ def test_a_process_that_was_forked_during_other_work_is_refused(tmp_path, decay)
 
 @needs_fork
 def test_long_work_in_a_forked_process_is_interrupted(session):
-    session.load_text(SLOW)
+    session.load_text(LONG)
     simulator = session.model("Slow").simulator(["w"], "x", [5000.0])
     short = session.model("Slow").simulator(["w"], "x", [1e-3])
     short([1.0])
@@ -194,7 +203,7 @@ print("goes on", flush=True)
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent in another way")
 @pytest.mark.parametrize("what", ["call", "jacobian", "many", "simulate", "execute"])
 def test_long_work_is_interrupted(what):
-    command = [sys.executable, "-c", INTERRUPTED, SLOW, what]
+    command = [sys.executable, "-c", INTERRUPTED, LONG, what]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout.readline() == "begun\n"
