@@ -345,6 +345,10 @@ fn refused_if_strict(text: &str, code: &str) {
 
 #[test]
 fn what_libraries_do_is_refused_only_where_all_must_conform() {
+    refused_if_strict(
+        "model M parameter Integer p = 2; constant Integer c = p; Real x = c; end M;",
+        "not-constant",
+    );
     let base = "model B model P parameter Real k = 2; end P; end B;";
     let derived = |text: &str| format!("{base} model M extends B; {text} P p; end M;");
     refused_if_strict(&derived("model P parameter Real k = 3; end P;"), "duplicate-element");

@@ -6,8 +6,8 @@ use gapilib::name::Name;
 use gapilib::source::SourceId;
 use gapilib::syntax::parse_stored_definition;
 
-/// HelmholtzMedia and BranchingDynamicPipes divide by `small`, which the neutral edition of
-/// `ModelicaServices` sets to the least normal number.
+/// HelmholtzMedia divides by `small`, which the neutral edition of `ModelicaServices` sets to the least
+/// normal number.
 #[test]
 fn the_machine_constants_of_a_library_are_those_of_the_program() {
     let text = "package ModelicaServices package Machine extends Icon; \

@@ -2,7 +2,7 @@
 
 use super::places::{self, ExperimentPlaces, Places};
 use crate::bail;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::registry::BAD_OPTION;
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
@@ -328,14 +328,27 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
     let mut file: ProblemFile = toml::from_str(text).map_err(|error| {
         let range = error.span().unwrap_or(0..0);
         let span = Span { source, start: range.start as u32, end: range.end as u32 };
-        let message = error.message().lines().collect::<Vec<_>>().join("; ");
-        crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.')).at(span)
+        refusal(error.message()).at(span)
     })?;
     file.places = places::places(source, text);
     for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
         entry.places = places.clone();
     }
     Ok(file)
+}
+
+/// What the parser says, in the words of TOML and in one line.
+fn refusal(message: &str) -> Fault {
+    let message = message.lines().collect::<Vec<_>>().join("; ");
+    let message = message.replace("expected a map", "expected a table");
+    let message = message.replace("expected a sequence", "expected an array");
+    let message = message.replace("invalid type: map", "invalid type: table");
+    let message = message.replace("invalid type: sequence", "invalid type: array");
+    let fault = crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.'));
+    match message.contains("expected a table") {
+        true => fault.help("a table begins with its name in brackets, once; below it there are lines `name = value`"),
+        false => fault,
+    }
 }
 
 impl ColumnEntry {
@@ -396,5 +409,19 @@ impl ParameterEntry {
                 help: "write for example `{name} = {{ min = 0.1, max = 10 }}`"
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_another_type_are_refused_in_the_words_of_toml() {
+        let refused = |text: &str| read(SourceId::NONE, text).expect_err("a refusal");
+        let twice = refused("[[parameters]]\nname = \"k\"\n");
+        assert_eq!(twice.message, "invalid type: array, expected a table");
+        assert!(twice.helps.iter().any(|help| help.contains("brackets")));
+        assert!(refused("searches = \"five\"\n").helps.is_empty());
     }
 }
