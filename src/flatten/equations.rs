@@ -23,7 +23,7 @@ use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
 
 /// The most equations that loops are unrolled to.
-const MAX_EQUATIONS: usize = 2_000_000;
+const MAX_EQUATIONS: usize = 5_000_000;
 
 impl Instantiation<'_> {
     /// Adds the equations and algorithms of a node and of all below it.

@@ -22,7 +22,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Largest number of scalar equations.
-const MAX_EQUATIONS: usize = 2_000_000;
+const MAX_EQUATIONS: usize = 5_000_000;
 
 /// The scalar system of a flat model.
 pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {

@@ -18,8 +18,9 @@ use indexmap::IndexMap;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// The most scalar variables and the most components that are built.
-const MAX_SCALARS: usize = 2_000_000;
+/// The most scalar variables and the most components that are built: heat conduction with a million
+/// states, and heat flows between them, has two million and one.
+const MAX_SCALARS: usize = 5_000_000;
 pub const MAX_INSTANCES: usize = 1_000_000;
 
 /// The attributes of the predefined types (MLS §4.9).
