@@ -21,6 +21,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
+use std::sync::Arc;
 
 /// The most equations that loops are unrolled to.
 const MAX_EQUATIONS: usize = 5_000_000;
@@ -202,7 +203,7 @@ impl Instantiation<'_> {
         };
         for name in fields {
             let part = |e: &Expression| {
-                let kind = ExpressionKind::Field { base: Box::new(e.clone()), name };
+                let kind = ExpressionKind::Field { base: Arc::new(e.clone()), name };
                 Expression::new(kind, e.span)
             };
             let kind = EquationKind::Equal { left: part(left), right: part(right) };
@@ -446,7 +447,7 @@ impl FunctionTable {
         {
             return given.value.clone();
         }
-        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
+        let kind = ExpressionKind::Field { base: Arc::new(record.clone()), name };
         Expression::new(kind, record.span)
     }
 }

@@ -30,6 +30,7 @@ mod instantiate;
 mod library;
 mod lookup;
 mod print;
+mod record_values;
 mod shapes;
 mod types;
 mod units;

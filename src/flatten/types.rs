@@ -26,7 +26,7 @@ pub struct Types<'t> {
 }
 
 impl Types<'_> {
-    /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
+    /// Refuses a value whose type or dimensions cannot be those of the variable.
     pub fn check_value(
         &self,
         e: &Expression,
@@ -57,7 +57,7 @@ impl Types<'_> {
             }
             _ => {}
         }
-        self.check_variability(e, variable)
+        Ok(())
     }
 
     /// Refuses an equation between values of different types (MLS §8.3.1).
@@ -75,7 +75,8 @@ impl Types<'_> {
         Err(fault!(TYPE_MISMATCH, "the left side is {a}, but the right side is {b}").at(span))
     }
 
-    fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {
+    /// Refuses a value that changes more often than the variable may.
+    pub fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {
         if variable.variability > Variability::Parameter {
             return Ok(());
         }

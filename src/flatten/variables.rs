@@ -8,16 +8,18 @@ use super::instantiate::instance::Leaf;
 use super::instantiate::instance::MemberState;
 use super::instantiate::instance::NodeKind;
 use super::lookup::modification::Bound;
+use super::record_values::is_computed;
 use super::types::type_name;
 use super::{Attribute, BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::picked;
-use crate::flatten::ids::NodeId;
+use crate::flatten::ids::{NodeId, ScopeId};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::ATTRIBUTES;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use std::sync::Arc;
 
 /// Attributes that must be known when the equations are sorted.
 const DECIDED: [&str; 2] = ["fixed", "stateSelect"];
@@ -123,7 +125,15 @@ impl Instantiation<'_> {
             && variable.dims.is_empty()
             && types.rank_of(&value) == Some(0)
             && types.type_of(&value) == Some(BaseType::Integer);
-        let Err(error) = types.check_value(&value, variable, each) else { return Ok(value) };
+        let is_known = self.record_values.may_be(&value, variable.variability);
+        let checked = types.check_value(&value, variable, each).and_then(|()| match is_known {
+            true => Ok(()),
+            false => types.check_variability(&value, variable),
+        });
+        let Err(error) = checked else {
+            self.record_values.keep_may_be(&value, variable.variability);
+            return Ok(value);
+        };
         if self.classes.library.is_strict() {
             return Err(error);
         }
@@ -152,7 +162,30 @@ impl Instantiation<'_> {
     fn bound(&mut self, bound: &Bound, impure: bool) -> Result<Option<Expression>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         let value = self.part_of(value, bound)?;
-        self.resolve(&value, bound.context, &Local { impure, ..Local::default() }).map(Some)
+        self.bound_value(&value, bound.context, impure).map(Some)
+    }
+
+    /// The value of a binding; the components of a record share that of the record.
+    fn bound_value(
+        &mut self,
+        value: &Expression,
+        context: ScopeId,
+        impure: bool,
+    ) -> Result<Expression, Diagnostic> {
+        let (base, name) = match &value.kind {
+            ExpressionKind::Field { base, name } if is_computed(base) => (base, *name),
+            _ => return self.resolve(value, context, &Local { impure, ..Local::default() }),
+        };
+        let known = self.record_values.get(base, context, impure);
+        let resolved = match known {
+            Some(resolved) => resolved,
+            None => {
+                let resolved = Arc::new(self.bound_value(base, context, impure)?);
+                self.record_values.insert(base, context, impure, &resolved);
+                resolved
+            }
+        };
+        Ok(Expression::new(ExpressionKind::Field { base: resolved, name }, value.span))
     }
 }
 

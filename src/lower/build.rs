@@ -280,7 +280,7 @@ impl<'a> Builder<'a> {
         e: &Expression,
         dims: &[usize],
     ) -> Result<Array<Expr>, Diagnostic> {
-        let array = Lowering::new(self).array(e)?;
+        let array = self.binding_value(e)?.into_array(e.span)?;
         if array.dims == dims {
             return Ok(array);
         }

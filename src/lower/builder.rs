@@ -4,9 +4,11 @@ use super::clocks::Clocks;
 use super::dae::Dae;
 use super::equation::Instance;
 use super::execution::Execution;
+use super::expressions::Lowered;
 use super::function::{CallResults, Instances};
 use crate::flatten::FlatModel;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
+use crate::syntax::ast::Expression;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::sync::Arc;
@@ -35,7 +37,12 @@ pub(super) struct Builder<'a> {
     pub(super) clocks: Clocks,
     /// The texts that have numbers.
     pub(super) texts: IndexSet<Arc<str>>,
+    /// Values of records that functions compute, which the bindings of their components share.
+    pub(super) records: FxHashMap<(RecordAt, Place), Lowered<Expr>>,
 }
+
+/// A record within the flat model, by its address there.
+pub(super) type RecordAt = *const Expression;
 
 /// The scalars of the flat variables, and those that lowering declares for them.
 pub(super) struct Scalars {
@@ -52,7 +59,7 @@ pub(super) struct Scalars {
 }
 
 /// Where in the model the equation or statement at hand stands.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(super) struct Place {
     /// Whose it is.
     pub(super) instance: Option<Instance>,
@@ -106,6 +113,7 @@ impl<'a> Builder<'a> {
             execution: Execution::default(),
             clocks: Clocks::default(),
             texts: IndexSet::new(),
+            records: FxHashMap::default(),
         }
     }
 }

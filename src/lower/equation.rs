@@ -25,7 +25,7 @@ impl Equation {
 }
 
 /// Position of a path in [`Dae::instances`](super::Dae::instances).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Instance(pub u32);
 
 /// What it means that a condition does not hold.

@@ -29,6 +29,7 @@ mod inline;
 mod inputs;
 mod message;
 mod real_values;
+mod record_values;
 mod shape;
 mod statement_function;
 mod symbolic_target;

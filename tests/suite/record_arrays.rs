@@ -2,6 +2,8 @@
 
 use gapilib::script::Session;
 use gapilib::script::world::MemoryWorld;
+use gapilib::syntax::ast::ExpressionKind;
+use std::sync::Arc;
 
 const MODEL: &str = "model M
   record Point
@@ -63,4 +65,21 @@ end for;";
     // total(filled) + 2 total(filled), and 6 time.
     let expected = ["0.5", "3", "2", "4", "6", "2", "8", "10", "4", "10.5", "3"];
     assert_eq!(values, expected, "{output}");
+}
+
+/// A value that a function computes for a whole record is kept once, however many components it has:
+/// otherwise a hundred components of a function of a hundred components would be ten thousand.
+#[test]
+fn the_components_of_a_computed_record_share_its_value() {
+    let flat = crate::library_forms::flattened(
+        "record R Real a; Real b; end R; \
+         function made input Real x; output R r; algorithm r.a := x; r.b := x; end made; \
+         model M parameter R r = made(2); end M;",
+    )
+    .model;
+    let record = |name: &str| match &flat.variables[name].binding.as_ref().unwrap().kind {
+        ExpressionKind::Field { base, .. } => base.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert!(Arc::ptr_eq(&record("r.a"), &record("r.b")));
 }

@@ -166,7 +166,7 @@ fn compound(inner: BoxedStrategy<Expression>) -> impl Strategy<Value = Expressio
             .prop_map(ExpressionKind::Tuple),
         1 => (boxed.clone(), prop::collection::vec(subscript(inner), 1..3))
             .prop_map(|(base, subscripts)| ExpressionKind::Subscripted { base, subscripts }),
-        1 => (boxed, ident()).prop_map(|(base, name)| ExpressionKind::Field { base, name }),
+        1 => (boxed, ident()).prop_map(|(base, name)| ExpressionKind::Field { base: base.into(), name }),
     ]
 }
 

@@ -22,6 +22,7 @@ use crate::syntax::ast::{
     Subscript,
 };
 use crate::value::Value;
+use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// Follows a reference through the components of a node.
@@ -309,7 +310,7 @@ impl Instantiation<'_> {
             return self.reference(&longer, context, local);
         }
         let base = self.resolve(base, context, local)?;
-        Ok(Expression::new(ExpressionKind::Field { base: Box::new(base), name }, span))
+        Ok(Expression::new(ExpressionKind::Field { base: Arc::new(base), name }, span))
     }
 
     /// Elements and components of a component as a reference.

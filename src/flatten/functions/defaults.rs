@@ -10,6 +10,7 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind, NamedArgument};
 use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_expression};
+use std::sync::Arc;
 
 impl FunctionTable {
     /// The arguments of a call with such defaults added.
@@ -115,7 +116,7 @@ impl Rewrite for Substitution<'_> {
         let Some(meaning) = self.meaning(first.name) else { return };
         let mut value = subscripted(meaning, first.subscripts.clone(), e.span);
         for part in rest {
-            let kind = ExpressionKind::Field { base: Box::new(value), name: part.name };
+            let kind = ExpressionKind::Field { base: Arc::new(value), name: part.name };
             value = subscripted(Expression::new(kind, e.span), part.subscripts.clone(), e.span);
         }
         *e = value;

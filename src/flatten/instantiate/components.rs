@@ -182,7 +182,7 @@ impl Classes<'_> {
                 help: "only records and variables can have values")
             .at(value.span));
         }
-        let picked = picked(value.clone(), &binding.indices);
+        let picked = Arc::new(picked(value.clone(), &binding.indices));
         let is_computed = !is_component(&picked);
         for (name, member) in members {
             let is_constant =
@@ -263,22 +263,21 @@ impl Classes<'_> {
 fn is_component(value: &Expression) -> bool {
     match &value.kind {
         ExpressionKind::Reference(_) => true,
-        ExpressionKind::Subscripted { base, .. } | ExpressionKind::Field { base, .. } => {
-            is_component(base)
-        }
+        ExpressionKind::Subscripted { base, .. } => is_component(base),
+        ExpressionKind::Field { base, .. } => is_component(base),
         _ => false,
     }
 }
 
 /// A component of a value.
-fn component_of(value: &Expression, name: Ident) -> Expression {
+fn component_of(value: &Arc<Expression>, name: Ident) -> Expression {
     let kind = match &value.kind {
         ExpressionKind::Reference(reference) => {
             let mut longer = reference.clone();
             longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
             ExpressionKind::Reference(longer)
         }
-        _ => ExpressionKind::Field { base: Box::new(value.clone()), name },
+        _ => ExpressionKind::Field { base: value.clone(), name },
     };
     Expression::new(kind, value.span)
 }

@@ -10,6 +10,7 @@ use crate::flatten::expressions::values::Values;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::library::Library;
 use crate::flatten::lookup::classes::Classes;
+use crate::flatten::record_values::RecordValues;
 use crate::flatten::types::Types;
 use std::rc::Rc;
 
@@ -25,6 +26,8 @@ pub struct Instantiation<'a> {
     pub depth: usize,
     /// The components that are being completed, outermost first.
     pub growth: Growth,
+    /// Values of records, which their components share.
+    pub record_values: RecordValues,
 }
 
 impl<'a> Instantiation<'a> {
@@ -41,6 +44,7 @@ impl<'a> Instantiation<'a> {
             warnings: Vec::new(),
             depth: 0,
             growth: Growth::default(),
+            record_values: RecordValues::default(),
         }
     }
 

@@ -345,6 +345,19 @@ impl<S: Copy> Lowered<S> {
         }
     }
 
+    /// A scalar or array, no record.
+    pub(crate) fn into_array(self, span: Span) -> Result<Array<S>, Diagnostic> {
+        match self {
+            Lowered::Array(array) => Ok(array),
+            Lowered::Record(_) => {
+                Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(span))
+            }
+            Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
+                Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(span))
+            }
+        }
+    }
+
     /// Whether sizes and components are those of another value.
     pub(crate) fn fits(&self, other: &Lowered<S>) -> bool {
         matches!((self.shape(), other.shape()), (Some(a), Some(b)) if a.joined(&b).is_some())
@@ -427,15 +440,7 @@ impl<'a, T: Target> Lowering<'a, T> {
 
     /// A scalar or array, no record.
     pub(crate) fn array(&mut self, e: &Expression) -> Result<Array<T::Scalar>, Diagnostic> {
-        match self.lower(e)? {
-            Lowered::Array(array) => Ok(array),
-            Lowered::Record(_) => {
-                Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(e.span))
-            }
-            Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
-                Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(e.span))
-            }
-        }
+        self.lower(e)?.into_array(e.span)
     }
 
     /// A number known when compiling.

@@ -102,8 +102,8 @@ pub enum ExpressionKind {
     },
     /// `(e).name`
     Field {
-        /// The record.
-        base: Box<Expression>,
+        /// The record, which the values of all its components share.
+        base: Arc<Expression>,
         /// The component.
         name: Ident,
     },

@@ -10,6 +10,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::errors::SYNTAX_ERROR;
 use crate::syntax::parser::{Node, Nodes, Rule};
+use std::sync::Arc;
 
 /// Precedence of the operators (MLS §3.2), loosest first. `:` is read by [`range`].
 const OR: u8 = 1;
@@ -293,7 +294,7 @@ fn parenthesized<'i>(parts: &mut Nodes<'i>, node: Node<'i>) -> Lowered<Expressio
     let start = base.span;
     if let Some(mut field) = parts.try_enter(Rule::field) {
         let span = start.to(field.whole);
-        let kind = ExpressionKind::Field { base: Box::new(base), name: ident(&mut field).node };
+        let kind = ExpressionKind::Field { base: Arc::new(base), name: ident(&mut field).node };
         return Ok(Expression::new(kind, span));
     }
     let Some(list) = parts.try_enter(Rule::array_subscripts) else { return Ok(base) };

@@ -86,7 +86,7 @@ pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mu
             rewriter.expression(base);
             subscripts(rewriter, list);
         }
-        ExpressionKind::Field { base, .. } => rewriter.expression(base),
+        ExpressionKind::Field { base, .. } => rewriter.expression(Arc::make_mut(base)),
     }
 }
 
