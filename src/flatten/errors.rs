@@ -38,7 +38,7 @@ codes! {
         "## What it means\n\nAn array size, a loop's range or a constant must be known when the model is translated, but the expression is not.\n\n## Example\n\n`Real x[integer(time)];`\n\n## What to do\n\nUse constants and parameters with values.",
     /// Without a value of a parameter, constant or array the structure of the model is open.
     VALUE_NEEDED = "value-needed":
-        "## What it means\n\nA parameter or constant has no value, but the structure of the model depends on it: an array size, a condition of a component, a loop's range. Or an array that is declared with `[:]` has no value that gives its size.\n\n## Example\n\n`parameter Integer n; Real x[n];`\n\n## What to do\n\nGive it a value in its declaration, or by a modifier where the class is used.",
+        "## What it means\n\nA parameter or constant has no value, but the structure of the model depends on it: an array size, a condition of a component, a loop's range. Or an array that is declared with `[:]` has no value that gives its size. A parameter that has a start value takes that one, with a warning (MLS §8.6).\n\n## Example\n\n`parameter Integer n; Real x[n];`\n\n## What to do\n\nGive it a value in its declaration, or by a modifier where the class is used.",
     /// An `outer` component without its `inner` one.
     MISSING_INNER = "missing-inner":
         "## What it means\n\nAn `outer` component refers to the `inner` component of the same name in a model around it (MLS §5.4), and there is none. Where the class of the component allows it, the model gets one with default values.\n\n## Example\n\n`outer World world;` in a part, which is used in a model without `inner World world;`.\n\n## What to do\n\nDeclare the component with `inner` in the model.",

@@ -370,7 +370,15 @@ impl Builder<'_> {
     /// be had.
     fn text_binding(&mut self, position: usize) -> Option<Lowered<Expr>> {
         let flat = self.flat;
-        let binding = flat.variables[position].binding.as_ref()?;
+        let variable = &flat.variables[position];
+        let binding = match &variable.binding {
+            Some(binding) => binding,
+            // A parameter without a value has its start value (MLS §8.6).
+            None if variable.variability <= Variability::Parameter => {
+                &variable.attributes.get("start")?.value
+            }
+            None => return None,
+        };
         if self.scalars.folding[position] == Folding::InProgress {
             return None;
         }

@@ -180,3 +180,25 @@ fn functions_compute_the_same_in_models_and_scripts() {
         );
     }
 }
+
+#[test]
+fn a_parameter_without_value_shapes_the_model_by_its_start() {
+    let text = "model M
+  parameter String kind(start = \"double\");
+  parameter Integer n(start = 2);
+  parameter Boolean more(start = true);
+  Real part[n] = fill(1.5, n) if more;
+  Real x = sum(part) * (if kind == \"double\" then 2 else 1);
+end M;";
+    let file = parse_stored_definition(SourceId::NONE, text).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let flattened = flatten(&library, &Name::parse("M"), &[]).expect("a model");
+    let said: Vec<String> = flattened.warnings.iter().map(|w| w.message.clone()).collect();
+    for name in ["n", "more"] {
+        let taken = format!("`{name}` has no value, but its value is needed here: its start value");
+        assert_eq!(said.iter().filter(|s| s.starts_with(&taken)).count(), 1, "{said:?}");
+    }
+    let program = compiled(text);
+    assert_eq!(x_with(&program, &[]), 6.0);
+}

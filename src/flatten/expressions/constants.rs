@@ -13,6 +13,7 @@ use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::NodeKind;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
+use crate::flatten::lookup::modification::Bound;
 use crate::flatten::lookup::types::Type;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
@@ -105,13 +106,27 @@ impl Instantiation<'_> {
         let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else {
             return Err(fault!(NOT_CONSTANT, "`{name}` has no value").at(span));
         };
-        let bound = leaf.modifier.binding.clone();
-        let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
-            return Err(
-                fault!(VALUE_NEEDED, "`{name}` has no value, but its value is needed here";
-                help: "give it a value in its declaration or by a modifier")
-                .at(span),
-            );
+        let given = |bound: Option<Bound>| bound.and_then(|b| Some((b.value.clone()?, b)));
+        let start = leaf.modifier.elements.iter().find(|(name, _)| **name == "start");
+        let start = given(start.and_then(|(_, modifier)| modifier.binding.clone()));
+        let (value, bound) = match (given(leaf.modifier.binding.clone()), start) {
+            (Some(binding), _) => binding,
+            // A parameter without a value has its start value (MLS §8.6).
+            (None, Some(start)) => {
+                self.warn_once(
+                    fault!(VALUE_NEEDED, "`{name}` has no value, but its value is needed here: \
+                                          its start value is taken";
+                    help: "give it a value in its declaration or by a modifier")
+                    .at(span),
+                );
+                start
+            }
+            (None, None) => {
+                return Err(fault!(VALUE_NEEDED, "`{name}` has no value, but its value is needed \
+                                                 here";
+                    help: "give it a value in its declaration or by a modifier")
+                .at(span));
+            }
         };
         let value = self.part_of(&value, &bound)?;
         // Parameters may be read from files (MLS §12.3).
