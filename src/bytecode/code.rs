@@ -2,7 +2,8 @@
 
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
-use crate::external::{Contents, Entry, Objects, Slot};
+use super::run_time_texts::Texts;
+use crate::external::{Contents, Entry, Kind, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
@@ -90,6 +91,8 @@ pub struct Code {
     pub frame: u32,
     /// Registers with their numbers.
     pub constants: Vec<(Register, f64)>,
+    /// Whether numbers of texts are among its outputs.
+    pub gives_texts: bool,
     /// Texts of assertions.
     pub messages: Vec<Arc<str>>,
     /// Texts that external functions take.
@@ -158,6 +161,8 @@ pub struct Derivative {
 pub struct Functions {
     /// The functions.
     pub codes: Vec<Code>,
+    /// The texts of the model that stand for numbers, in this order.
+    pub texts: Texts,
     /// Files that external functions read.
     pub files: Contents,
     /// External objects made so far.
@@ -180,7 +185,9 @@ impl Functions {
             }
             (Reason::External, Instruction::External { external }) => {
                 let call = &code.externals[*external as usize];
-                let text = call.arguments.first().filter(|_| call.entry.name == "ModelicaError")?;
+                let is_known = |text: &&Slot| text.kind == Kind::Text;
+                let text = call.arguments.first().filter(is_known);
+                let text = text.filter(|_| call.entry.name == "ModelicaError")?;
                 code.texts.get(text.first as usize).map(|text| text.trim_end())
             }
             _ => None,

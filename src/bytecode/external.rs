@@ -3,9 +3,11 @@
 use super::code::{Code, ExternalCall, Functions};
 use super::failure::{Reason, SAID};
 use super::number::{Dual, Number};
+use super::run_time_texts::RunTimeTexts;
 use crate::diag::Fault;
 use crate::elementary;
-use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random};
+use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random, Slot};
+use std::sync::Arc;
 
 /// Runs an external function on numbers with derivatives, or without.
 pub trait RunExternal: Number {
@@ -30,6 +32,8 @@ pub struct Externals {
     pub(super) journal: Journal,
     /// What the last one that failed said.
     pub(super) message: String,
+    /// Texts by number.
+    pub(super) texts: RunTimeTexts,
     scratch: Vec<f64>,
 }
 
@@ -73,11 +77,21 @@ impl Outside for Granted<'_> {
 }
 
 impl Externals {
-    /// Forgets the objects and the hidden state.
+    /// Forgets the objects, the texts and the hidden state.
     pub(super) fn restart(&mut self) {
         self.objects.clear();
+        self.texts.clear();
         self.random = Random::default();
         self.journal.clear();
+    }
+
+    /// Keeps what a function said that failed.
+    fn failed(&mut self, call: &ExternalCall, fault: Fault) -> Reason {
+        if call.entry.c.is_some() {
+            SAID.set((call.entry.name, fault.message.clone()));
+        }
+        self.message = fault.message;
+        Reason::External
     }
 }
 
@@ -89,36 +103,84 @@ impl RunExternal for f64 {
         r: &mut [f64],
         externals: &mut Externals,
     ) -> Result<(), Reason> {
-        let mut written = Vec::new();
-        let mut arguments = Call {
-            name: call.entry.name,
-            arguments: &call.arguments,
-            result: call.result.as_ref(),
-            numbers: r,
-            strings: &code.texts,
-            written: &mut written,
-            objects: &mut externals.objects,
-            outside: &mut Granted {
-                files: &functions.files,
-                random: &mut externals.random,
-                journal: &mut externals.journal,
-            },
-        };
-        let done = match call.entry.makes_object() {
-            // Objects of C may change: everyone has its own.
-            true if call.entry.c.is_none() => {
-                functions.objects.remember(&mut arguments, call.entry.run)
-            }
-            _ => call.entry.call(&mut arguments),
-        };
-        done.map_err(|fault| {
-            if call.entry.c.is_some() {
-                SAID.set((call.entry.name, fault.message.clone()));
-            }
-            externals.message = fault.message;
-            Reason::External
-        })
+        match call.takes_numbers_of_texts() {
+            false => run(functions, call, r, &code.texts, &mut Vec::new(), externals),
+            true => run_with_texts(functions, code, call, r, externals),
+        }
     }
+}
+
+/// Runs a function of which some texts stand for numbers: it finds them behind those of the code, and
+/// what it writes gets numbers.
+fn run_with_texts(
+    functions: &Functions,
+    code: &Code,
+    call: &ExternalCall,
+    r: &mut [f64],
+    externals: &mut Externals,
+) -> Result<(), Reason> {
+    let mut strings = code.texts.clone();
+    let mut registers = Vec::new();
+    let mut with_texts = call.clone();
+    let is_written = |at: usize| call.entry.signature.chars().nth(at) == Some('T');
+    let arguments = with_texts.arguments.iter_mut().enumerate();
+    let slots = arguments.map(|(at, slot)| (is_written(at), slot));
+    for (is_written, slot) in slots.chain(with_texts.result.iter_mut().map(|slot| (true, slot))) {
+        if slot.kind != Kind::Numbered {
+            continue;
+        }
+        let text = externals.texts.text(&functions.texts, r[slot.first as usize]);
+        let text = text.or_else(|| is_written.then(|| "".into())).ok_or_else(|| {
+            externals.message = format!("`{}`: a String has no value", call.entry.name);
+            Reason::External
+        })?;
+        registers.push((strings.len() as u32, slot.first));
+        *slot = Slot { kind: Kind::Text, first: strings.len() as u32, dims: Box::new([]) };
+        strings.push(text);
+    }
+    let mut written = Vec::new();
+    run(functions, &with_texts, r, &strings, &mut written, externals)?;
+    for (position, text) in written {
+        let register = registers.iter().find(|(own, _)| *own == position);
+        if let Some((_, register)) = register {
+            let number = externals.texts.number(&functions.texts, text);
+            r[*register as usize] = number.map_err(|fault| externals.failed(call, fault))?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs a function on the texts at `strings`.
+fn run(
+    functions: &Functions,
+    call: &ExternalCall,
+    r: &mut [f64],
+    strings: &[Arc<str>],
+    written: &mut Vec<(u32, Arc<str>)>,
+    externals: &mut Externals,
+) -> Result<(), Reason> {
+    let mut arguments = Call {
+        name: call.entry.name,
+        arguments: &call.arguments,
+        result: call.result.as_ref(),
+        numbers: r,
+        strings,
+        written,
+        objects: &mut externals.objects,
+        outside: &mut Granted {
+            files: &functions.files,
+            random: &mut externals.random,
+            journal: &mut externals.journal,
+        },
+    };
+    let done = match call.entry.makes_object() {
+        // Objects of C may change: everyone has its own.
+        true if call.entry.c.is_none() => {
+            functions.objects.remember(&mut arguments, call.entry.run)
+        }
+        _ => call.entry.call(&mut arguments),
+    };
+    done.map_err(|fault| externals.failed(call, fault))
 }
 
 impl RunExternal for Dual<f64> {
@@ -186,6 +248,11 @@ impl RunExternal for Dual<Dual<f64>> {
 }
 
 impl ExternalCall {
+    /// Whether the numbers of texts are among its arguments or its result.
+    fn takes_numbers_of_texts(&self) -> bool {
+        self.arguments.iter().chain(&self.result).any(|slot| slot.kind == Kind::Numbered)
+    }
+
     /// All registers of numbers, those of the result last.
     fn registers(&self) -> impl Iterator<Item = usize> {
         let slots = self.arguments.iter().chain(&self.result);

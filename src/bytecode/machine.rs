@@ -82,9 +82,13 @@ impl Machine {
         function: u32,
         arguments: impl Iterator<Item = f64>,
     ) -> Result<&[f64], Failure> {
+        let texts = self.externals.texts.len();
         self.prepare::<f64>(functions, function, arguments);
         self.run::<f64>(functions, function)?;
         let code = &functions.codes[function as usize];
+        if !code.gives_texts {
+            self.externals.texts.truncate(texts);
+        }
         Ok(&self.stacks.values[code.outputs as usize..][..code.n_outputs as usize])
     }
 

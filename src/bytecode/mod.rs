@@ -20,6 +20,7 @@ mod failure;
 mod machine;
 mod memo;
 mod number;
+mod run_time_texts;
 
 pub use crate::external::Journal;
 pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};
@@ -28,3 +29,4 @@ pub use external::{Externals, RunExternal};
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
 pub use number::{Dual, Number};
+pub use run_time_texts::Texts;

@@ -13,18 +13,21 @@ use std::sync::Arc;
 pub type Object = Arc<dyn Any + Send + Sync>;
 
 /// What a slot holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Kind {
     /// Numbers at a position of [`Call::numbers`].
     Number,
     /// The text at a position of [`Call::strings`], or the texts from there on.
     Text,
+    /// The text whose number stands at a position of [`Call::numbers`]; a function finds it as a
+    /// [`Kind::Text`].
+    Numbered,
     /// The object whose handle stands at a position of [`Call::numbers`].
     Object,
 }
 
 /// An argument or a result: where it stands.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Slot {
     /// What it holds.
     pub kind: Kind,
@@ -40,7 +43,10 @@ impl Slot {
         match letter {
             'n' | 'N' => self.kind == Kind::Number && self.dims.is_empty(),
             'a' | 'A' => self.kind == Kind::Number && !self.dims.is_empty(),
-            't' | 'T' | 'f' | 'g' => self.kind == Kind::Text && self.dims.is_empty(),
+            't' | 'T' | 'g' => {
+                matches!(self.kind, Kind::Text | Kind::Numbered) && self.dims.is_empty()
+            }
+            'f' => self.kind == Kind::Text && self.dims.is_empty(),
             's' => self.kind == Kind::Text && !self.dims.is_empty(),
             'o' => self.kind == Kind::Object,
             _ => false,

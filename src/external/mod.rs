@@ -35,6 +35,7 @@ mod linear_systems;
 mod matrices;
 mod messages;
 mod objects;
+mod parts;
 mod quasi_triangular;
 mod random;
 mod resources;
@@ -49,6 +50,7 @@ pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
+pub(crate) use parts::{COMPOSE, PRINT};
 pub use resources::{Contents, Provide, Resources};
 pub use tables::names_a_file;
 pub use xorshift::Random;
@@ -98,7 +100,8 @@ pub(crate) mod by_name {
 
     pub fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<&'static Entry, D::Error> {
         let (name, stands_for) = <(String, String)>::deserialize(source)?;
-        let mut entries = FAMILIES.iter().copied().flatten();
+        let own = [&super::COMPOSE, &super::PRINT];
+        let mut entries = FAMILIES.iter().copied().flatten().chain(own);
         entries
             .find(|entry| entry.name == name && entry.stands_for == stands_for)
             .ok_or_else(|| de::Error::custom("there is no such function"))

@@ -63,7 +63,7 @@ impl Key {
             let first = slot.first as usize;
             match slot.kind {
                 Kind::Text => key.strings.push(call.strings[first].clone()),
-                Kind::Number | Kind::Object => {
+                Kind::Number | Kind::Numbered | Kind::Object => {
                     key.numbers.extend(slot.dims.iter().map(|size| u64::from(*size)));
                     let numbers = &call.numbers[first..][..slot.len()];
                     key.numbers.extend(numbers.iter().map(|number| number.to_bits()));

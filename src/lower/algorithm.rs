@@ -16,6 +16,7 @@ use super::events::Termination;
 use super::execution::Loops;
 use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
+use super::shape::UNKNOWN_TEXT;
 use super::statement_function::may_be_a_function;
 use super::when::is_initial;
 use crate::diag::Diagnostic;
@@ -260,8 +261,14 @@ impl Builder<'_> {
         {
             return self.assign(target, Lowered::scalar(done), loops);
         }
-        let value = self.statement_lowering(loops).lower(value)?;
-        self.assign(target, value, loops)
+        let mut lowering = self.statement_lowering(loops);
+        let lowered = match lowering.lower(value)? {
+            Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
+                lowering.text_at_run_time(value)?
+            }
+            lowered => lowered,
+        };
+        self.assign(target, lowered, loops)
     }
 
     fn assign(
@@ -323,7 +330,8 @@ impl Builder<'_> {
                 fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
             );
         };
-        let outputs = self.statement_lowering(loops).user_call(&user, arguments, value.span)?;
+        let mut lowering = self.statement_lowering(loops);
+        let outputs = lowering.outputs_for(targets, &user, arguments, value.span)?;
         if targets.len() > outputs.len() {
             return Err(
                 fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len()).at(value.span)

@@ -350,8 +350,13 @@ impl<'a> Builder<'a> {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = live;
-        let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
+        let (mut a, mut b) = (lowering.lower(left)?, lowering.lower(right)?);
         if matches!(a, Lowered::Numbered(_)) || matches!(b, Lowered::Numbered(_)) {
+            for (side, e) in [(&mut a, left), (&mut b, right)] {
+                if !matches!(side, Lowered::Numbered(_)) {
+                    *side = lowering.text_at_run_time(e)?;
+                }
+            }
             let left = lowering.number_of_text(a, span)?;
             let right = lowering.number_of_text(b, span)?;
             return Ok(vec![Equation::new(left, right, span)]);
@@ -401,7 +406,7 @@ impl<'a> Builder<'a> {
         lowering.live = live;
         let name = function.name();
         let outputs = match super::expressions::Target::function(lowering.target, &name) {
-            Some(user) => lowering.user_call(&user, arguments, right.span)?,
+            Some(user) => lowering.outputs_for(targets, &user, arguments, right.span)?,
             None => lowering.builtin_outputs(&name.to_string(), function, arguments, right.span)?,
         };
         let mut equations = Vec::new();

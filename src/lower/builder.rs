@@ -9,9 +9,8 @@ use super::function::{CallResults, Instances};
 use crate::flatten::FlatModel;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
 use crate::syntax::ast::Expression;
-use indexmap::{IndexMap, IndexSet};
+use indexmap::IndexMap;
 use rustc_hash::{FxBuildHasher, FxHashMap};
-use std::sync::Arc;
 
 /// The most statements that the functions of one model may carry out when it is compiled.
 pub(super) const MAX_STATEMENTS: usize = 1_000_000;
@@ -35,8 +34,6 @@ pub(super) struct Builder<'a> {
     pub(super) execution: Execution,
     /// Clocked operators and equations.
     pub(super) clocks: Clocks,
-    /// The texts that have numbers.
-    pub(super) texts: IndexSet<Arc<str>>,
     /// Values of records that functions compute, which the bindings of their components share.
     pub(super) records: FxHashMap<(RecordAt, Place), Lowered<Expr>>,
 }
@@ -112,7 +109,6 @@ impl<'a> Builder<'a> {
             calls: Calls::new(),
             execution: Execution::default(),
             clocks: Clocks::default(),
-            texts: IndexSet::new(),
             records: FxHashMap::default(),
         }
     }

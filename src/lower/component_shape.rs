@@ -90,6 +90,9 @@ impl<T: Target> Declaration<'_, '_, T> {
                     component.sized_fields(fields, |size| self.lowering.known_size(size))?;
                 self.record(&fields, value, &dims)
             }
+            ValueType::String if self.lowering.composes && dims.is_empty() => {
+                self.number_of_text(value, component)
+            }
             ValueType::String => Ok(text(value, dims)),
             ValueType::Function => Err(fault!(
                 NOT_SUPPORTED,
@@ -101,6 +104,17 @@ impl<T: Target> Declaration<'_, '_, T> {
         };
         self.path.pop();
         declared
+    }
+
+    /// A text that is known at run time.
+    fn number_of_text(
+        &mut self,
+        value: Option<Lowered<T::Scalar>>,
+        component: &FunctionComponent,
+    ) -> Result<Declared<T::Scalar>, Diagnostic> {
+        let number = |text| self.lowering.number_of_text(text, component.span);
+        let scalars = vec![value.map(number).transpose()?];
+        Ok(Declared { shape: Shape::Numbered, scalars })
     }
 
     /// All sizes of a component.
@@ -277,7 +291,7 @@ fn leading_sizes(shape: &Shape) -> Vec<usize> {
     loop {
         match shape {
             Shape::Array(dims) => return dims.clone(),
-            Shape::Text(_) => return Vec::new(),
+            Shape::Text(_) | Shape::Numbered => return Vec::new(),
             Shape::Texts(texts) => return texts.dims.clone(),
             Shape::Record(fields) => match fields.first() {
                 Some((_, first)) => shape = first,

@@ -15,6 +15,8 @@ pub enum Shape {
     Text(Arc<str>),
     /// An array of texts, no scalars.
     Texts(Texts),
+    /// A text that is known at run time: the scalar is its number.
+    Numbered,
 }
 
 impl Shape {
@@ -24,6 +26,7 @@ impl Shape {
             Shape::Array(dims) => dims.iter().product(),
             Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
             Shape::Text(_) | Shape::Texts(_) => 0,
+            Shape::Numbered => 1,
         }
     }
 
@@ -40,23 +43,32 @@ impl Shape {
                 let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
                 Shape::Record(fields.into_iter().map(field).collect())
             }
-            Shape::Text(_) | Shape::Texts(_) => self,
+            Shape::Text(_) | Shape::Texts(_) | Shape::Numbered => self,
         }
     }
 
-    /// Whether it is a text, or a record with one.
+    /// Whether it is a text without a number, or a record with one.
     pub fn holds_text(&self) -> bool {
         match self {
-            Shape::Array(_) => false,
+            Shape::Array(_) | Shape::Numbered => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
             Shape::Text(_) | Shape::Texts(_) => true,
+        }
+    }
+
+    /// Whether it is the number of a text, or a record with one.
+    pub fn holds_number_of_text(&self) -> bool {
+        match self {
+            Shape::Numbered => true,
+            Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_number_of_text()),
+            Shape::Array(_) | Shape::Text(_) | Shape::Texts(_) => false,
         }
     }
 
     /// Makes all texts unknown.
     pub fn forget_texts(&mut self) {
         match self {
-            Shape::Array(_) => {}
+            Shape::Array(_) | Shape::Numbered => {}
             Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
             Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
             Shape::Texts(texts) => texts.forget(),
@@ -70,6 +82,7 @@ impl Shape {
             (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
             (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
             (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
+            (Shape::Numbered, Shape::Numbered) => Some(Shape::Numbered),
             (Shape::Texts(a), Shape::Texts(b)) => a.joined(b).map(Shape::Texts),
             // Arrays whose sizes are not looked at are one text, which is not known.
             (Shape::Texts(a), Shape::Text(_)) | (Shape::Text(_), Shape::Texts(a)) => {

@@ -6,7 +6,9 @@ use super::builder::{Builder, Folding};
 use super::dae::{Homotopy, Kind, Relation};
 use super::equation::{Assertion, Level, Part};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::expressions::{Array, Binary, Branch, ClockedCall, Lowered, Lowering, Target, Unary};
+use super::expressions::{
+    Array, Binary, Branch, ClockedCall, Lowered, Lowering, Target, TextPart, Unary,
+};
 use super::shape::UNKNOWN_TEXT;
 use super::text_array::Texts;
 use crate::diag::Diagnostic;
@@ -256,6 +258,19 @@ impl Target for Builder<'_> {
 
     fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
         Some(self.number_of(text))
+    }
+
+    fn composes(&self) -> bool {
+        true
+    }
+
+    fn wants_texts(&mut self, wanted: bool) {
+        self.calls.functions.wants_texts = wanted;
+    }
+
+    fn compose(&mut self, parts: &[TextPart<Expr>], _: Span) -> Result<Expr, Diagnostic> {
+        let (code, arguments) = self.calls.functions.composer(parts);
+        Ok(self.dae.pool.call(code, 0, &arguments))
     }
 
     fn begin_temporal(

@@ -47,7 +47,7 @@ impl Builder<'_> {
             return Ok(());
         }
         if let Some(binding) = &variable.binding {
-            let text = Lowering::new(self).lower(binding)?;
+            let text = Lowering::new(self).text_at_run_time(binding)?;
             let right = Lowering::new(self).number_of_text(text, binding.span)?;
             let left = self.dae.pool.variable(first);
             self.dae.equations.push(Equation::new(left, right, binding.span));
@@ -89,7 +89,7 @@ impl Builder<'_> {
 
     /// The number of a text, counted from 0 as they occur.
     pub(super) fn number_of(&mut self, text: &Arc<str>) -> Expr {
-        let (number, _) = self.texts.insert_full(text.clone());
-        self.dae.pool.constant(number as f64)
+        let number = self.calls.functions.number_of(text);
+        self.dae.pool.constant(number)
     }
 }

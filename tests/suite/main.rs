@@ -82,6 +82,7 @@ mod repl;
 mod report_page;
 mod results;
 mod resume;
+mod run_time_texts;
 mod scalable;
 mod scale;
 mod script_fuzzing;

@@ -245,3 +245,42 @@ fn a_changed_file_is_translated_anew() {
     simulated(&here, &[]);
     assert_ne!(fs::read(here.path().join("r.csv")).unwrap(), before);
 }
+
+#[test]
+fn what_a_kept_model_prints_is_what_a_translated_one_prints() {
+    let lines = "model P
+  function tell
+    input Real t;
+  algorithm
+    print(\"at \" + String(t));
+  end tell;
+  function print
+    input String text;
+    input String file = \"\";
+    external \"C\" ModelicaInternal_print(text, file);
+  end print;
+  Real x(start = 0, fixed = true);
+  Real v[400];
+equation
+  der(x) = 1;
+  for i in 1:400 loop
+    der(v[i]) = sin(v[i]) * i + cos(time * i);
+  end for;
+algorithm
+  when sample(0.25, 0.25) then
+    tell(time);
+  end when;
+  annotation(experiment(StopTime = 1));
+end P;";
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("P.mo"), lines).expect("a file");
+    let cache = folder.path().join("cache");
+    let run = || {
+        let mut command = command(folder.path(), &["simulate", "P.mo", "--output", "o.csv"]);
+        let output = command.env("XDG_CACHE_HOME", &cache).output();
+        String::from_utf8(output.expect("it runs").stdout).expect("text")
+    };
+    let (first, second) = (run(), run());
+    assert_eq!(first.lines().take(4).collect::<Vec<_>>(), ["at 0.25", "at 0.5", "at 0.75", "at 1"]);
+    assert_eq!(first, second);
+}

@@ -32,7 +32,11 @@ impl<T: Target> Lowering<'_, T> {
                 .at(span));
         };
         if let Meaning::Operator(Operator::Text) = entry.meaning {
-            return Ok(Lowered::Text(self.string_operator(callee, arguments, span)));
+            let text = self.string_operator(callee, arguments, span);
+            return match self.composes && text.contains(UNKNOWN_TEXT) {
+                true => self.composed_string(arguments, span),
+                false => Ok(Lowered::Text(text)),
+            };
         }
         if let Meaning::Reduction(reduction) = entry.meaning
             && (!arguments.iterators.is_empty() || arguments.positional.len() == 1)

@@ -2,11 +2,12 @@
 
 use super::{Lowered, Lowering, Target, placed};
 use crate::diag::{Diagnostic, suggest};
-use crate::eval::{Function, FunctionBody};
+use crate::eval::{Function, FunctionBody, ValueType};
 use crate::fault;
 use crate::lower::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE,
 };
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::function;
 use crate::syntax::ast::{Arguments, ComponentReference};
@@ -42,6 +43,53 @@ impl<T: Target> Lowering<'_, T> {
         arguments: &Arguments,
         span: Span,
     ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
+        let outputs = self.call_with_known_texts(user, arguments, span);
+        let has_texts = || {
+            let mut all = user.inputs.iter().chain(&user.outputs);
+            all.any(|component| component.value_type == ValueType::String)
+        };
+        match &outputs {
+            Err(error)
+                if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
+                    && !self.composes
+                    && has_texts()
+                    && !self.target.gives_up() =>
+            {
+                let made = self.composing(|own| match own.composes {
+                    true => own.call_with_known_texts(user, arguments, span).ok(),
+                    false => None,
+                });
+                made.map_or(outputs, Ok)
+            }
+            _ => outputs,
+        }
+    }
+
+    /// The outputs of a call for variables, of which texts are made at run time.
+    pub(crate) fn outputs_for<V>(
+        &mut self,
+        targets: &[Option<V>],
+        user: &std::sync::Arc<Function>,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
+        let outputs = self.user_call(user, arguments, span)?;
+        let is_unknown = |(target, output): (&Option<V>, &Lowered<_>)| match output {
+            Lowered::Text(text) => target.is_some() && text.contains(UNKNOWN_TEXT),
+            _ => false,
+        };
+        match !self.composes && targets.iter().zip(&outputs).any(is_unknown) {
+            true => self.composing(|own| own.user_call(user, arguments, span)),
+            false => Ok(outputs),
+        }
+    }
+
+    fn call_with_known_texts(
+        &mut self,
+        user: &std::sync::Arc<Function>,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
         let values = self.inputs(user, arguments, span)?;
         if matches!(user.body, FunctionBody::RecordConstructor) {
             let fields = user.inputs.iter().map(|i| i.name).zip(values).collect();
@@ -56,6 +104,7 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(outputs) = self.text_call(user, &values, span)? {
             return Ok(outputs);
         }
+        self.target.wants_texts(self.composes);
         match self.target.call(user, values.clone(), span) {
             Err(error)
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)

@@ -12,15 +12,17 @@ mod operators;
 mod placed;
 mod records;
 mod strings;
+mod text_parts;
 mod varying_strings;
 mod vectorized;
 
 pub(crate) use arrays::Choice;
 pub(crate) use records::field_of;
 pub(crate) use strings::message_text;
+pub(crate) use text_parts::TextPart;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::shape::Shape;
+use super::shape::{Shape, UNKNOWN_TEXT};
 use super::text_array::Texts;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
@@ -113,6 +115,25 @@ pub(crate) trait Target {
         let _ = text;
         None
     }
+    /// Whether texts can be made when what is translated runs.
+    fn composes(&self) -> bool {
+        false
+    }
+    /// The number of a text that is made of parts when what is translated runs.
+    fn compose(
+        &mut self,
+        parts: &[TextPart<Self::Scalar>],
+        span: Span,
+    ) -> Result<Self::Scalar, Diagnostic> {
+        let _ = parts;
+        Err(varying_strings::computed(span))
+    }
+    /// Whether the outputs of the next call are needed where they are texts made at run time.
+    fn wants_texts(&mut self, wanted: bool) {
+        let _ = wanted;
+    }
+    /// A text is needed that is not known, and that [`Target::composes`] would give.
+    fn misses_text(&mut self) {}
     /// Whether the right operand of `and` and `or` is computed only where it decides.
     fn short_circuits(&self) -> bool {
         false
@@ -341,7 +362,7 @@ impl<S: Copy> Lowered<S> {
             }
             Lowered::Text(text) => Some(Shape::Text(text.clone())),
             Lowered::Texts(texts) => Some(Shape::Texts(texts.clone())),
-            Lowered::Numbered(_) => None,
+            Lowered::Numbered(_) => Some(Shape::Numbered),
         }
     }
 
@@ -401,6 +422,11 @@ impl<S: Copy> Lowered<S> {
             ),
             Shape::Text(text) => Lowered::Text(text.clone()),
             Shape::Texts(texts) => Lowered::Texts(texts.clone()),
+            // There is a scalar for every part of a shape.
+            Shape::Numbered => match scalars.next() {
+                Some(number) => Lowered::Numbered(number),
+                None => Lowered::Text(UNKNOWN_TEXT.into()),
+            },
         }
     }
 }
@@ -413,6 +439,8 @@ pub(crate) struct Lowering<'a, T: Target> {
     pub(crate) loops: Vec<(Ident, T::Scalar)>,
     /// Whether relations are evaluated as they are (inside `noEvent`).
     pub(crate) live: bool,
+    /// Whether texts that are not known are made when what is translated runs.
+    pub(crate) composes: bool,
     /// Size of the dimension that `end` stands for, innermost last.
     ends: Vec<usize>,
     depth: usize,
@@ -421,7 +449,14 @@ pub(crate) struct Lowering<'a, T: Target> {
 impl<'a, T: Target> Lowering<'a, T> {
     /// A lowering outside loops.
     pub(crate) fn new(target: &'a mut T) -> Lowering<'a, T> {
-        Lowering { target, loops: Vec::new(), live: false, ends: Vec::new(), depth: 0 }
+        Lowering {
+            target,
+            loops: Vec::new(),
+            live: false,
+            composes: false,
+            ends: Vec::new(),
+            depth: 0,
+        }
     }
 
     /// A scalar.

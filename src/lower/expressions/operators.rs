@@ -30,7 +30,7 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let a = match self.lower(left)? {
-            Lowered::Text(a) => return self.texts(operator, a, right, span),
+            Lowered::Text(a) => return self.texts(operator, (a, left), right, span),
             Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
             Lowered::Array(a) => a,
             Lowered::Record(_) | Lowered::Texts(_) => self.array(left)?,
@@ -129,15 +129,22 @@ impl<T: Target> Lowering<'_, T> {
     fn texts(
         &mut self,
         operator: BinaryOperator,
-        a: Arc<str>,
+        (a, left): (Arc<str>, &Expression),
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let b = match self.lower(right)? {
             Lowered::Text(b) => b,
+            b @ Lowered::Numbered(_) if operator == BinaryOperator::Add && self.composes => {
+                return self.composed_sum([Lowered::Text(a), b], span);
+            }
             Lowered::Numbered(_) if operator == BinaryOperator::Add => UNKNOWN_TEXT.into(),
             Lowered::Numbered(b) => {
-                let a = self.number_of_text(Lowered::Text(a), span)?;
+                let a = match a.contains(UNKNOWN_TEXT) {
+                    true => self.text_at_run_time(left)?,
+                    false => Lowered::Text(a),
+                };
+                let a = self.number_of_text(a, span)?;
                 return self.compare_texts(operator, a, b, span);
             }
             _ => return Err(fault!(ARRAY_MISMATCH, "comparing a String with a number").at(span)),
@@ -147,7 +154,16 @@ impl<T: Target> Lowering<'_, T> {
             check_length(a.len().saturating_add(b.len())).at(span)?;
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
+        if (a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT))
+            && matches!(operator, BinaryOperator::Equal | BinaryOperator::NotEqual)
+            && self.target.composes()
+        {
+            let sides = [self.text_at_run_time(left)?, self.text_at_run_time(right)?];
+            let [a, b] = sides.map(|side| self.number_of_text(side, span));
+            return self.compare_texts(operator, a?, b?, span);
+        }
         if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {
+            self.target.misses_text();
             return Err(fault!(NOT_SUPPORTED, "a text that is unknown at translation").at(span));
         }
         let holds = match operator {

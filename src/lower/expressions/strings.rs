@@ -48,6 +48,7 @@ impl<T: Target> Lowering<'_, T> {
         for (input, argument) in function.inputs.iter().zip(arguments) {
             match self.known_argument(argument, input, gives_text) {
                 Some(value) => values.push(value),
+                None if gives_text && self.composes => return Ok(None),
                 None if gives_text => {
                     return Err(fault!(
                         NOT_SUPPORTED,

@@ -19,17 +19,43 @@ impl<T: Target> Lowering<'_, T> {
         match text {
             Lowered::Numbered(number) => Ok(number),
             Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
-                Err(fault!(NOT_SUPPORTED, "a String that is computed during the simulation";
-                    help: "select among Strings that are known at translation")
-                .at(span))
+                self.target.misses_text();
+                Err(computed(span))
             }
-            Lowered::Text(text) => {
-                self.target.text_number(&text).ok_or_else(|| depends_on_conditions(span))
-            }
+            Lowered::Text(text) => self.target.text_number(&text).ok_or_else(|| {
+                self.target.misses_text();
+                depends_on_conditions(span)
+            }),
             Lowered::Array(_) | Lowered::Record(_) | Lowered::Texts(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a scalar String").at(span))
             }
         }
+    }
+
+    /// What a text is, made at run time if it is not known now.
+    pub(crate) fn text_at_run_time(
+        &mut self,
+        e: &Expression,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        match self.lower(e) {
+            Ok(Lowered::Text(text)) if text.contains(UNKNOWN_TEXT) => {
+                self.composing(|own| own.lower(e))
+            }
+            Err(_) => self.composing(|own| own.lower(e)),
+            known => known,
+        }
+    }
+
+    /// What is made of texts that are made at run time, where they can be.
+    pub(super) fn composing<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> R {
+        let composes = self.target.composes();
+        if !composes {
+            self.target.misses_text();
+        }
+        let outer = std::mem::replace(&mut self.composes, composes);
+        let result = lower(self);
+        self.composes = outer;
+        result
     }
 
     /// `if condition then first else second`
@@ -51,9 +77,15 @@ impl<T: Target> Lowering<'_, T> {
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let b = self.lower(right)?;
+        let b = match operator {
+            BinaryOperator::Add => self.lower(right)?,
+            _ => self.text_at_run_time(right)?,
+        };
         if operator == BinaryOperator::Add && matches!(b, Lowered::Text(_) | Lowered::Numbered(_)) {
-            return Ok(Lowered::Text(UNKNOWN_TEXT.into()));
+            return match self.composes {
+                true => self.composed_sum([Lowered::Numbered(a), b], span),
+                false => Ok(Lowered::Text(UNKNOWN_TEXT.into())),
+            };
         }
         let b = self.number_of_text(b, span)?;
         self.compare_texts(operator, a, b, span)
@@ -82,7 +114,14 @@ impl<T: Target> Lowering<'_, T> {
     }
 }
 
-/// In a function, whose Strings have no numbers: it is compiled again for the known values of its
+/// A String that would have to be made at run time.
+pub(super) fn computed(span: Span) -> Diagnostic {
+    fault!(NOT_SUPPORTED, "a String that is computed during the simulation";
+        help: "select among Strings that are known at translation")
+    .at(span)
+}
+
+/// In a function whose Strings have no numbers: it is compiled again for the known values of its
 /// arguments, which may decide the condition.
 pub(super) fn depends_on_conditions(span: Span) -> Diagnostic {
     fault!(NO_CONSTANT_VALUE, "a String in a function depends on a condition that is not known at \

@@ -55,6 +55,7 @@ impl Emitter {
             n_outputs,
             frame: self.next,
             constants: self.values,
+            gives_texts: false,
             messages: self.messages,
             places: self.places,
             inverses: Vec::new(),
@@ -90,6 +91,11 @@ impl Emitter {
     pub(super) fn text(&mut self, text: Arc<str>) -> u32 {
         self.texts.push(text);
         self.texts.len() as u32 - 1
+    }
+
+    /// All texts so far.
+    pub(super) fn texts(&self) -> &[Arc<str>] {
+        &self.texts
     }
 
     pub(super) fn text_at(&self, position: u32) -> Arc<str> {

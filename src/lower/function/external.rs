@@ -7,11 +7,12 @@ use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::{At, Diagnostic};
 use crate::eval::{FunctionComponent, c_function};
-use crate::external::{self, Kind, Slot};
+use crate::external::{self, Entry, Kind, Slot};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::expressions::{Lowered, Lowering};
+use crate::lower::expressions::Lowered;
 use crate::lower::shape::UNKNOWN_TEXT;
+use crate::source::Span;
 use crate::syntax::ast;
 
 impl Body<'_, '_> {
@@ -31,7 +32,7 @@ impl Body<'_, '_> {
         self.emitter.open();
         let mut arguments = Vec::with_capacity(clause.arguments.len());
         for argument in &clause.arguments {
-            let value = Lowering::new(self).lower(argument)?;
+            let value = self.lowering(&Vec::new()).lower(argument)?;
             let component = match &argument.kind {
                 ast::ExpressionKind::Reference(reference) => reference.as_ident(),
                 _ => None,
@@ -52,23 +53,54 @@ impl Body<'_, '_> {
             }
             None => None,
         };
+        self.refuse_unknown_files(entry, &arguments, clause.span)?;
         entry.check(&arguments, result.as_ref()).at(clause.span)?;
-        for argument in entry.files() {
-            let name = self.emitter.text_at(arguments[argument].first);
-            if external::names_a_file(&name) {
-                let Instances { functions, .. } = &mut *self.instances;
-                functions.files.keep(&name, &self.flat.resources).at(clause.span)?;
-            }
-        }
-        for argument in entry.possible_files() {
-            let name = self.emitter.text_at(arguments[argument].first);
-            let Instances { functions, .. } = &mut *self.instances;
-            // Whoever needs the file says that it is not there.
-            let _ = functions.files.keep(&name, &self.flat.resources);
-        }
+        self.keep_files(entry, &arguments, clause.span)?;
         let external = self.emitter.external(ExternalCall { entry, arguments, result });
         self.emitter.emit(Instruction::External { external });
         self.emitter.close();
+        Ok(())
+    }
+
+    /// The files that a function reads are kept with the model, so that their names must be known.
+    fn refuse_unknown_files(
+        &self,
+        entry: &Entry,
+        arguments: &[Slot],
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let is_known = |at: usize| arguments.get(at).is_none_or(|slot| slot.kind != Kind::Numbered);
+        match entry.files().all(is_known) {
+            true => Ok(()),
+            false => Err(fault!(
+                NOT_SUPPORTED,
+                "the name of the file that `{}` reads must be known at translation",
+                self.function.name
+            )
+            .at(span)),
+        }
+    }
+
+    /// Keeps the files that a function reads.
+    fn keep_files(
+        &mut self,
+        entry: &Entry,
+        arguments: &[Slot],
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let Instances { functions, .. } = &mut *self.instances;
+        for argument in entry.files() {
+            let name = self.emitter.text_at(arguments[argument].first);
+            if external::names_a_file(&name) {
+                functions.files.keep(&name, &self.flat.resources).at(span)?;
+            }
+        }
+        let is_known = |argument: &usize| arguments[*argument].kind == Kind::Text;
+        for argument in entry.possible_files().filter(is_known) {
+            let name = self.emitter.text_at(arguments[argument].first);
+            // Whoever needs the file says that it is not there.
+            let _ = functions.files.keep(&name, &self.flat.resources);
+        }
         Ok(())
     }
 
@@ -77,7 +109,7 @@ impl Body<'_, '_> {
         &mut self,
         value: Lowered<Operand>,
         component: Option<&FunctionComponent>,
-        span: crate::source::Span,
+        span: Span,
     ) -> Result<Slot, Diagnostic> {
         match value {
             Lowered::Text(text) => {
@@ -112,11 +144,10 @@ impl Body<'_, '_> {
                 let dims = texts.dims.iter().map(|size| *size as u32).collect();
                 Ok(Slot { kind: Kind::Text, first, dims })
             }
-            Lowered::Numbered(_) => Err(fault!(
-                NOT_SUPPORTED,
-                "a String that changes during the simulation, as argument of an external function"
-            )
-            .at(span)),
+            Lowered::Numbered(number) => {
+                let first = self.emitter.row(&[number]);
+                Ok(Slot { kind: Kind::Numbered, first, dims: Box::new([]) })
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use super::statements::Body;
 use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::external::{Effect, Kind, Slot};
 use crate::fault;
 use crate::flatten::FlatModel;
@@ -40,6 +40,15 @@ struct Signature {
     arguments: Vec<Argument>,
     /// Whether computed Integers may decide sizes in statements.
     at_run_time: bool,
+    /// Whether texts are made when the function runs.
+    composes: bool,
+}
+
+impl Signature {
+    /// Whether texts are passed by their numbers.
+    fn takes_numbers_of_texts(&self) -> bool {
+        self.arguments.iter().any(Argument::holds_number_of_text)
+    }
 }
 
 /// What is known of an argument.
@@ -67,6 +76,17 @@ impl Argument {
             Argument::Record(fields) => {
                 fields.iter().for_each(|(_, field)| field.append_passed(passed));
             }
+        }
+    }
+
+    /// Whether it is the number of a text, or one of its components is.
+    fn holds_number_of_text(&self) -> bool {
+        match self {
+            Argument::Shape(shape) => shape.holds_number_of_text(),
+            Argument::Record(fields) => {
+                fields.iter().any(|(_, field)| field.holds_number_of_text())
+            }
+            Argument::Known(_) | Argument::Text(_) | Argument::Texts(_) => false,
         }
     }
 
@@ -111,7 +131,10 @@ pub(crate) struct Instances {
     /// Whether each function is compiled to its end.
     finished: Vec<bool>,
     known: IndexMap<Signature, Instance>,
-    failed: IndexMap<Signature, Diagnostic>,
+    /// Why, and whether a text was missing.
+    failed: IndexMap<Signature, (Diagnostic, bool)>,
+    /// Functions that make texts, by what they are made of.
+    pub(super) composers: IndexMap<(Vec<Slot>, Vec<Arc<str>>), u32>,
     depth: usize,
     /// How many statements the interpreter has run.
     pub(in crate::lower) interpreted: Cell<u64>,
@@ -124,6 +147,10 @@ pub(crate) struct Instances {
     pub(crate) may_write: bool,
     /// Whether statements are compiled size by size where a computed Integer decides.
     pub(super) sizes_at_run_time: bool,
+    /// Whether a text was needed that is made at run time.
+    pub(super) misses_text: bool,
+    /// Whether the outputs of the next call are needed, though they be texts made at run time.
+    pub(in crate::lower) wants_texts: bool,
 }
 
 impl Instances {
@@ -141,13 +168,13 @@ impl Instances {
         span: Span,
     ) -> Result<Instance, Diagnostic> {
         let at_run_time = std::mem::replace(&mut self.sizes_at_run_time, false);
-        let mut found = self.general_or_special(flat, function, arguments, span);
+        let mut found = self.with_texts(flat, function, arguments, span);
         self.sizes_at_run_time = at_run_time;
         if at_run_time
             && let Err(e) = &found
             && [NO_CONSTANT_VALUE, NOT_SUPPORTED].contains(&e.code)
         {
-            found = self.general_or_special(flat, function, arguments, span);
+            found = self.general_or_special(flat, function, arguments, false, span);
         }
         let found = found?;
         if found.writes
@@ -164,12 +191,42 @@ impl Instances {
         Ok(found)
     }
 
+    /// A function whose texts are known; one that makes them when it runs where they are not.
+    fn with_texts(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Option<f64>>],
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        let is_wanted = std::mem::replace(&mut self.wants_texts, false);
+        if is_wanted && function.outputs.iter().any(is_text) {
+            self.misses_text = true;
+            return self.general_or_special(flat, function, arguments, true, span);
+        }
+        let outer = std::mem::replace(&mut self.misses_text, false);
+        let known = self.general_or_special(flat, function, arguments, false, span);
+        let misses_text = std::mem::replace(&mut self.misses_text, outer);
+        match known {
+            Err(error) if misses_text => {
+                self.misses_text = true;
+                match self.general_or_special(flat, function, arguments, true, span) {
+                    // What is compiled for known values may do without.
+                    Err(_) if error.code == NO_CONSTANT_VALUE => Err(error),
+                    made => made,
+                }
+            }
+            known => known,
+        }
+    }
+
     /// A function for any values of its arguments, or else for those that are known.
     fn general_or_special(
         &mut self,
         flat: &FlatModel,
         function: &Arc<Function>,
         arguments: &[Lowered<Option<f64>>],
+        composes: bool,
         span: Span,
     ) -> Result<Instance, Diagnostic> {
         let at_run_time = self.sizes_at_run_time;
@@ -178,8 +235,9 @@ impl Instances {
         // The fewer values are built in, the more calls share the code: a recursive function that
         // counts its depth must not be compiled for each.
         for known in [ByValue::Nothing, ByValue::DeclaredSizes, ByValue::Everything] {
-            let signature =
-                Signature { at_run_time, ..signature(function, arguments, known, span)? };
+            let signature = signature(function, arguments, known, span)
+                .inspect_err(|_| self.misses_text = true)?;
+            let signature = Signature { at_run_time, composes, ..signature };
             if before.as_ref() == Some(&signature) {
                 continue;
             }
@@ -203,7 +261,8 @@ impl Instances {
         if let Some(known) = self.known.get(&signature) {
             return Ok(known.clone());
         }
-        if let Some(failed) = self.failed.get(&signature) {
+        if let Some((failed, misses_text)) = self.failed.get(&signature) {
+            self.misses_text |= misses_text;
             return Err(failed.clone());
         }
         let name = &function.name;
@@ -237,7 +296,7 @@ impl Instances {
             self.functions.codes.truncate(before.0);
             self.finished.truncate(before.0);
             self.known.truncate(before.1);
-            self.failed.insert(signature, e.clone());
+            self.failed.insert(signature, (e.clone(), self.misses_text));
         }
         result
     }
@@ -251,19 +310,25 @@ impl Instances {
         span: Span,
     ) -> Result<Instance, Diagnostic> {
         let mut body = Body::new(flat, self, function);
+        body.composes = signature.composes;
         let outputs = body.declare(&signature.arguments, statements, span)?;
         let mut instance = Instance {
             code: body.instances.finished.len() as u32,
             outputs,
-            folds: !function.impure && !super::external_kinds::handles_objects(function),
+            folds: !function.impure
+                && !super::external_kinds::handles_objects(function)
+                && !signature.takes_numbers_of_texts(),
             impure: function.impure,
             writes: false,
             passed: passed(&signature.arguments),
         };
+        let gives_texts = instance.outputs.iter().any(Shape::holds_number_of_text);
+        instance.folds &= !gives_texts;
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
         body.instances.known.insert(signature.clone(), instance.clone());
         let mut code = body.compile(statements)?;
+        code.gives_texts = gives_texts;
         code.writes = self.writes(&code);
         code.impure = function.impure || self.has_effects(&code);
         if code.n_outputs == 0 {
@@ -291,6 +356,13 @@ impl Instances {
         self.functions.codes[instance.code as usize] = code;
         self.finished[instance.code as usize] = true;
         Ok(instance)
+    }
+
+    /// A function that is compiled; returns its number.
+    pub(super) fn add(&mut self, code: Code) -> u32 {
+        self.functions.codes.push(code);
+        self.finished.push(true);
+        self.finished.len() as u32 - 1
     }
 
     /// The scalars that a call returns, if it has a value and nothing it needs is still being
@@ -390,6 +462,11 @@ impl Instance {
     }
 }
 
+/// Whether a component is a text.
+pub(super) fn is_text(component: &FunctionComponent) -> bool {
+    component.value_type == ValueType::String && component.dims.is_empty()
+}
+
 /// Which known arguments are built into the code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ByValue {
@@ -451,7 +528,8 @@ fn signature(
         })?;
         list.push(known);
     }
-    Ok(Signature { name: function.name.clone(), arguments: list, at_run_time: false })
+    let name = function.name.clone();
+    Ok(Signature { name, arguments: list, at_run_time: false, composes: false })
 }
 
 /// What is known of an argument; `None` if it is or holds a text that changes.
@@ -463,7 +541,7 @@ fn known_of(
     let is_whole =
         matches!(wanted, ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_));
     Some(match argument {
-        Lowered::Numbered(_) => return None,
+        Lowered::Numbered(_) => Argument::Shape(Shape::Numbered),
         Lowered::Text(text) => Argument::Text(text.clone()),
         Lowered::Texts(texts) => Argument::Texts(texts.clone()),
         Lowered::Array(array) => match array.elements.as_slice() {

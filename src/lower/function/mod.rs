@@ -7,6 +7,7 @@
 //! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
 
 mod assigned_shape;
+mod composer;
 mod derivative;
 mod dispatch;
 mod emitter;
@@ -52,6 +53,11 @@ pub(super) fn call(
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     if let FunctionBody::PartialDerivative { of, by } = &function.body {
         return partial_derivative::call(builder, function, (of, by), arguments, span);
+    }
+    let wants_texts = std::mem::take(&mut builder.calls.functions.wants_texts);
+    if wants_texts && function.outputs.iter().any(instances::is_text) {
+        builder.calls.functions.wants_texts = true;
+        return compiled_call(builder, function, arguments, span);
     }
     if builder.calls.functions.may_write {
         // Carried out on expressions, a function would write whatever its branches are.

@@ -79,16 +79,19 @@ impl Body<'_, '_> {
         self.emitter.place(component.span);
         self.emitter.open();
         let mut assigned_shape = |body: &mut Self, path: &[Ident]| body.assigned(path, statements);
+        let is_assigned = assigned.contains(&component.name);
+        let is_external = matches!(self.function.body, FunctionBody::External(_));
         let lowering = &mut self.lowering(&Vec::new());
+        // Texts that change have numbers.
+        lowering.composes &= is_assigned || is_external;
         let Declared { mut shape, mut scalars } =
             declared(lowering, component, &mut assigned_shape)?;
-        if matches!(self.function.body, FunctionBody::External(_)) {
+        if is_external {
             // Memory that it need not write to: LAPACK leaves workspaces and what was not asked for.
             let zero = Operand::Constant(0.0);
             scalars.iter_mut().for_each(|scalar| *scalar = scalar.or(Some(zero)));
         }
         let is_known = |scalar: &Option<Operand>| matches!(scalar, Some(Operand::Constant(_)));
-        let is_assigned = assigned.contains(&component.name);
         if component.binding.is_some() && !is_assigned && scalars.iter().all(is_known) {
             self.emitter.close();
             let value = Lowered::from_scalars(&shape, &mut scalars.into_iter().flatten());
@@ -149,6 +152,7 @@ impl Body<'_, '_> {
         let place = self.local(&names).cloned().ok_or_else(|| {
             fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
         })?;
+        let value = self.with_numbers_like(value, &place, target.span)?;
         let subscripts = self.subscripts_of(target)?;
         if !subscripts.is_empty() {
             return self.assign_elements(&place, &subscripts, &value, target, loops);
@@ -170,6 +174,33 @@ impl Body<'_, '_> {
             self.emitter.copy(first, &scalars);
         }
         Ok(())
+    }
+
+    /// A value with the numbers of its texts where a place has numbers.
+    fn with_numbers_like(
+        &mut self,
+        value: Lowered<Operand>,
+        place: &Lowered<Operand>,
+        span: Span,
+    ) -> Result<Lowered<Operand>, Diagnostic> {
+        match (value, place) {
+            (text @ Lowered::Text(_), Lowered::Numbered(_)) => {
+                Lowering::new(self).number_of_text(text, span).map(Lowered::Numbered)
+            }
+            (Lowered::Record(fields), Lowered::Record(places)) => {
+                let mut numbered = Vec::with_capacity(fields.len());
+                for (name, field) in fields {
+                    let place = places.iter().find(|(own, _)| *own == name);
+                    let field = match place {
+                        Some((_, place)) => self.with_numbers_like(field, place, span)?,
+                        None => field,
+                    };
+                    numbered.push((name, field));
+                }
+                Ok(Lowered::Record(numbered))
+            }
+            (value, _) => Ok(value),
+        }
     }
 
     /// The subscripts of all parts of `v[i].x[j]`, which are those of the array that `v.x` is.

@@ -41,6 +41,8 @@ pub(super) struct Body<'a, 'f> {
     pub(super) bound_integers: usize,
     /// Whether loop variables may decide sizes in loops that cannot be unrolled.
     pub(super) loop_sizes: bool,
+    /// Whether texts that are not known are made when it runs.
+    pub(super) composes: bool,
 }
 
 /// Loop variables, innermost last.
@@ -65,6 +67,7 @@ impl<'a, 'f> Body<'a, 'f> {
             known_once: Vec::new(),
             bound_integers: 0,
             loop_sizes: false,
+            composes: false,
         }
     }
 
@@ -129,7 +132,15 @@ impl<'a, 'f> Body<'a, 'f> {
     pub(super) fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
+        lowering.composes = lowering.target.composes;
         lowering.live = true;
+        lowering
+    }
+
+    /// As [`Body::lowering`], for messages: what is not known of them is not computed.
+    pub(super) fn of_known_texts(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let mut lowering = self.lowering(loops);
+        lowering.composes = false;
         lowering
     }
 
@@ -457,7 +468,7 @@ impl<'a, 'f> Body<'a, 'f> {
         {
             return Ok(());
         }
-        let text = message_text(&mut self.lowering(loops), find(1, "message"));
+        let text = message_text(&mut self.of_known_texts(loops), find(1, "message"));
         let message = self.emitter.message(text.into());
         let a = self.emitter.register(condition);
         self.emitter.emit(Instruction::Assert { a, message });

@@ -6,7 +6,7 @@ use crate::bytecode::{Elementary, Instruction};
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
-use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Target, Unary};
+use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Target, TextPart, Unary};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
@@ -229,6 +229,27 @@ impl Target for Body<'_, '_> {
         };
         let mut results = results.into_iter();
         Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
+    }
+
+    fn text_number(&mut self, text: &Arc<str>) -> Option<Operand> {
+        self.composes.then(|| Operand::Constant(self.instances.number_of(text)))
+    }
+
+    fn composes(&self) -> bool {
+        self.composes
+    }
+
+    fn compose(&mut self, parts: &[TextPart<Operand>], span: Span) -> Result<Operand, Diagnostic> {
+        self.emitter.place(span);
+        Ok(self.composed(parts))
+    }
+
+    fn wants_texts(&mut self, wanted: bool) {
+        self.instances.wants_texts = wanted;
+    }
+
+    fn misses_text(&mut self) {
+        self.instances.misses_text = true;
     }
 
     fn interpreted(&self) -> &Cell<u64> {
