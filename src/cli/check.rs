@@ -1,13 +1,17 @@
 //! `gapi check` and `gapi flatten`: models without running them.
 
 use super::options::{Global, Limits};
-use super::{limits, session};
-use crate::diag::Diagnostic;
+use super::{limits, session, terminal};
+use crate::diag::{Diagnostic, Fault, Severity};
+use crate::lsp;
 use crate::name::Name;
 use crate::script::Session;
+use crate::script::language::parsing::{self, Reading};
 use crate::script::models::{checking, simulation};
+use crate::source::Span;
+use crate::syntax::errors::NOT_A_SCRIPT;
 use clap::{Args, ValueHint};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Arguments of `gapi check`.
@@ -16,9 +20,10 @@ use std::process::ExitCode;
 Examples:
   gapi check models/CaseStudies
   gapi check models --model CaseStudies.PolarizationCurve
+  gapi check scripts/GAPILib.mos
   gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {
-    /// Modelica files or package folders, or the class
+    /// Modelica files, package folders or scripts, or the class
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
@@ -57,15 +62,57 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
         Err(code) => return code,
     };
     let (class, files) = session::class_and_files(arguments.model.as_ref(), &arguments.files);
+    let is_script = |file: &PathBuf| file.extension().is_some_and(|e| e == "mos");
+    let (scripts, files): (Vec<PathBuf>, Vec<PathBuf>) = files.into_iter().partition(is_script);
     let (mut session, loaded) = match session::with_files(global, &files) {
         Ok(session) => session,
         Err(code) => return code,
     };
     checking::set_strict(&mut session, arguments.strict);
-    match &class {
+    let wrong = scripts.iter().filter(|script| !check_script(&mut session, script)).count();
+    let models = match &class {
         Some(model) => check_one(&mut session, model),
+        None if files.is_empty() => ExitCode::SUCCESS,
         None => check_all(&mut session, &loaded),
+    };
+    if wrong > 0 { ExitCode::FAILURE } else { models }
+}
+
+/// Checks a script without running it; whether nothing is wrong.
+fn check_script(session: &mut Session, path: &Path) -> bool {
+    session.grant_input(path);
+    let name = path.display().to_string();
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            terminal::eprint(&format!("error: {name}: {error}\n"));
+            return false;
+        }
+    };
+    let (script, found) = match parsing::read(&mut session.sources, &name, &bytes) {
+        Reading::Script(script) => {
+            let found = lsp::check_script(session, &script, path.parent());
+            (Some(script), found)
+        }
+        Reading::Rejected(error) => (None, vec![error]),
+        Reading::Data => (
+            None,
+            vec![
+                Fault::new(NOT_A_SCRIPT, format!("`{name}` is a table of numbers, no script"))
+                    .at(Span::NONE),
+            ],
+        ),
+    };
+    let wrong = found.iter().filter(|found| found.severity == Severity::Error).count();
+    found.into_iter().for_each(|found| session.report(found));
+    let statements = match script.map_or(0, |script| script.statements.len()) {
+        1 => "1 statement".to_owned(),
+        n => format!("{n} statements"),
+    };
+    if wrong == 0 {
+        session.print(&format!("{name}: {statements}, no errors\n"));
     }
+    wrong == 0
 }
 
 fn check_one(session: &mut Session, model: &str) -> ExitCode {

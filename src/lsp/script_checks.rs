@@ -28,8 +28,16 @@ const SPECIAL: &[&str] = &["apply"];
 /// What is wrong with the calls of a script.
 pub fn check(session: &mut Session, parsed: &Parsed) -> Vec<Diagnostic> {
     let Some(Tree::Script(script)) = &parsed.tree else { return Vec::new() };
+    check_script(session, script, parsed.document.path.as_ref().and_then(|path| path.parent()))
+}
+
+/// What is wrong with the calls of a script that lies in a folder.
+pub fn check_script(
+    session: &mut Session,
+    script: &Script,
+    folder: Option<&Path>,
+) -> Vec<Diagnostic> {
     let mut known = Known::default();
-    let folder = parsed.document.path.as_ref().and_then(|path| path.parent());
     known.add_script(session, script, folder);
     let calls = Calls::of(script);
     session.ask(|library| {

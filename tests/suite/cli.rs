@@ -591,3 +591,27 @@ fn verify_finds_the_libraries_of_the_references() {
     fs::write(here.path().join("references/A/M/M.csv"), good.replace('7', "8")).unwrap();
     assert_eq!(verify().0, Some(1));
 }
+
+#[test]
+fn scripts_are_checked_without_being_run() {
+    let here = folder(&[
+        ("good.mos", "a := 1;\nprint(\"ran\");\n"),
+        ("bad.mos", "a := (1 + ;\n"),
+        ("unknown.mos", "simulateModle(\"M\");\n"),
+        ("M.mo", "model M\n  Real x = time;\nend M;\n"),
+    ]);
+    let (code, out, err) = gapi(&here, &["check", "good.mos"]);
+    assert_eq!((code, out.as_str(), err.as_str()), (0, "good.mos: 2 statements, no errors\n", ""));
+    let (code, _, err) = gapi(&here, &["check", "bad.mos"]);
+    assert_eq!(code, 1);
+    assert!(err.contains("bad.mos:1:"), "{err}");
+    let (code, _, err) = gapi(&here, &["check", "unknown.mos", "M.mo"]);
+    assert_eq!(code, 1);
+    assert!(err.contains("did you mean `simulateModel`?"), "{err}");
+    let (code, out, _) = gapi(&here, &["check", "good.mos", "M.mo"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("good.mos: 2 statements") && out.contains("1 model"), "{out}");
+    let (code, _, err) = gapi(&here, &["check", "missing.mos"]);
+    assert_eq!(code, 1);
+    assert!(err.contains("missing.mos"), "{err}");
+}
