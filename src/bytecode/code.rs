@@ -163,6 +163,8 @@ pub struct Functions {
     pub codes: Vec<Code>,
     /// The texts of the model that stand for numbers, in this order.
     pub texts: Texts,
+    /// Whether zero is taken for variables that are used before they are assigned.
+    pub takes_defaults: bool,
     /// Files that external functions read.
     pub files: Contents,
     /// External objects made so far.
@@ -192,6 +194,15 @@ impl Functions {
             }
             _ => None,
         }
+    }
+
+    /// That a function used or returned a variable before it was assigned and zero was taken, in
+    /// words, with its place.
+    pub fn default_taken(&self, failure: &Failure) -> (String, Span) {
+        let name = self.codes.get(failure.function as usize).map_or("", |code| &code.name);
+        let words =
+            format!("`{name}` uses or returns a variable before it is assigned: zero is taken");
+        (words, self.explain(failure).1)
     }
 
     /// A failure in words, with its place.

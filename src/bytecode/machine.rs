@@ -30,6 +30,10 @@ pub struct Machine {
     kept: Option<Box<[bool]>>,
     /// How many calls had the results of the one before.
     recalled: u64,
+    /// Whether variables that nothing was assigned to are zero.
+    has_defaults: bool,
+    /// Where variables were used that nothing was assigned to, once for each function.
+    defaults: Vec<Failure>,
 }
 
 /// Where to go on when a function ends.
@@ -53,6 +57,7 @@ impl Machine {
     /// Forgets all external objects and the hidden state of random numbers.
     pub fn restart(&mut self) {
         self.externals.restart();
+        self.defaults.clear();
     }
 
     /// How many instructions the call before this took.
@@ -68,6 +73,11 @@ impl Machine {
     /// What the external function said that failed last.
     pub fn message(&self) -> &str {
         &self.externals.message
+    }
+
+    /// Where zero was taken for variables that nothing was assigned to.
+    pub fn defaults(&self) -> &[Failure] {
+        &self.defaults
     }
 
     /// What calls would have written since the last [`Machine::restart`].
@@ -147,8 +157,35 @@ impl Machine {
         self.budget = instruction_limit();
     }
 
-    /// Runs a function whose frame stands at the bottom of the stack.
+    /// Runs a function whose frame stands at the bottom of the stack; once more with zeros if it uses
+    /// variables before they are assigned.
     fn run<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+    ) -> Result<(), Failure> {
+        let (depth, budget) = (self.callers.len(), self.budget);
+        let result = self.run_once::<T>(functions, function);
+        let code = &functions.codes[function as usize];
+        let failure = match result {
+            Err(failure) if failure.reason == Reason::Unassigned => failure,
+            other => return other,
+        };
+        if !functions.takes_defaults || self.has_defaults || code.impure || code.writes {
+            return Err(failure);
+        }
+        self.callers.truncate(depth);
+        self.budget = budget;
+        self.has_defaults = true;
+        let result = self.run_once::<T>(functions, function);
+        self.has_defaults = false;
+        if result.is_ok() && !self.defaults.iter().any(|known| known.function == failure.function) {
+            self.defaults.push(failure);
+        }
+        result
+    }
+
+    fn run_once<T: Differentiate>(
         &mut self,
         functions: &Functions,
         function: u32,
@@ -197,7 +234,8 @@ impl Machine {
         enter(code, stack, base);
         let mut at = 0usize;
         loop {
-            match execute(code, &mut at, &mut stack[base..], &mut self.budget) {
+            let unassigned = if self.has_defaults { 0.0 } else { f64::NAN };
+            match execute(code, &mut at, &mut stack[base..], unassigned, &mut self.budget) {
                 Ok(None) => {
                     let outputs = base + code.outputs as usize;
                     let outputs = outputs..outputs + code.n_outputs as usize;
@@ -453,6 +491,7 @@ fn execute<T: Number>(
     code: &Code,
     at: &mut usize,
     r: &mut [T],
+    unassigned: f64,
     budget: &mut u64,
 ) -> Result<Option<Wanted>, Reason> {
     let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
@@ -461,7 +500,7 @@ fn execute<T: Number>(
         match *instruction {
             Instruction::Constant { d, value } => r[d as usize] = T::constant(value),
             Instruction::Unassign { d, n } => {
-                r[d as usize..(d + n) as usize].fill(T::constant(f64::NAN));
+                r[d as usize..(d + n) as usize].fill(T::constant(unassigned));
             }
             Instruction::Move { d, a, n: 1 } => r[d as usize] = r[a as usize],
             Instruction::Move { d, a, n } => {

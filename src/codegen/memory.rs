@@ -98,6 +98,11 @@ impl Calls {
         self.machine.journal()
     }
 
+    /// Where zero was taken for variables that nothing was assigned to.
+    pub(crate) fn defaults(&self) -> &[Failure] {
+        self.machine.defaults()
+    }
+
     /// Impure calls have new values from here on.
     pub(crate) fn next_instant(&mut self) {
         self.impure.clear();

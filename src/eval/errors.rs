@@ -3,13 +3,16 @@
 use crate::codes;
 pub use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 
+/// What to do about a variable of a function that is used before it is assigned.
+pub const ASSIGN_BEFORE: &str = "assign it before, or give it a value in its declaration";
+
 codes! {
     /// A name that stands for no variable.
     UNKNOWN_VARIABLE = "unknown-variable":
         "## What it means\n\nA name does not refer to a variable, constant or parameter in the scope where it is used.\n\n## Example\n\n`y := X + 1` where only `x` was declared.\n\n## What to do\n\nCorrect the name, or declare or assign the variable first. Functions can access their own variables and constants of packages, but not the variables of the calling script.",
     /// A variable or output that is read before anything was assigned to it.
     NO_VALUE_YET = "no-value-yet":
-        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero. A partially assigned record can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every path through the function, or give it a binding in its declaration.",
+        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. In scripts it is never replaced by zero. In a function that a model calls zero is taken, with a warning; `--strict` makes it an error (MLS §12.4.4). A partially assigned record can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every path through the function, or give it a binding in its declaration.",
     /// An assignment to what cannot be assigned.
     NOT_ASSIGNABLE = "not-assignable":
         "## What it means\n\nThe left side of an assignment is an input of the function, a constant, a loop variable, or not an assignable variable.\n\n## Example\n\n`u := 2` where `u` is declared `input Real u`.\n\n## What to do\n\nAssign to a protected variable or an output instead.",

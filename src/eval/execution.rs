@@ -62,17 +62,16 @@ impl Evaluator<'_> {
                 self.statements(statements)?;
             }
         }
-        function
-            .outputs
-            .iter()
-            .map(|output| match self.scope.variables.get_mut(&output.name) {
-                Some(variable) => {
-                    let value = std::mem::replace(&mut variable.value, Value::Boolean(false));
-                    variable.assigned(output.name, &[], value).at(output.span)
-                }
-                None => Err(self.scope.unknown(output.name).at(output.span)),
-            })
-            .collect()
+        let mut outputs = Vec::with_capacity(function.outputs.len());
+        for output in &function.outputs {
+            let Some(variable) = self.scope.variables.get_mut(&output.name) else {
+                return Err(self.scope.unknown(output.name).at(output.span));
+            };
+            let value = std::mem::replace(&mut variable.value, Value::Boolean(false));
+            let value = variable.assigned(output.name, &[], value);
+            outputs.push(self.or_default(value, output.span)?);
+        }
+        Ok(outputs)
     }
 
     /// The record made of the inputs (MLS §12.6).

@@ -86,6 +86,13 @@ pub trait Host {
         let _ = warning;
     }
 
+    /// Told when a function uses or returns a variable before it is assigned: whether the default of
+    /// its type is taken (MLS §4.9).
+    fn takes_default(&mut self, warning: Diagnostic) -> bool {
+        let _ = warning;
+        false
+    }
+
     /// Names of functions, for "did you mean".
     fn function_names(&mut self) -> Vec<String> {
         Vec::new()

@@ -2,9 +2,9 @@
 //! array that they reach into.
 
 use super::Evaluator;
-use super::errors::UNKNOWN_VARIABLE;
+use super::errors::{ASSIGN_BEFORE, NO_VALUE_YET, UNKNOWN_VARIABLE};
 use super::variable::{Variable, named};
-use crate::diag::{At, Diagnostic};
+use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
@@ -35,9 +35,36 @@ impl Evaluator<'_> {
         if let Some(variable) = self.scope.variables.get(&first.name)
             && !self.is_iterator(first.name)
         {
-            return variable.assigned(first.name, &path, value).at(reference.span);
+            let value = variable.assigned(first.name, &path, value);
+            return self.or_default(value, reference.span);
         }
         Ok(value)
+    }
+
+    /// The default of its type for a variable that has no value yet, where the host takes it.
+    pub(super) fn or_default(
+        &mut self,
+        value: Result<Value, Box<(Fault, Value)>>,
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        let (fault, default) = match value {
+            Ok(value) => return Ok(value),
+            Err(missing) => *missing,
+        };
+        let Some(function) = self.scope.function_name().filter(|_| fault.code == NO_VALUE_YET)
+        else {
+            return Err(fault.at(span));
+        };
+        let warning = fault!(
+            NO_VALUE_YET,
+            "{} in the function `{function}`: zero is taken",
+            fault.message;
+            help: "{ASSIGN_BEFORE}"
+        );
+        match self.host.takes_default(warning.at(span).warning()) {
+            true => Ok(default),
+            false => Err(fault.at(span)),
+        }
     }
 
     /// The sizes of a variable or a part of one, which need not have a value yet; `None` for a

@@ -90,6 +90,14 @@ impl Scope {
         matches!(self.owner, Owner::Script)
     }
 
+    /// The function whose scope it is.
+    pub(super) fn function_name(&self) -> Option<String> {
+        match &self.owner {
+            Owner::Function(function) => Some(function.name.to_string()),
+            Owner::Script | Owner::Record(_) => None,
+        }
+    }
+
     /// The value of a variable; `None` if there is no such variable or it has no value yet.
     pub fn get(&self, name: Ident) -> Option<&Value> {
         let found = self.iterators.iter().rev().find(|(iterator, _)| *iterator == name);

@@ -120,24 +120,29 @@ impl Variable {
     /// A record that was assigned in part is a value: its Real scalars that were not are NaN.
     ///
     /// # Errors
-    /// The part, or one of its scalars that cannot be NaN, has no value yet.
+    /// The part, or one of its scalars that cannot be NaN, has no value yet; with the default of its
+    /// type.
     pub(super) fn assigned(
         &self,
         name: Ident,
         path: &[Step],
         mut part: Value,
-    ) -> Result<Value, Fault> {
+    ) -> Result<Value, Box<(Fault, Value)>> {
         let Some(unassigned) = &self.unassigned else { return Ok(part) };
-        let shadow = unassigned.shadow.part(path)?;
+        let shadow = match unassigned.shadow.part(path) {
+            Ok(shadow) => shadow,
+            Err(fault) => return Err(Box::new((fault, part))),
+        };
         let left = count_false(&shadow);
         if left == 0 {
             return Ok(part);
         }
         let is_partly_assigned = matches!(part, Value::Record(_)) && left < count(&shadow);
+        let defaults = part.clone();
         if is_partly_assigned && fill_with_nan(&mut part, &shadow) {
             return Ok(part);
         }
-        Err(no_value(name))
+        Err(Box::new((no_value(name), defaults)))
     }
 }
 

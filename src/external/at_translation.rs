@@ -1,8 +1,9 @@
-//! What functions that are evaluated at translation may do outside: read files, and print.
+//! What functions that are evaluated at translation may do outside: read files, print, and draw random
+//! numbers from a state that they set themselves.
 
 use super::c::Request;
 use super::errors::PRINTED;
-use super::{Entry, Outside, Resources};
+use super::{Entry, Outside, Random, Resources};
 use crate::diag::Fault;
 use crate::fault;
 
@@ -15,12 +16,21 @@ pub struct AtTranslation {
     resources: Resources,
     lines: Vec<String>,
     dropped: usize,
+    random: Random,
+    /// How often random numbers were asked for.
+    draws: u64,
 }
 
 impl AtTranslation {
     /// Nothing printed yet.
     pub fn new(resources: Resources) -> AtTranslation {
         AtTranslation { resources, ..AtTranslation::default() }
+    }
+
+    /// How often the state of the random numbers was used: a value that took some is not found again by
+    /// the same expression.
+    pub fn draws(&self) -> u64 {
+        self.draws
     }
 
     /// The lines as notes. The value is a constant of the model, whose simulation does not call the
@@ -50,6 +60,11 @@ impl Outside for AtTranslation {
             false => self.dropped += 1,
         }
         Ok(())
+    }
+
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        self.draws += 1;
+        Ok(&mut self.random)
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {

@@ -18,6 +18,7 @@ use crate::flatten::flat_expression::picked;
 use crate::flatten::ids::{NodeId, ScopeId};
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::ATTRIBUTES;
+use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use std::sync::Arc;
 
@@ -37,7 +38,14 @@ impl Instantiation<'_> {
         for at in found {
             // Nobody looks at the values in the tree, which may be long expressions.
             let known = &mut self.classes.tree.variables[at].0;
-            let binding = known.binding.take();
+            let mut binding = known.binding.take();
+            if let (true, Some(Some((value, _)))) =
+                (self.values.drawn.contains(&at), self.values.known.get(&at))
+            {
+                // The sizes that it decided are those of this draw.
+                let span = binding.as_ref().map_or(Span::NONE, |binding| binding.span);
+                binding = Some(literal(value, span));
+            }
             let attributes = std::mem::take(&mut known.attributes);
             let structural = self.values.structural.contains(&at);
             let variable = Variable { binding, attributes, structural, ..known.clone() };

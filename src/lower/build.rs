@@ -58,7 +58,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     }
     builder.move_to_start(asserted);
     builder.partition_clocks()?;
-    let functions = builder.calls.functions.finish();
+    let (functions, warnings) = builder.calls.functions.finish();
+    builder.dae.warnings.extend(warnings);
     for (function, code) in functions.codes.iter().enumerate() {
         for (input, inverse) in &code.inverses {
             let is_exact =

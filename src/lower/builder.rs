@@ -106,7 +106,7 @@ impl<'a> Builder<'a> {
             dae,
             scalars: Scalars::new(flat.variables.len()),
             place: Place::default(),
-            calls: Calls::new(),
+            calls: Calls::new(flat.strict),
             execution: Execution::default(),
             clocks: Clocks::default(),
             records: FxHashMap::default(),
@@ -128,13 +128,13 @@ impl Scalars {
 }
 
 impl Calls {
-    fn new() -> Calls {
+    fn new(strict: bool) -> Calls {
         Calls {
             depth: 0,
             inlined: 0,
             statements: MAX_STATEMENTS,
             statement_functions: 0,
-            functions: Instances::default(),
+            functions: Instances::new(strict),
             results: CallResults::default(),
             undefined: Containing::new(|pool, e| pool.as_constant(e).is_some_and(f64::is_nan)),
             impure: 0,

@@ -70,12 +70,15 @@ impl Environment for Calling<'_> {
             return f64::NAN;
         }
         let mut machine = self.machine.borrow_mut();
+        machine.restart();
         let given = arguments.iter().copied();
         let results = match inputs.is_empty() {
             true => machine.call(self.functions, function, given),
             false => machine.partial(self.functions, function, inputs, given),
         };
-        results.map_or(f64::NAN, |results| results[output as usize])
+        let result = results.map_or(f64::NAN, |results| results[output as usize]);
+        // The simulation warns of zero where nothing was assigned.
+        if machine.defaults().is_empty() { result } else { f64::NAN }
     }
 }
 

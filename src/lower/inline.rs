@@ -555,6 +555,10 @@ impl Target for Call<'_, '_> {
         self.builder.runs_once()
     }
 
+    fn is_strict(&self) -> bool {
+        self.builder.is_strict()
+    }
+
     fn warn(&mut self, warnings: Vec<Diagnostic>) {
         self.builder.warn(warnings);
     }

@@ -248,6 +248,10 @@ impl Target for Builder<'_> {
         self.place.initial || self.place.at_start
     }
 
+    fn is_strict(&self) -> bool {
+        self.flat.strict
+    }
+
     fn warn(&mut self, warnings: Vec<Diagnostic>) {
         self.dae.warnings.extend(warnings);
     }

@@ -8,7 +8,8 @@ use crate::bytecode::Journal;
 use crate::codegen::Program;
 use crate::codegen::code::LogAssertion;
 use crate::lower::{Assertion, Level, Part};
-use crate::sim::Failure;
+use crate::sim;
+use crate::source::Span;
 use crate::value::Value;
 use crate::value::format::text;
 
@@ -21,6 +22,14 @@ impl System {
     /// What the model would have written in the last simulation, if somebody listened to it.
     pub fn journal(&self) -> &Journal {
         self.registers.calls.journal()
+    }
+
+    /// Functions that used or returned variables before they were assigned in the last simulation,
+    /// for which zero was taken, and where.
+    pub fn defaults(&self) -> Vec<(String, Span)> {
+        let functions = &self.program.sorted().dae.functions;
+        let all = self.registers.calls.defaults().iter();
+        all.map(|failure| functions.default_taken(failure)).collect()
     }
 
     /// What the model has told in the last simulation, and how much more there was.
@@ -38,7 +47,7 @@ impl System {
     }
 
     /// The warnings that begin to hold now.
-    pub(super) fn log_assertions(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn log_assertions(&mut self, t: f64) -> Result<(), sim::Failure> {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.log_assertions.iter().enumerate().try_for_each(|(at, assertion)| {
@@ -57,7 +66,7 @@ impl System {
     }
 
     /// What is told at an event.
-    pub(super) fn log_assertions_at_event(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn log_assertions_at_event(&mut self, t: f64) -> Result<(), sim::Failure> {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.events.log_assertions.iter().try_for_each(|assertion| {
@@ -71,7 +80,10 @@ impl System {
     }
 
     /// The numbers of a text whose condition does not hold.
-    fn message_numbers(&mut self, assertion: &LogAssertion) -> Result<Option<Vec<f64>>, Failure> {
+    fn message_numbers(
+        &mut self,
+        assertion: &LogAssertion,
+    ) -> Result<Option<Vec<f64>>, sim::Failure> {
         run(&assertion.code.tape, &mut self.registers)?;
         let mut values = assertion.code.outputs.iter().map(|at| self.registers[*at as usize]);
         let holds = values.next() != Some(0.0);

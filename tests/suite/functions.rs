@@ -267,9 +267,11 @@ proptest! {
     }
 }
 
-/// What ends a simulation of `der(x) = f(x, n)`.
+/// What ends a simulation of `der(x) = f(x, n)` in strict mode.
 pub(super) fn failure(functions: &str) -> String {
-    let program = compiled(&library(functions)).expect("it compiles");
+    let mut library = library(functions);
+    library.set_strict(true);
+    let program = compiled(&library).expect("it compiles");
     let result = simulate(&mut program.system(), &Settings { stop: 1.0, ..Settings::default() });
     let error = result.expect_err("the simulation fails");
     let diagnostic = program.explain(&error);
@@ -686,4 +688,50 @@ fn partial_applications_bind_any_inputs() {
     assert_eq!(streams.errors(), "");
     let last = session.variable("last").and_then(|last| last.as_reals().map(|v| v.into_owned()));
     assert_eq!(last, Some(vec![8.0, 10.0]));
+}
+
+#[test]
+fn what_a_partial_application_binds_may_have_sizes_of_other_inputs() {
+    let model = "model Sizes
+      partial function Integrand
+        input Real u;
+        output Real y;
+      end Integrand;
+      function weighted
+        extends Integrand;
+        input Real d[n];
+        input Integer n;
+      algorithm
+        y := u*sum(d)/n;
+      end weighted;
+      function trapezoid
+        input Integrand f;
+        input Real a;
+        input Real b;
+        output Real area;
+      algorithm
+        area := (b - a)*(f(a) + f(b))/2;
+      end trapezoid;
+      function total
+        input Real d[:];
+        output Real y;
+      algorithm
+        y := trapezoid(function weighted(d = d, n = size(d, 1)), 0, 2);
+      end total;
+      parameter Integer k = integer(total({1, 2, 3}));
+      Real v[k] = fill(time, k);
+      Real z = total({1, 2, 3 + time});
+    end Sizes;";
+    let file = parse_stored_definition(SourceId::NONE, model).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let flat = flatten(&library, &Name::parse("Sizes"), &[]).expect("a model").model;
+    let program = Program::compile(causalize(&flat).expect("a model")).expect("a model");
+    let mut system = program.system();
+    let [z, v] = ["z", "v[4]"].map(|name| program.find_variable(name).expect(name));
+    system.observe_only(&[z, v]);
+    system.initialize(0.0, &mut []).expect("a start");
+    let mut out = [0.0; 2];
+    system.observe(3.0, &[], &mut out).expect("values");
+    assert_eq!(out, [6.0, 3.0]);
 }

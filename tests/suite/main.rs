@@ -107,6 +107,7 @@ mod terminal;
 mod transcripts;
 mod translations;
 mod transport;
+mod unassigned_variables;
 mod undetermined;
 mod upcalls;
 mod watching;

@@ -320,7 +320,9 @@ fn functions_in_equations_are_carried_out() {
         ("unassigned(time - 1)", "a variable has no value in the function `unassigned`"),
         ("endless(time)", "calls are nested too deeply in the function `endless`"),
     ] {
-        let program = compiled(&model(&format!("Real y = {call};")));
+        let mut flat = flat(&model(&format!("Real y = {call};")));
+        flat.strict = true;
+        let program = Program::compile(causalize(&flat).expect("a model")).expect("a model");
         let error = simulate(&mut program.system(), &Settings::default()).expect_err(call);
         let diagnostic = program.explain(&error);
         assert!(diagnostic.message.contains(words), "{}", diagnostic.message);

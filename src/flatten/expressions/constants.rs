@@ -78,7 +78,11 @@ impl Instantiation<'_> {
         }
         self.values.known.insert(variable, None);
         let outer = std::mem::take(&mut self.values.read);
+        let draws = self.values.outside.draws();
         let found = self.found_value(variable, span);
+        if self.values.outside.draws() > draws {
+            self.values.drawn.insert(variable);
+        }
         let mut read = std::mem::replace(&mut self.values.read, outer);
         read.insert(variable);
         self.values.read.extend(read.iter().copied());
@@ -378,6 +382,14 @@ impl Host for Functions<'_, '_> {
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
         Some(&mut self.0.values.outside)
+    }
+
+    fn takes_default(&mut self, warning: Diagnostic) -> bool {
+        if self.0.classes.library.is_strict() {
+            return false;
+        }
+        self.0.warn_once(warning);
+        true
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -13,6 +13,8 @@ pub type Read = IndexSet<usize>;
 pub struct Values {
     /// Variables whose values shaped the model.
     pub structural: IndexSet<usize>,
+    /// Variables whose values were drawn at random.
+    pub drawn: IndexSet<usize>,
     /// Values found so far with the variables that they need; `None` while one is being found.
     pub known: FxHashMap<usize, Option<(Value, Read)>>,
     /// Variables read by the evaluation that is going on.

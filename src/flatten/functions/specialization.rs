@@ -10,9 +10,9 @@ use crate::flatten::functions::table::FunctionTable;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument,
+    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, Subscript,
 };
-use crate::syntax::visit::{Rewrite, rewrite_expression};
+use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_reference};
 use std::sync::Arc;
 
 /// How deep copies may need copies of other functions.
@@ -217,7 +217,8 @@ impl FunctionTable {
                     .at(span)
                 })?;
                 let name = input_name(passed.input, own.name);
-                Ok(FunctionComponent { name, binding: None, ..own.clone() })
+                let dims = own.dims.iter().map(|size| size_outside(size, function)).collect();
+                Ok(FunctionComponent { name, dims, binding: None, ..own.clone() })
             })
             .collect()
     }
@@ -227,6 +228,25 @@ impl FunctionTable {
 fn input_name(input: Ident, bound: Ident) -> Ident {
     let [input, bound] = [input, bound].map(|name| name.as_str().trim_matches('\''));
     Ident::new(&format!("'{input}.{bound}'"))
+}
+
+/// A size of an input where the other inputs of its function do not stand: that of the argument.
+fn size_outside(size: &Subscript, function: &Function) -> Subscript {
+    struct Inputs<'f>(&'f Function, bool);
+    impl Visit for Inputs<'_> {
+        fn reference(&mut self, reference: &ComponentReference) {
+            walk_reference(self, reference);
+            let first = reference.parts.first().map(|part| part.name);
+            self.1 |= self.0.inputs.iter().any(|input| Some(input.name) == first);
+        }
+    }
+    let Subscript::Index(e) = size else { return size.clone() };
+    let mut inputs = Inputs(function, false);
+    inputs.expression(e);
+    match inputs.1 {
+        true => Subscript::All(e.span),
+        false => size.clone(),
+    }
 }
 
 /// Writes passed functions in the place of the inputs that they are passed for.

@@ -200,6 +200,8 @@ pub(crate) trait Target {
     fn runs_once(&self) -> bool {
         false
     }
+    /// Whether what the specification forbids is an error though libraries do it.
+    fn is_strict(&self) -> bool;
     /// Takes warnings and notes about the model.
     fn warn(&mut self, warnings: Vec<Diagnostic>) {
         let _ = warnings;

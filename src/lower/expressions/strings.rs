@@ -105,9 +105,10 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
         let mut host = Compiling::new(&*self.target);
         let outputs = eval::call_function(function, arguments.into(), span, &mut host);
-        let notes = host.outside.notes();
+        let (notes, warnings) = (host.outside.notes(), host.warnings);
         let outputs = outputs?;
         self.target.warn(notes.into_iter().map(|note| note.at(span).note()).collect());
+        self.target.warn(warnings);
         Ok(outputs.iter().map(|value| self.lowered_value(value)).collect())
     }
 
@@ -333,12 +334,14 @@ struct Compiling<'a, T> {
     target: &'a T,
     resources: Resources,
     outside: AtTranslation,
+    warnings: Vec<Diagnostic>,
 }
 
 impl<'a, T: Target> Compiling<'a, T> {
     fn new(target: &'a T) -> Compiling<'a, T> {
         let resources = target.resources();
-        Compiling { target, outside: AtTranslation::new(resources.clone()), resources }
+        let outside = AtTranslation::new(resources.clone());
+        Compiling { target, outside, resources, warnings: Vec::new() }
     }
 }
 
@@ -371,6 +374,16 @@ impl<T: Target> Host for Compiling<'_, T> {
 
     fn c_companions(&mut self, _: &Function) -> Vec<Arc<Function>> {
         self.target.functions()
+    }
+
+    fn takes_default(&mut self, warning: Diagnostic) -> bool {
+        if self.target.is_strict() {
+            return false;
+        }
+        if !self.warnings.iter().any(|known| known.message == warning.message) {
+            self.warnings.push(warning);
+        }
+        true
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -11,11 +11,15 @@ use std::sync::Arc;
 impl Instances {
     /// The number of a text of the model.
     pub(in crate::lower) fn number_of(&mut self, text: &Arc<str>) -> f64 {
-        self.functions.texts.insert_full(text.clone()).0 as f64
+        // A variable that nothing was assigned to is empty where it is zero.
+        let texts = &mut self.functions.texts;
+        texts.insert("".into());
+        texts.insert_full(text.clone()).0 as f64
     }
 
     /// A function that makes a text of parts: its number and its arguments.
     pub(in crate::lower) fn composer<S: Copy>(&mut self, parts: &[TextPart<S>]) -> (u32, Vec<S>) {
+        self.number_of(&"".into());
         let mut emitter = Emitter::default();
         let mut inputs = Vec::new();
         let arguments = slots(&mut emitter, parts, |emitter, row| {

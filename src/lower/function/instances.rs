@@ -3,7 +3,8 @@
 use super::statements::Body;
 use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
+use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::external::{Effect, Kind, Slot};
 use crate::fault;
@@ -138,6 +139,8 @@ pub(crate) struct Instances {
     depth: usize,
     /// How many statements the interpreter has run.
     pub(in crate::lower) interpreted: Cell<u64>,
+    /// Where calls of numbers took zero for variables that nothing was assigned to.
+    defaults: Vec<Failure>,
     /// How many instructions calls of numbers took.
     folded: u64,
     /// The last call of numbers that took too many.
@@ -154,9 +157,23 @@ pub(crate) struct Instances {
 }
 
 impl Instances {
-    /// The finished functions.
-    pub(crate) fn finish(self) -> Functions {
-        self.functions
+    /// Functions of a model, which is strict or not.
+    pub(crate) fn new(strict: bool) -> Instances {
+        let functions = Functions { takes_defaults: !strict, ..Functions::default() };
+        Instances { functions, ..Instances::default() }
+    }
+
+    /// The finished functions, and warnings of them.
+    pub(crate) fn finish(self) -> (Functions, Vec<Diagnostic>) {
+        let mut warnings: Vec<Diagnostic> = Vec::new();
+        for failure in &self.defaults {
+            let (words, span) = self.functions.default_taken(failure);
+            let warning = Fault::new(NO_VALUE_YET, words).help(ASSIGN_BEFORE).at(span).warning();
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        (self.functions, warnings)
     }
 
     /// A function for arguments of which some scalars are known.
@@ -311,6 +328,9 @@ impl Instances {
     ) -> Result<Instance, Diagnostic> {
         let mut body = Body::new(flat, self, function);
         body.composes = signature.composes;
+        if body.composes {
+            body.instances.number_of(&"".into());
+        }
         let outputs = body.declare(&signature.arguments, statements, span)?;
         let mut instance = Instance {
             code: body.instances.finished.len() as u32,
@@ -379,6 +399,7 @@ impl Instances {
         let is_exhausted = |failure: &Failure| failure.reason == Reason::Budget;
         self.exhausted = results.as_ref().err().copied().filter(is_exhausted).or(self.exhausted);
         let results = results.map(<[f64]>::to_vec);
+        self.defaults.extend(machine.defaults());
         self.folded += machine.spent();
         results.ok().filter(|results| !results.iter().any(|x| x.is_nan()))
     }

@@ -252,6 +252,10 @@ impl Target for Body<'_, '_> {
         self.instances.misses_text = true;
     }
 
+    fn is_strict(&self) -> bool {
+        self.flat.strict
+    }
+
     fn interpreted(&self) -> &Cell<u64> {
         &self.instances.interpreted
     }

@@ -11,6 +11,7 @@ use super::warnings::warn;
 use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
 use crate::flatten::{self, Experiment, FlatModel};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{LogMessage, System, Treated, Undetermined};
@@ -301,6 +302,7 @@ pub fn simulate(
     report_log(session, &system.system);
     report_treatments(session, &system.system);
     report_undetermined(session, &system.system);
+    report_defaults(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
     match run {
         Ok(statistics) => {
@@ -370,6 +372,15 @@ fn report_undetermined(session: &mut Session, system: &System) {
         if session.models.is_new_warning(span, &words) {
             let message = format!("{words} (from t = {time})");
             session.report(Fault::new(UNDETERMINED, message).help(help).at(span).warning());
+        }
+    }
+}
+
+/// The functions that used variables before they were assigned.
+fn report_defaults(session: &mut Session, system: &System) {
+    for (words, span) in system.defaults() {
+        if session.models.is_new_warning(span, &words) {
+            session.report(Fault::new(NO_VALUE_YET, words).help(ASSIGN_BEFORE).at(span).warning());
         }
     }
 }

@@ -1,0 +1,121 @@
+//! Functions that use or return variables before they are assigned: zero with a warning, as other
+//! tools have it, and an error in strict mode.
+
+use gapilib::causalize::causalize;
+use gapilib::codegen::Program;
+use gapilib::diag::Diagnostic;
+use gapilib::flatten::{Library, flatten};
+use gapilib::name::Name;
+use gapilib::sim::{DaeSystem, Settings, simulate};
+use gapilib::source::SourceId;
+use gapilib::syntax::parse_stored_definition;
+use std::sync::Arc;
+
+const FUNCTIONS: &str = "
+  function sum_up
+    input Real x;
+    output Real y;
+  protected
+    Real sum;
+  algorithm
+    for i in 1:3 loop
+      sum := sum + i * x;
+    end for;
+    y := sum;
+  end sum_up;
+  function branch
+    input Real x;
+    output Real y;
+  algorithm
+    if x > 0.5 then
+      y := x;
+    end if;
+  end branch;
+  function nested
+    input Real x;
+    output Real y;
+  protected
+    Real v[3];
+  algorithm
+    v[2] := x;
+    y := 2 * branch(x) + sum(v);
+  end nested;
+  function all_assigned
+    input Real x;
+    output Real y;
+  protected
+    Real v[2];
+  algorithm
+    for i in 1:2 loop
+      v[i] := i * x;
+    end for;
+    y := v[1] + v[2];
+  end all_assigned;";
+
+/// A program of a class, and the warnings of its translation.
+fn translated(rest: &str, strict: bool) -> Result<(Arc<Program>, Vec<String>), Vec<Diagnostic>> {
+    let text = format!("model M {FUNCTIONS}\n{rest}\nend M;");
+    let file = parse_stored_definition(SourceId::NONE, &text).expect("Modelica");
+    let mut library = Library::new();
+    library.set_strict(strict);
+    library.load(&file).expect("a loadable file");
+    let flattened = flatten(&library, &Name::parse("M"), &[])?;
+    let mut warnings: Vec<String> = flattened.warnings.iter().map(|w| w.message.clone()).collect();
+    let sorted = causalize(&flattened.model).map_err(|error| vec![error])?;
+    warnings.extend(sorted.dae.warnings.iter().map(|warning| warning.message.clone()));
+    Ok((Program::compile(sorted).map_err(|error| vec![error])?, warnings))
+}
+
+/// The last value of `y`, and the warnings of the simulation.
+fn simulated(program: &Arc<Program>) -> Result<(f64, Vec<String>), String> {
+    let mut system = program.system();
+    let settings = Settings { stop: 0.25, ..Settings::default() };
+    simulate(&mut system, &settings).map_err(|error| program.explain(&error).message.clone())?;
+    let at = program.find_variable("y").expect("there is y");
+    let mut out = [0.0];
+    system.observe_only(&[at]);
+    system.observe(0.25, &[], &mut out).expect("a value");
+    Ok((out[0], system.defaults().into_iter().map(|(words, _)| words).collect()))
+}
+
+const ZERO: &str = "uses or returns a variable before it is assigned: zero is taken";
+
+#[test]
+fn zero_is_taken_in_simulations_with_one_warning_for_each_function() {
+    for (call, value, function) in [
+        ("sum_up(time)", 1.5, "M.sum_up"),
+        ("branch(time)", 0.0, "M.branch"),
+        ("nested(time)", 0.25, "M.nested"),
+    ] {
+        let (program, _) = translated(&format!("Real y = {call};"), false).expect("a model");
+        let (found, warnings) = simulated(&program).expect("a simulation");
+        assert_eq!(found, value, "{call}");
+        // The innermost function that could not go on is named.
+        let [warning] = warnings.as_slice() else { panic!("{call}: {warnings:?}") };
+        assert!(warning.ends_with(ZERO) && warning.starts_with('`'), "{function}: {warning}");
+        let (program, _) = translated(&format!("Real y = {call};"), true).expect("a model");
+        let error = simulated(&program).expect_err("strict");
+        assert!(error.contains("a variable has no value in the function"), "{call}: {error}");
+    }
+}
+
+#[test]
+fn functions_that_assign_all_they_use_have_no_warning() {
+    let (program, warnings) =
+        translated("Real y = all_assigned(time) + branch(1 + time);", false).expect("a model");
+    assert_eq!(warnings, Vec::<String>::new());
+    assert_eq!(simulated(&program), Ok((2.0, Vec::new())));
+}
+
+#[test]
+fn zero_is_taken_at_translation_with_a_warning() {
+    let rest = "parameter Integer n = integer(sum_up(1)); Real v[n] = fill(time, n); \
+                Real y = v[6];";
+    let (program, warnings) = translated(rest, false).expect("a model");
+    let about =
+        |w: &&String| w.contains("`sum` is used before it has a value in the function `M.sum_up`");
+    assert_eq!(warnings.iter().filter(about).count(), 1, "{warnings:?}");
+    assert_eq!(simulated(&program).expect("a simulation").0, 0.25);
+    let errors = translated(rest, true).expect_err("strict");
+    assert_eq!(errors[0].code.slug, "no-value-yet");
+}
