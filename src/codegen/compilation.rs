@@ -495,7 +495,11 @@ fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
-            Kind::Parameter { .. } if matches!(v.base, BaseType::ExternalObject(_)) => continue,
+            Kind::Parameter { .. } | Kind::Discrete
+                if matches!(v.base, BaseType::ExternalObject(_)) =>
+            {
+                continue;
+            }
             Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
             Kind::Frozen
             | Kind::Text

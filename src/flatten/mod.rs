@@ -29,6 +29,7 @@ mod ids;
 mod instantiate;
 mod library;
 mod lookup;
+mod object_equations;
 mod print;
 mod record_values;
 mod shapes;
@@ -172,6 +173,7 @@ fn flattened(
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
+    object_equations::resolve(&mut model)?;
     let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
     let unit_warnings = instantiation.classes.unit_warnings(&model);
     let mut warnings = instantiation.warnings;

@@ -149,8 +149,8 @@ impl<'a> Builder<'a> {
             let first = self.scalars.first[position].0 as usize;
             let holder = variable.name.rsplit_once('.').map_or("", |(holder, _)| holder);
             let instance = instances.get(holder).copied();
-            let is_parameter = variable.variability <= Variability::Parameter
-                || matches!(variable.base, BaseType::ExternalObject(_));
+            let is_parameter =
+                variable.variability <= Variability::Parameter || is_bound_object(variable);
             if let Some(values) = self.known_values(position) {
                 // Known from the pass before: a function that prints is not called again.
                 for (at, value) in values.into_iter().enumerate() {
@@ -676,7 +676,8 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
     let kind = match (&variable.base, variable.variability) {
         (BaseType::String, _) => Kind::Text,
         (BaseType::Clock, _) => Kind::Clock,
-        // Its constructor runs once, before the simulation.
+        // Its constructor runs once, before the simulation, or when it starts.
+        (BaseType::ExternalObject(_), _) if variable.binding.is_none() => Kind::Discrete,
         (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
         (_, Variability::Constant | Variability::Parameter) => {
             Kind::Parameter { tunable: variable.is_tunable() }
@@ -761,4 +762,9 @@ pub(crate) fn derivative_of(source: &Variable, of: VarId) -> Variable {
         variable.unit = format!("{}/s", source.unit).into();
     }
     variable
+}
+
+/// An external object that is made before the simulation.
+fn is_bound_object(variable: &crate::flatten::Variable) -> bool {
+    matches!(variable.base, BaseType::ExternalObject(_)) && variable.binding.is_some()
 }

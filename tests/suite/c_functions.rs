@@ -384,3 +384,119 @@ fn functions_that_change_an_object_have_values() {
     let (code, out, errors) = gapi(&here, &arguments);
     assert_eq!(code, 0, "{out}{errors}");
 }
+
+/// Counters that `out.c = Counter(start)` makes and that connections pass on: 13 and 15 after three events
+/// of two counts each from 3, one after the other. `late` counts from a value that is known when the
+/// simulation starts.
+const COUNTERS: &str = "package E
+  class Counter
+    extends ExternalObject;
+    function constructor
+      input Real start;
+      output Counter c;
+      external \"C\" c = make_counter(start) {code};
+    end constructor;
+    function destructor
+      input Counter c;
+      external \"C\" free_counter(c) {code};
+    end destructor;
+  end Counter;
+  impure function count
+    input Counter c;
+    input Real by;
+    input Real before;
+    output Real y;
+    external \"C\" y = count(c, by) {code};
+  end count;
+  connector Out
+    output Counter c;
+    output Real before;
+  end Out;
+  connector In
+    input Counter c;
+    input Real before;
+  end In;
+  block Source
+    parameter Real start = 3;
+    Out out;
+  equation
+    out.c = Counter(start);
+    out.before = 0;
+  end Source;
+  block Through
+    parameter Integer n = 0;
+    In inp;
+    Out out[n];
+    discrete Real y(start = 0, fixed = true);
+  equation
+    if n == 1 then
+      out.c = fill(inp.c, n);
+      out.before = fill(y, n);
+    end if;
+    when sample(1, 1) then
+      y = count(inp.c, 2, inp.before);
+    end when;
+  end Through;
+  model Connected
+    Source s;
+    Through a(n = 1);
+    Through b;
+  equation
+    connect(s.out, a.inp);
+    connect(a.out[1], b.inp);
+  end Connected;
+  model Late
+    Integer size;
+    Counter c = Counter(size);
+    discrete Real y(start = 0, fixed = true);
+  equation
+    when initial() then
+      size = 5;
+    end when;
+    when sample(1, 1) then
+      y = count(c, 2, 0);
+    end when;
+  end Late;
+  model Twice
+    Source s;
+    Source t;
+  equation
+    s.out.c = t.out.c;
+  end Twice;
+end E;
+";
+
+#[test]
+fn objects_are_passed_through_connections_and_made_when_the_simulation_starts() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let code = "static void *make_counter(double s) { double *p = malloc(sizeof(double)); *p = s; \
+                return p; } \
+                static void free_counter(void *p) { free(p); } \
+                static double count(void *p, double by) { return *(double *)p += by; }";
+    let code = format!("annotation(Include = \"#include <stdlib.h>\n{code}\")");
+    let here = folder(&[("E.mo", &COUNTERS.replace("{code}", &code))]);
+    let last = |model: &str| {
+        let options = ["--allow-external", "--stop-time", "3", "--output", "r.csv", "E.mo"];
+        let arguments = [&["simulate", "--model", model][..], &options].concat();
+        let (code, out, errors) = gapi(&here, &arguments);
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(!errors.contains("not locally balanced"), "{errors}");
+        let text = std::fs::read_to_string(here.path().join("r.csv")).expect("results");
+        let rows: Vec<&str> = text.lines().collect();
+        let cells = |row: &str| -> Vec<String> {
+            row.split(',').map(|cell| cell.trim_matches('\"').to_owned()).collect()
+        };
+        cells(rows[0]).into_iter().zip(cells(rows[rows.len() - 1])).collect::<Vec<_>>()
+    };
+    let of = |values: &[(String, String)], name: &str| -> f64 {
+        values.iter().find(|(own, _)| own == name).expect(name).1.parse().expect("a number")
+    };
+    let connected = last("E.Connected");
+    assert_eq!([of(&connected, "a.y"), of(&connected, "b.y")], [13.0, 15.0]);
+    assert_eq!(of(&last("E.Late"), "y"), 11.0);
+    let twice = ["check", "E.mo", "--model", "E.Twice", "--allow-external"];
+    let (code, _, errors) = gapi(&here, &twice);
+    assert!(code == 1 && errors.contains("would stand for two external objects"), "{errors}");
+}

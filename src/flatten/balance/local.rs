@@ -129,7 +129,7 @@ impl Instantiation<'_> {
                 None => count.unclear = true,
             }
         }
-        let errors = self.classes.count_connections(connections, &mut counts, &owners);
+        let errors = self.classes.count_connections(connections, model, &mut counts, &owners);
         if !errors.is_empty() {
             return Err(errors);
         }
@@ -278,9 +278,9 @@ impl Classes<'_> {
         let Some(variable) = model.variables.get(self.tree.nodes[node.0].path.as_str()) else {
             return;
         };
-        if variable.variability < Variability::Discrete
-            || matches!(variable.base, BaseType::ExternalObject(_))
-        {
+        let has_value = variable.binding.is_some() || leaf.modifier.binding.is_some();
+        let is_bound_object = matches!(variable.base, BaseType::ExternalObject(_)) && has_value;
+        if variable.variability < Variability::Discrete || is_bound_object {
             return;
         }
         let n = variable.len();
@@ -326,6 +326,7 @@ impl Classes<'_> {
     fn count_connections(
         &self,
         connections: &Connections,
+        model: &FlatModel,
         counts: &mut IndexMap<NodeId, Counts>,
         owners: &FxHashMap<NodeId, NodeId>,
     ) -> Vec<Diagnostic> {
@@ -355,6 +356,9 @@ impl Classes<'_> {
             let Some(count) = counts.get_mut(&context) else { continue };
             for set in sets {
                 errors.extend(self.two_sources(&set, context, &edges, owners));
+                if set.iter().any(|side| self.is_bound_object(side.leaf, model)) {
+                    continue;
+                }
                 let outside = set.iter().filter(|side| side.outside).count();
                 match self.tree.connection_of(set[0].leaf) {
                     None => count.equations += self.tree.potential_equations(&set),
@@ -367,6 +371,14 @@ impl Classes<'_> {
             }
         }
         errors
+    }
+
+    /// Objects with a value are no unknowns: see `object_equations`.
+    fn is_bound_object(&self, node: NodeId, model: &FlatModel) -> bool {
+        let variable = model.variables.get(self.tree.nodes[node.0].path.as_str());
+        variable.is_some_and(|variable| {
+            matches!(variable.base, BaseType::ExternalObject(_)) && variable.binding.is_some()
+        })
     }
 
     /// A connection set of a class has one source of a signal at most: an output of a component, or
