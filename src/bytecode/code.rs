@@ -3,7 +3,7 @@
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use super::run_time_texts::Texts;
-use crate::external::{Contents, Entry, Kind, Objects, Slot};
+use crate::external::{Contents, Effect, Entry, Kind, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
@@ -173,6 +173,30 @@ pub struct Functions {
 }
 
 impl Functions {
+    /// Whether all that a function does besides giving results, itself or by what it calls, is to draw
+    /// random numbers.
+    pub fn draws_alone(&self, function: u32) -> bool {
+        let mut seen = vec![false; self.codes.len()];
+        let mut stack = vec![function as usize];
+        while let Some(at) = stack.pop() {
+            if std::mem::replace(&mut seen[at], true) {
+                continue;
+            }
+            let code = &self.codes[at];
+            let is_drawn = |call: &ExternalCall| {
+                call.entry.c.is_none() && matches!(call.entry.effect, Effect::None | Effect::State)
+            };
+            if !code.externals.iter().all(is_drawn) {
+                return false;
+            }
+            stack.extend(code.instructions.iter().filter_map(|instruction| match instruction {
+                Instruction::Call { function, .. } => Some(*function as usize),
+                _ => None,
+            }));
+        }
+        true
+    }
+
     /// Number of scalars that a call of a function returns.
     pub fn n_outputs(&self, function: u32) -> usize {
         self.codes[function as usize].n_outputs as usize
@@ -196,12 +220,18 @@ impl Functions {
         }
     }
 
-    /// That a function used or returned a variable before it was assigned and zero was taken, in
-    /// words, with its place.
-    pub fn default_taken(&self, failure: &Failure) -> (String, Span) {
-        let name = self.codes.get(failure.function as usize).map_or("", |code| &code.name);
-        let words =
-            format!("`{name}` uses or returns a variable before it is assigned: zero is taken");
+    /// That a function which was called used or returned a variable before it was assigned and zero was
+    /// taken, in words, with the place where it was noticed.
+    pub fn default_taken(&self, (called, failure): &(u32, Failure)) -> (String, Span) {
+        let name = |function: u32| self.codes.get(function as usize).map_or("", |code| &code.name);
+        let noticed = match failure.function == *called {
+            true => String::new(),
+            false => format!(", noticed in `{}`", name(failure.function)),
+        };
+        let words = format!(
+            "`{}` uses or returns a variable before it is assigned{noticed}: zero is taken",
+            name(*called)
+        );
         (words, self.explain(failure).1)
     }
 

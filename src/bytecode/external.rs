@@ -85,6 +85,11 @@ impl Externals {
         self.journal.clear();
     }
 
+    /// The hidden state.
+    pub(super) fn random(&mut self) -> &mut Random {
+        &mut self.random
+    }
+
     /// Keeps what a function said that failed.
     fn failed(&mut self, call: &ExternalCall, fault: Fault) -> Reason {
         if call.entry.c.is_some() {

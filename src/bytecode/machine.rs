@@ -32,8 +32,9 @@ pub struct Machine {
     recalled: u64,
     /// Whether variables that nothing was assigned to are zero.
     has_defaults: bool,
-    /// Where variables were used that nothing was assigned to, once for each function.
-    defaults: Vec<Failure>,
+    /// Functions that were called, and where variables were used that nothing was assigned to, once for
+    /// each function.
+    defaults: Vec<(u32, Failure)>,
 }
 
 /// Where to go on when a function ends.
@@ -75,8 +76,8 @@ impl Machine {
         &self.externals.message
     }
 
-    /// Where zero was taken for variables that nothing was assigned to.
-    pub fn defaults(&self) -> &[Failure] {
+    /// Functions that were called, and where zero was taken for variables that nothing was assigned to.
+    pub fn defaults(&self) -> &[(u32, Failure)] {
         &self.defaults
     }
 
@@ -165,22 +166,27 @@ impl Machine {
         function: u32,
     ) -> Result<(), Failure> {
         let (depth, budget) = (self.callers.len(), self.budget);
-        let result = self.run_once::<T>(functions, function);
         let code = &functions.codes[function as usize];
+        let random = (code.impure && !self.has_defaults).then(|| self.externals.random().clone());
+        let result = self.run_once::<T>(functions, function);
         let failure = match result {
             Err(failure) if failure.reason == Reason::Unassigned => failure,
             other => return other,
         };
-        if !functions.takes_defaults || self.has_defaults || code.impure || code.writes {
+        let may_repeat = !code.impure || functions.draws_alone(function);
+        if !functions.takes_defaults || self.has_defaults || code.writes || !may_repeat {
             return Err(failure);
+        }
+        if let Some(random) = random {
+            *self.externals.random() = random;
         }
         self.callers.truncate(depth);
         self.budget = budget;
         self.has_defaults = true;
         let result = self.run_once::<T>(functions, function);
         self.has_defaults = false;
-        if result.is_ok() && !self.defaults.iter().any(|known| known.function == failure.function) {
-            self.defaults.push(failure);
+        if result.is_ok() && !self.defaults.iter().any(|(known, _)| *known == function) {
+            self.defaults.push((function, failure));
         }
         result
     }
@@ -512,7 +518,8 @@ fn execute<T: Number>(
             Instruction::Sub { d, a, b } => r[d as usize] = r[a as usize].sub(r[b as usize]),
             Instruction::Mul { d, a, b } => r[d as usize] = r[a as usize].mul(r[b as usize]),
             Instruction::Div { d, a, b } => {
-                r[d as usize] = finite(r[a as usize].div(r[b as usize]))?;
+                let (x, y) = (r[a as usize], r[b as usize]);
+                r[d as usize] = finite(x.div(y)).or_else(|e| given(r, a, b).and(Err(e)))?;
             }
             Instruction::Pow { d, a, b } => {
                 given(r, a, b)?;
@@ -524,7 +531,8 @@ fn execute<T: Number>(
                 r[d as usize] = truth(operator.holds(a, b));
             }
             Instruction::Unary { function, d, a } => {
-                r[d as usize] = finite(r[a as usize].unary(function))?;
+                let result = finite(r[a as usize].unary(function));
+                r[d as usize] = result.or_else(|e| given(r, a, a).and(Err(e)))?;
             }
             Instruction::Binary { function, d, a, b } => {
                 given(r, a, b)?;

@@ -99,7 +99,7 @@ impl Calls {
     }
 
     /// Where zero was taken for variables that nothing was assigned to.
-    pub(crate) fn defaults(&self) -> &[Failure] {
+    pub(crate) fn defaults(&self) -> &[(u32, Failure)] {
         self.machine.defaults()
     }
 

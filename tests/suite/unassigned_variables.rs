@@ -40,6 +40,38 @@ const FUNCTIONS: &str = "
     v[2] := x;
     y := 2 * branch(x) + sum(v);
   end nested;
+  function root
+    input Real x;
+    output Real y;
+  protected
+    Real v[2];
+  algorithm
+    v[1] := x;
+    y := 2 * sqrt(v * v);
+  end root;
+  function seed
+    input Integer state[33];
+    input Integer n;
+    input Integer id;
+    external \"C\" ModelicaRandom_setInternalState_xorshift1024star(state, n, id);
+  end seed;
+  function next
+    input Integer id;
+    output Real y;
+    external \"C\" y = ModelicaRandom_impureRandom_xorshift1024star(id);
+  end next;
+  impure function draw
+    input Real x;
+    output Real y;
+  protected
+    Real sum;
+    Real both[2];
+  algorithm
+    seed({i * i for i in 1:33}, 33, 4321);
+    both := {next(4321), next(4321)};
+    seed({i * i for i in 1:33}, 33, 4321);
+    y := x + sum + both[1] - next(4321);
+  end draw;
   function all_assigned
     input Real x;
     output Real y;
@@ -78,7 +110,7 @@ fn simulated(program: &Arc<Program>) -> Result<(f64, Vec<String>), String> {
     Ok((out[0], system.defaults().into_iter().map(|(words, _)| words).collect()))
 }
 
-const ZERO: &str = "uses or returns a variable before it is assigned: zero is taken";
+const BEFORE: &str = "uses or returns a variable before it is assigned";
 
 #[test]
 fn zero_is_taken_in_simulations_with_one_warning_for_each_function() {
@@ -86,17 +118,28 @@ fn zero_is_taken_in_simulations_with_one_warning_for_each_function() {
         ("sum_up(time)", 1.5, "M.sum_up"),
         ("branch(time)", 0.0, "M.branch"),
         ("nested(time)", 0.25, "M.nested"),
+        ("root(time)", 0.5, "M.root"),
     ] {
         let (program, _) = translated(&format!("Real y = {call};"), false).expect("a model");
         let (found, warnings) = simulated(&program).expect("a simulation");
         assert_eq!(found, value, "{call}");
-        // The innermost function that could not go on is named.
         let [warning] = warnings.as_slice() else { panic!("{call}: {warnings:?}") };
-        assert!(warning.ends_with(ZERO) && warning.starts_with('`'), "{function}: {warning}");
+        assert!(warning.starts_with(&format!("`{function}` {BEFORE}")), "{warning}");
+        let inner = warning.contains(", noticed in `M.branch`: zero is taken");
+        assert_eq!(inner, call == "nested(time)", "{warning}");
         let (program, _) = translated(&format!("Real y = {call};"), true).expect("a model");
         let error = simulated(&program).expect_err("strict");
         assert!(error.contains("a variable has no value in the function"), "{call}: {error}");
     }
+}
+
+#[test]
+fn functions_that_draw_random_numbers_draw_them_again() {
+    let rest = "discrete Real y(start = 0, fixed = true); equation when time > 0.125 then \
+                y = draw(7); end when;";
+    let (program, _) = translated(rest, false).expect("a model");
+    let (found, warnings) = simulated(&program).expect("a simulation");
+    assert_eq!((found, warnings.len()), (7.0, 1));
 }
 
 #[test]

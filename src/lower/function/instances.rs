@@ -140,7 +140,7 @@ pub(crate) struct Instances {
     /// How many statements the interpreter has run.
     pub(in crate::lower) interpreted: Cell<u64>,
     /// Where calls of numbers took zero for variables that nothing was assigned to.
-    defaults: Vec<Failure>,
+    defaults: Vec<(u32, Failure)>,
     /// How many instructions calls of numbers took.
     folded: u64,
     /// The last call of numbers that took too many.
