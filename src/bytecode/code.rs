@@ -91,7 +91,7 @@ pub struct Code {
     pub frame: u32,
     /// Registers with their numbers.
     pub constants: Vec<(Register, f64)>,
-    /// Whether numbers of texts are among its outputs.
+    /// Whether numbers of Strings are among its outputs.
     pub gives_texts: bool,
     /// Texts of assertions.
     pub messages: Vec<Arc<str>>,
@@ -161,7 +161,7 @@ pub struct Derivative {
 pub struct Functions {
     /// The functions.
     pub codes: Vec<Code>,
-    /// The texts of the model that stand for numbers, in this order.
+    /// The Strings of the model that stand for numbers, in this order.
     pub texts: Texts,
     /// Whether zero is taken for variables that are used before they are assigned.
     pub takes_defaults: bool,

@@ -32,7 +32,7 @@ pub struct Externals {
     pub(super) journal: Journal,
     /// What the last one that failed said.
     pub(super) message: String,
-    /// Texts by number.
+    /// Strings by number.
     pub(super) texts: RunTimeTexts,
     scratch: Vec<f64>,
 }
@@ -77,7 +77,7 @@ impl Outside for Granted<'_> {
 }
 
 impl Externals {
-    /// Forgets the objects, the texts and the hidden state.
+    /// Forgets the objects, the Strings and the hidden state.
     pub(super) fn restart(&mut self) {
         self.objects.clear();
         self.texts.clear();
@@ -115,7 +115,7 @@ impl RunExternal for f64 {
     }
 }
 
-/// Runs a function of which some texts stand for numbers: it finds them behind those of the code, and
+/// Runs a function of which some Strings stand for numbers: it finds them behind those of the code, and
 /// what it writes gets numbers.
 fn run_with_texts(
     functions: &Functions,
@@ -155,7 +155,7 @@ fn run_with_texts(
     Ok(())
 }
 
-/// Runs a function on the texts at `strings`.
+/// Runs a function on the Strings at `strings`.
 fn run(
     functions: &Functions,
     call: &ExternalCall,
@@ -253,7 +253,7 @@ impl RunExternal for Dual<Dual<f64>> {
 }
 
 impl ExternalCall {
-    /// Whether the numbers of texts are among its arguments or its result.
+    /// Whether the numbers of Strings are among its arguments or its result.
     fn takes_numbers_of_texts(&self) -> bool {
         self.arguments.iter().chain(&self.result).any(|slot| slot.kind == Kind::Numbered)
     }

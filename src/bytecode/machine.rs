@@ -93,13 +93,9 @@ impl Machine {
         function: u32,
         arguments: impl Iterator<Item = f64>,
     ) -> Result<&[f64], Failure> {
-        let texts = self.externals.texts.len();
         self.prepare::<f64>(functions, function, arguments);
         self.run::<f64>(functions, function)?;
         let code = &functions.codes[function as usize];
-        if !code.gives_texts {
-            self.externals.texts.truncate(texts);
-        }
         Ok(&self.stacks.values[code.outputs as usize..][..code.n_outputs as usize])
     }
 
@@ -161,6 +157,20 @@ impl Machine {
     /// Runs a function whose frame stands at the bottom of the stack; once more with zeros if it uses
     /// variables before they are assigned.
     fn run<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+    ) -> Result<(), Failure> {
+        let made = self.externals.texts.len();
+        let result = self.run_with_defaults::<T>(functions, function);
+        if !functions.codes[function as usize].gives_texts {
+            // Nobody else has the numbers of the Strings that it made.
+            self.externals.texts.truncate(made);
+        }
+        result
+    }
+
+    fn run_with_defaults<T: Differentiate>(
         &mut self,
         functions: &Functions,
         function: u32,

@@ -1,7 +1,7 @@
-//! Texts that are made while functions run, and the numbers that stand for them in registers.
+//! Strings that are made while functions run, and the numbers that stand for them in registers.
 //!
-//! The texts of the program come first, then those of the simulation, which last until it starts
-//! again. Two texts are the same if their numbers are; the numbers mean nothing else.
+//! The Strings of the program come first, then those of the simulation, which last until it starts
+//! again. Two Strings are the same if their numbers are; the numbers mean nothing else.
 
 use crate::diag::Fault;
 use crate::external::errors::EXTERNAL_FAILED;
@@ -9,15 +9,15 @@ use crate::fault;
 use indexmap::IndexSet;
 use std::sync::Arc;
 
-/// Bytes that the texts of a simulation take at most.
+/// Bytes that the Strings of a simulation take at most.
 const MOST_BYTES: usize = 1 << 28;
 /// Bytes that a text takes besides its own.
 const OVERHEAD: usize = 64;
 
-/// The texts of a program, by number.
+/// The Strings of a program, by number.
 pub type Texts = IndexSet<Arc<str>>;
 
-/// The texts of a simulation.
+/// The Strings of a simulation.
 #[derive(Clone, Default)]
 pub struct RunTimeTexts {
     made: Texts,
@@ -55,7 +55,7 @@ impl RunTimeTexts {
     /// The number of a text.
     ///
     /// # Errors
-    /// The texts of the simulation take too much memory.
+    /// The Strings of the simulation take too much memory.
     pub fn number(&mut self, of_program: &Texts, text: Arc<str>) -> Result<f64, Fault> {
         if let Some(at) = of_program.get_index_of(&text) {
             return Ok(at as f64);

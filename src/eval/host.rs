@@ -86,7 +86,7 @@ pub trait Host {
         let _ = warning;
     }
 
-    /// Told when a function uses or returns a variable before it is assigned: whether the default of
+    /// Called when a function uses or returns a variable before it is assigned: whether the default of
     /// its type is taken (MLS §4.9).
     fn takes_default(&mut self, warning: Diagnostic) -> bool {
         let _ = warning;

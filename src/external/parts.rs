@@ -1,4 +1,4 @@
-//! Texts in parts, some of which are known when a function runs: what `String` and `+` make of them.
+//! Strings in parts, some of which are known when a function runs: what `String` and `+` make of them.
 //!
 //! A part is a text, or a number as `String` writes it (MLS §3.7.1): a row of its value, whether it
 //! is a Real (0), an Integer (1) or a Boolean (2), and significant digits, minimum length, left

@@ -54,7 +54,7 @@ fn values(program: &Program, system: &System, rows: &Trajectory, name: &str) -> 
 #[test]
 fn strings_are_made_in_equations_algorithms_and_functions() {
     let program = everything();
-    // The second run begins without the texts of the first.
+    // The second run begins without the Strings of the first.
     let mut system = program.system();
     let rows = rows(&mut system, 2);
     let expected: [(&str, [f64; 5]); 10] = [

@@ -65,7 +65,7 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// The outputs of a call for variables, of which texts are made at run time.
+    /// The outputs of a call for variables, of which Strings are made at run time.
     pub(crate) fn outputs_for<V>(
         &mut self,
         targets: &[Option<V>],

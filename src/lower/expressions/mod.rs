@@ -115,7 +115,7 @@ pub(crate) trait Target {
         let _ = text;
         None
     }
-    /// Whether texts can be made when what is translated runs.
+    /// Whether Strings can be made when what is translated runs.
     fn composes(&self) -> bool {
         false
     }
@@ -128,7 +128,7 @@ pub(crate) trait Target {
         let _ = parts;
         Err(varying_strings::computed(span))
     }
-    /// Whether the outputs of the next call are needed where they are texts made at run time.
+    /// Whether the outputs of the next call are needed where they are Strings made at run time.
     fn wants_texts(&mut self, wanted: bool) {
         let _ = wanted;
     }
@@ -441,7 +441,7 @@ pub(crate) struct Lowering<'a, T: Target> {
     pub(crate) loops: Vec<(Ident, T::Scalar)>,
     /// Whether relations are evaluated as they are (inside `noEvent`).
     pub(crate) live: bool,
-    /// Whether texts that are not known are made when what is translated runs.
+    /// Whether Strings that are not known are made when what is translated runs.
     pub(crate) composes: bool,
     /// Size of the dimension that `end` stands for, innermost last.
     ends: Vec<usize>,

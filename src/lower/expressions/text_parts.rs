@@ -1,4 +1,4 @@
-//! Texts that are made when what is translated runs: of texts, and of numbers as `String` writes them
+//! Strings that are made when what is translated runs: of Strings, and of numbers as `String` writes them
 //! (MLS §3.7.1).
 
 use super::varying_strings::computed;
@@ -42,7 +42,7 @@ impl<T: Target> Lowering<'_, T> {
         self.target.compose(&[part], span).map(Lowered::Numbered)
     }
 
-    /// `a + b` of texts, one of which is not known yet.
+    /// `a + b` of Strings, one of which is not known yet.
     pub(super) fn composed_sum(
         &mut self,
         sides: [Lowered<T::Scalar>; 2],

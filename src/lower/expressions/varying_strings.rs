@@ -46,7 +46,7 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// What is made of texts that are made at run time, where they can be.
+    /// What is made of Strings that are made at run time, where they can be.
     pub(super) fn composing<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> R {
         let composes = self.target.composes();
         if !composes {

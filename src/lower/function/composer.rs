@@ -1,4 +1,4 @@
-//! Texts in parts, made by functions of their own or in functions being compiled.
+//! Strings in parts, made by functions of their own or in functions being compiled.
 
 use super::emitter::{Emitter, Operand};
 use super::instances::Instances;

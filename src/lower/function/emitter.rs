@@ -93,7 +93,7 @@ impl Emitter {
         self.texts.len() as u32 - 1
     }
 
-    /// All texts so far.
+    /// All Strings so far.
     pub(super) fn texts(&self) -> &[Arc<str>] {
         &self.texts
     }

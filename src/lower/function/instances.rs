@@ -41,12 +41,12 @@ struct Signature {
     arguments: Vec<Argument>,
     /// Whether computed Integers may decide sizes in statements.
     at_run_time: bool,
-    /// Whether texts are made when the function runs.
+    /// Whether Strings are made when the function runs.
     composes: bool,
 }
 
 impl Signature {
-    /// Whether texts are passed by their numbers.
+    /// Whether Strings are passed by their numbers.
     fn takes_numbers_of_texts(&self) -> bool {
         self.arguments.iter().any(Argument::holds_number_of_text)
     }
@@ -134,7 +134,7 @@ pub(crate) struct Instances {
     known: IndexMap<Signature, Instance>,
     /// Why, and whether a text was missing.
     failed: IndexMap<Signature, (Diagnostic, bool)>,
-    /// Functions that make texts, by what they are made of.
+    /// Functions that make Strings, by what they are made of.
     pub(super) composers: IndexMap<(Vec<Slot>, Vec<Arc<str>>), u32>,
     depth: usize,
     /// How many statements the interpreter has run.
@@ -152,7 +152,7 @@ pub(crate) struct Instances {
     pub(super) sizes_at_run_time: bool,
     /// Whether a text was needed that is made at run time.
     pub(super) misses_text: bool,
-    /// Whether the outputs of the next call are needed, though they be texts made at run time.
+    /// Whether the outputs of the next call are needed, though they be Strings made at run time.
     pub(in crate::lower) wants_texts: bool,
 }
 
@@ -208,7 +208,7 @@ impl Instances {
         Ok(found)
     }
 
-    /// A function whose texts are known; one that makes them when it runs where they are not.
+    /// A function whose Strings are known; one that makes them when it runs where they are not.
     fn with_texts(
         &mut self,
         flat: &FlatModel,

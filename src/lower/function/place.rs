@@ -82,7 +82,7 @@ impl Body<'_, '_> {
         let is_assigned = assigned.contains(&component.name);
         let is_external = matches!(self.function.body, FunctionBody::External(_));
         let lowering = &mut self.lowering(&Vec::new());
-        // Texts that change have numbers.
+        // Strings that change have numbers.
         lowering.composes &= is_assigned || is_external;
         let Declared { mut shape, mut scalars } =
             declared(lowering, component, &mut assigned_shape)?;
@@ -176,7 +176,7 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// A value with the numbers of its texts where a place has numbers.
+    /// A value with the numbers of its Strings where a place has numbers.
     fn with_numbers_like(
         &mut self,
         value: Lowered<Operand>,

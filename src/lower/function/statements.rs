@@ -41,7 +41,7 @@ pub(super) struct Body<'a, 'f> {
     pub(super) bound_integers: usize,
     /// Whether loop variables may decide sizes in loops that cannot be unrolled.
     pub(super) loop_sizes: bool,
-    /// Whether texts that are not known are made when it runs.
+    /// Whether Strings that are not known are made when it runs.
     pub(super) composes: bool,
 }
 
