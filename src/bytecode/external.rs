@@ -210,7 +210,7 @@ impl RunExternal for Dual<f64> {
             scratch.clear();
             scratch.extend(r[..n].iter().map(|x| x.v + if step == 0.0 { 0.0 } else { step * x.d }));
             f64::run_external(functions, code, call, &mut scratch, externals)
-                .map(|()| call.registers().map(|register| scratch[register]).collect::<Vec<_>>())
+                .map(|()| call.written().map(|register| scratch[register]).collect::<Vec<_>>())
         };
         let values = at(0.0)?;
         let slopes = match speed {
@@ -223,7 +223,7 @@ impl RunExternal for Dual<f64> {
             }
         };
         externals.scratch = scratch;
-        for ((register, v), d) in call.registers().zip(values).zip(slopes) {
+        for ((register, v), d) in call.written().zip(values).zip(slopes) {
             r[register] = Dual { v, d };
         }
         Ok(())
@@ -256,6 +256,17 @@ impl ExternalCall {
     /// Whether the numbers of Strings are among its arguments or its result.
     fn takes_numbers_of_texts(&self) -> bool {
         self.arguments.iter().chain(&self.result).any(|slot| slot.kind == Kind::Numbered)
+    }
+
+    /// The registers that the function may write to: what it only reads keeps its derivatives.
+    fn written(&self) -> impl Iterator<Item = usize> {
+        let mut letters = self.entry.signature.chars();
+        let is_written =
+            move |_: &&Slot| letters.next().is_some_and(|letter| letter.is_uppercase());
+        let slots = self.arguments.iter().filter(is_written).chain(&self.result);
+        slots
+            .filter(|slot| slot.kind != Kind::Text)
+            .flat_map(|slot| slot.first as usize..slot.first as usize + slot.len())
     }
 
     /// All registers of numbers, those of the result last.

@@ -640,3 +640,47 @@ fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
         false => Err(Reason::Range),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::code::ExternalCall;
+    use super::*;
+    use crate::external::{COMPOSE, Kind, Slot};
+
+    /// `y = x*x`, after `String(x)` was made.
+    fn making_a_string(gives_texts: bool) -> Functions {
+        let slot = |kind, first, dims: &[u32]| Slot { kind, first, dims: dims.into() };
+        let call = ExternalCall {
+            entry: &COMPOSE,
+            arguments: vec![slot(Kind::Number, 0, &[5])],
+            result: Some(slot(Kind::Numbered, 5, &[])),
+        };
+        let instructions =
+            vec![Instruction::External { external: 0 }, Instruction::Mul { d: 6, a: 0, b: 0 }];
+        let code = Code {
+            n_inputs: 1,
+            outputs: 6,
+            n_outputs: 1,
+            frame: 7,
+            constants: vec![(1, 0.0), (2, 6.0), (3, 0.0), (4, 1.0), (5, f64::NAN)],
+            instructions,
+            externals: vec![call],
+            gives_texts,
+            ..Code::default()
+        };
+        Functions { codes: vec![code], ..Functions::default() }
+    }
+
+    #[test]
+    fn values_and_derivatives_leave_no_strings_behind() {
+        let functions = making_a_string(false);
+        let mut machine = Machine::default();
+        assert_eq!(machine.call(&functions, 0, [3.0].into_iter()), Ok(&[9.0][..]));
+        assert_eq!(machine.externals.texts.len(), 0);
+        assert_eq!(machine.partial(&functions, 0, &[0], [3.0].into_iter()), Ok(&[6.0][..]));
+        assert_eq!(machine.externals.texts.len(), 0);
+        let functions = making_a_string(true);
+        machine.call(&functions, 0, [3.0].into_iter()).expect("a value");
+        assert_eq!(machine.externals.texts.len(), 1);
+    }
+}
