@@ -48,6 +48,7 @@ fn offer_neighbours(session: &mut Session, package: &Path) -> bool {
         }
     }
     session.add_library_dir(folder);
+    session.add_package_dir(&package);
     true
 }
 

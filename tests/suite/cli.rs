@@ -564,6 +564,26 @@ fn libraries_beside_a_library_are_found() {
     assert!(code == 0 && out.contains("x = 7"), "{out}{errors}");
 }
 
+/// The folder of an archive is called otherwise than the package, which does not matter where the
+/// folder itself is named.
+#[test]
+fn a_package_whose_folder_is_named_is_found_whatever_it_is_called() {
+    let here = folder(&[]);
+    for (name, text) in [
+        ("Pumps 1.2.0", "package Pumps model M Real x = 7; end M; end Pumps;"),
+        ("valves-main", "package Valves model M extends Pumps.M(x = 8); end M; end Valves;"),
+    ] {
+        fs::create_dir_all(here.path().join("libs").join(name)).unwrap();
+        fs::write(here.path().join("libs").join(name).join("package.mo"), text).unwrap();
+    }
+    let libraries = ["--library", "libs/Pumps 1.2.0", "--library", "libs/valves-main"];
+    for (model, value) in [("Pumps.M", "x = 7"), ("Valves.M", "x = 8")] {
+        let arguments = [&["simulate", "--model", model], &libraries[..]].concat();
+        let (code, out, errors) = gapi(&here, &arguments);
+        assert!(code == 0 && out.contains(value), "{out}{errors}");
+    }
+}
+
 /// The library that the references are about and the one that it uses, by `MODELICAPATH` alone.
 #[test]
 fn verify_finds_the_libraries_of_the_references() {

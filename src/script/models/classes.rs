@@ -33,6 +33,8 @@ pub struct Classes {
     revision: u64,
     /// Folders whose packages are loaded when somebody names them.
     directories: Vec<PathBuf>,
+    /// Folders of packages that were named themselves.
+    named: BTreeMap<Ident, PathBuf>,
     /// The file of each top-level class that came from one.
     files: BTreeMap<Name, PathBuf>,
     /// The files that were loaded as a whole, not as part of a library, by their sources.
@@ -65,6 +67,20 @@ impl Classes {
 
     pub(super) fn add_directory(&mut self, path: PathBuf) {
         self.directories.push(path);
+        self.forget_missing();
+    }
+
+    /// The folders that were named for packages.
+    pub(super) fn named_packages(&self) -> &BTreeMap<Ident, PathBuf> {
+        &self.named
+    }
+
+    pub(super) fn add_named(&mut self, package: Ident, path: PathBuf) {
+        self.named.entry(package).or_insert(path);
+        self.forget_missing();
+    }
+
+    fn forget_missing(&mut self) {
         self.nowhere.clear();
         self.misnamed.clear();
     }

@@ -23,6 +23,15 @@ impl Session {
         self.classes.add_directory(path);
     }
 
+    /// Makes the package in a folder loadable by the name that it has, whatever the folder is
+    /// called.
+    pub fn add_package_dir(&mut self, path: &Path) {
+        let path = self.world.absolute(path);
+        if let Some(name) = self.package_in(&path) {
+            self.classes.add_named(name, path);
+        }
+    }
+
     /// The files of a library that is going to be loaded.
     pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
@@ -53,9 +62,13 @@ impl Session {
     }
 
     /// Where the top-level class of this name is: in the library folders, the working directory,
-    /// a folder `models` beside the scripts being run or above them, or in the program. A folder
-    /// of the version that was asked for comes first, one with the name in other case last.
+    /// a folder `models` beside the scripts being run or above them, or in the program. A package
+    /// whose own folder was named comes first, then a folder of the version that was asked for, and
+    /// one with the name in other case last.
     pub fn search_class(&self, name: Ident) -> Option<PathBuf> {
+        if let Some(named) = self.classes.named_packages().get(&name) {
+            return Some(named.clone());
+        }
         let folders = self.folders();
         let exact = self.classes.versions.get(&name).and_then(|version| {
             let wanted = format!("{name} {version}");

@@ -10,6 +10,7 @@ pub(super) fn name(session: &Session, problem: &str) -> String {
     let _ = writeln!(text, "{:?}", session.world.current_dir());
     let _ = writeln!(text, "{:?}", session.execution.folders().collect::<Vec<_>>());
     let _ = writeln!(text, "{:?}", session.classes.directories());
+    let _ = writeln!(text, "{:?}", session.classes.named_packages());
     let _ = writeln!(text, "{:?}", session.classes.versions);
     let _ = writeln!(text, "{}", session.classes.library.is_strict());
     digest(text.as_bytes()).iter().fold(String::new(), |mut name, byte| {
