@@ -72,7 +72,7 @@ fn specialized_classes_contain_what_they_may() {
 #[test]
 fn prefixes_fit_what_they_stand_before() {
     let code = "illegal-prefix";
-    refused("model A Real x = 1; end A; model M parameter A a; end M;", code);
+    refused_if_strict("model A Real x = 1; end A; model M parameter A a; end M;", code);
     refused("connector C flow Boolean f; Boolean e; end C; model M C c; end M;", code);
     refused("model M stream Real s = 1; end M;", code);
     refused("connector C Real e = 1; end C; model M constant C c; end M;", code);
@@ -244,11 +244,11 @@ fn redeclarations_fit_what_they_replace() {
         ),
         code,
     );
-    refused(
+    refused_if_strict(
         "model C protected replaceable Real x = 1; end C; model M extends C; redeclare Real x = 2; end M;",
         code,
     );
-    refused(
+    refused_if_strict(
         "model C replaceable constant Real x = 1; end C; model M C c(redeclare Real x = 2); end M;",
         code,
     );

@@ -263,7 +263,9 @@ fn redeclared(
             fault!(ILLEGAL_REDECLARATION, "`{}` is redeclared {now}, but it is {then} in `{}`",
                 name.node, element.holder.name();
                 help: "redeclare it in a {then} section")
-            .at(name.span),
+            .at(name.span)
+            // Libraries for older versions of the language do it.
+            .warning(),
         )
     })
 }
@@ -280,7 +282,8 @@ fn not_replaceable(
         return Some(
             fault!(ILLEGAL_REDECLARATION, "`{name}` is a constant of `{holder}` and cannot be redeclared";
                 help: "modify its value instead")
-            .at(span),
+            .at(span)
+            .warning(),
         );
     }
     let keeps_type = kind.is_some() && kind == element.kind;

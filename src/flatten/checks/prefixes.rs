@@ -85,7 +85,8 @@ fn wrong_kind(component: &Component<'_>) -> Option<Diagnostic> {
             fault!(ILLEGAL_PREFIX, "the {} `{name}` has the prefix `{word}`",
                 super::word(class.restriction());
                 help: "remove the prefix; it is allowed only for variables, records and connectors")
-            .at(span),
+            .at(span)
+            .warning(),
         ),
         Restriction::Connector if class.predefined().is_none() => {
             let word = fixed_word(prefixes.variability)?;
