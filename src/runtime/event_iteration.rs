@@ -136,7 +136,7 @@ impl System {
     pub(super) fn event(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let program = self.program.clone();
         if program.events.is_empty() {
-            let y_changed = self.settle(t, Stage::Event)?;
+            let y_changed = self.at_instant(t, |own| own.settle(t, Stage::Event))?;
             return Ok(EventOutcome::Continue { y_changed });
         }
         for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
@@ -175,8 +175,12 @@ impl System {
         either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
-    /// Iterates; where that fails, once more with relations kept at their borders as they are.
     fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
+        self.at_instant(t, |own| own.iterate_at_borders(t))
+    }
+
+    /// Iterates; where that fails, once more with relations kept at their borders as they are.
+    fn iterate_at_borders(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         if !self.held.contains(&true) {
             return self.iterate_rounds(t);
         }

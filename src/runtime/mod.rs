@@ -33,6 +33,7 @@ mod multiple_roots;
 mod newton;
 mod noevent_relations;
 mod open_loops;
+mod postponement;
 mod profile;
 mod relations;
 mod sensitivity;

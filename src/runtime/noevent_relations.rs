@@ -59,6 +59,7 @@ impl System {
         let m = self.program.relations.len();
         next.held[..m].copy_from_slice(&self.held);
         next.excused[..m].copy_from_slice(&self.excused);
+        next.postponed[..m].copy_from_slice(&self.postponed[..m]);
         next.switches[..m].copy_from_slice(&self.switches[..m]);
         next.switches[m..].fill(None);
         next.choices = self.choices.clone();

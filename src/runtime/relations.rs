@@ -72,10 +72,10 @@ impl System {
         let program = self.program.clone();
         let Some(rests) = &program.rescheduled_rests else { return };
         let is_known = run(rests, &mut self.registers).is_ok();
-        for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
+        for (at, relation) in program.relations.iter().enumerate() {
             if let (Some((factor, rest)), true) = (relation.time, relation.is_rescheduled) {
                 let time = -self.registers[rest as usize] / factor;
-                *switch = (is_known && time.is_finite()).then_some(time);
+                self.set_switch(at, is_known.then_some(time));
             }
         }
     }

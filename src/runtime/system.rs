@@ -49,6 +49,8 @@ pub struct System {
     pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
+    /// Relations on time that change behind their instants.
+    pub(super) postponed: Vec<bool>,
     /// What reads a parameter that a function has left without value fails with.
     lacking: Option<Failure>,
     /// Whether relations have changed in the event at hand.
@@ -130,6 +132,7 @@ impl System {
             observed: None,
             observed_variables: None,
             switches: vec![None; program.relations.len()],
+            postponed: vec![false; program.relations.len()],
             lacking: None,
             has_changed: vec![false; program.relations.len()],
             inconsistent: vec![false; program.relations.len()],
@@ -344,12 +347,12 @@ impl System {
         }
         run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
         run(&program.time_rests, &mut self.registers)?;
-        for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
-            *switch = relation
+        for (at, relation) in program.relations.iter().enumerate() {
+            let time = relation
                 .time
                 .filter(|_| !relation.is_rescheduled)
-                .map(|(factor, rest)| -self.registers[rest as usize] / factor)
-                .filter(|time| time.is_finite());
+                .map(|(factor, rest)| -self.registers[rest as usize] / factor);
+            self.set_switch(at, time);
         }
         Ok(())
     }
@@ -534,6 +537,29 @@ impl System {
         }
         Ok(())
     }
+
+    fn initialize_once(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.forget_notices();
+        self.treated.clear();
+        self.kept.clear();
+        self.transported.clear();
+        self.solve_initial_system(t)?;
+        self.note_open_at_start(t);
+        self.check_initial_values()?;
+        self.assert_at_event()?;
+        self.log_assertions_at_event(t)?;
+        self.improve_choices()?;
+        self.start_clocks(t)?;
+        self.start_histories(t)?;
+        self.start_transported(t)?;
+        self.start_sensitivities()?;
+        self.iterate_at_start(t)?;
+        self.improve_choices()?;
+        self.reschedule();
+        self.unload(y);
+        self.assert_all()?;
+        self.log_assertions(t)
+    }
 }
 
 impl DaeSystem for System {
@@ -588,26 +614,12 @@ impl DaeSystem for System {
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        self.forget_notices();
-        self.treated.clear();
-        self.kept.clear();
-        self.transported.clear();
-        self.solve_initial_system(t)?;
-        self.note_open_at_start(t);
-        self.check_initial_values()?;
-        self.assert_at_event()?;
-        self.log_assertions_at_event(t)?;
-        self.improve_choices()?;
-        self.start_clocks(t)?;
-        self.start_histories(t)?;
-        self.start_transported(t)?;
-        self.start_sensitivities()?;
-        self.iterate_at_start(t)?;
-        self.improve_choices()?;
-        self.reschedule();
-        self.unload(y);
-        self.assert_all()?;
-        self.log_assertions(t)
+        self.postponed.fill(false);
+        let initialized = self.initialize_once(t, y);
+        match initialized {
+            Err(_) if self.postpone(t) => self.initialize_once(t, y).or(initialized),
+            _ => initialized,
+        }
     }
 
     fn n_crossings(&self) -> usize {

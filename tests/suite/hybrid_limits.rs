@@ -304,3 +304,41 @@ fn an_assertion_fails_at_the_time_when_it_begins_to() {
         assert!((error.time - 0.5).abs() < 1e-6, "{}: {}", method.name, error.time);
     }
 }
+
+/// What holds behind an instant has no values at the instant itself: it begins a little later.
+#[test]
+fn a_branch_that_begins_behind_an_instant_is_not_evaluated_at_it() {
+    let mean = "model Mean
+        Real y(start = 0, fixed = true);
+        Real z;
+      equation
+        der(y) = 2;
+        z = if time <= 0 then 5 else y/time;
+      end Mean;";
+    let run = simulated(mean, 1.0);
+    assert_eq!(run.column("z")[0], 5.0);
+    near(run.last("z"), 2.0, 1e-9);
+    let later = "model Later
+        Real y(start = 0, fixed = true);
+        Real z;
+        Integer n(start = 0, fixed = true);
+        Integer m(start = 0, fixed = true);
+      equation
+        der(y) = 2;
+        z = if time > 0.5 then (y - 1)/(time - 0.5) else 5;
+        when sample(0, 0.25) then
+          n = pre(n) + 1;
+        end when;
+        when time > 0.5 then
+          m = pre(m) + 1;
+        end when;
+      end Later;";
+    let run = simulated(later, 1.0);
+    near(run.at("z", 0.25), 5.0, 0.0);
+    near(run.last("z"), 2.0, 1e-9);
+    // The samples of the instant itself come once.
+    assert_eq!([run.last("n"), run.last("m")], [5.0, 1.0]);
+    // Elsewhere all that happens at one time is one event.
+    let plain = later.replace("(time - 0.5)", "(time + 0.5)");
+    assert_eq!(simulated(&plain, 1.0).events(), [0.25, 0.5, 0.75, 1.0]);
+}

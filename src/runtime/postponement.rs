@@ -1,0 +1,76 @@
+//! Relations on time that hold at an instant and not behind it, or the other way round, where what
+//! is to hold behind it has no values at the instant itself.
+//!
+//! ```text
+//! z = if time <= 0 then 0 else y/time     at t = 0 the second branch is 0/0
+//! ```
+//!
+//! A relation has at its instant the value that it has behind it, so that all that happens at one
+//! time is one event. Where the equations then fail, the instant itself has what the relation says
+//! literally, and it changes a little later.
+
+use super::instants::{AT_ONCE, same_time};
+use super::system::System;
+use crate::sim::Failure;
+
+/// How much later, relative to the time.
+const RELATIVE: f64 = 4.0 * AT_ONCE;
+/// How much later than zero, seconds.
+const ABSOLUTE: f64 = 1e-13;
+
+/// A time a little after another one.
+fn behind(time: f64) -> f64 {
+    time + if time == 0.0 { ABSOLUTE } else { RELATIVE * time.abs() }
+}
+
+impl System {
+    /// The time at which a relation on time changes.
+    pub(super) fn set_switch(&mut self, at: usize, time: Option<f64>) {
+        let time = time.filter(|time| time.is_finite());
+        self.switches[at] = if self.postponed[at] { time.map(behind) } else { time };
+    }
+
+    /// The relations that change at `t` and do not have literally the value that they have behind it.
+    fn to_postpone(&self, t: f64) -> impl Iterator<Item = usize> + '_ {
+        let relations = self.program.relations.iter().enumerate();
+        let switches = relations.zip(&self.switches).zip(&self.postponed);
+        switches.filter_map(move |(((at, relation), switch), postponed)| {
+            let (factor, _) = relation.time?;
+            let is_at_instant = switch.is_some_and(|switch| same_time(t, switch));
+            let operator = relation.operator;
+            let differs = operator.holds(0.0, 0.0) != operator.holds(factor, 0.0);
+            (is_at_instant && differs && !postponed).then_some(at)
+        })
+    }
+
+    /// Lets the relations that change at `t` change behind it; whether there are any.
+    pub(super) fn postpone(&mut self, t: f64) -> bool {
+        let found: Vec<usize> = self.to_postpone(t).collect();
+        for at in &found {
+            self.postponed[*at] = true;
+            self.set_switch(*at, self.switches[*at]);
+        }
+        !found.is_empty()
+    }
+
+    /// Makes an attempt at what holds behind an instant; where it fails, what holds literally at it.
+    pub(super) fn at_instant<T>(
+        &mut self,
+        t: f64,
+        attempt: impl Fn(&mut System) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        if self.to_postpone(t).next().is_none() {
+            return attempt(self);
+        }
+        let registers = self.registers.clone();
+        let relations = (self.has_changed.clone(), self.held.clone(), self.excused.clone());
+        let first = attempt(self);
+        if first.is_err() {
+            self.registers = registers;
+            (self.has_changed, self.held, self.excused) = relations;
+            self.postpone(t);
+            return attempt(self).or(first);
+        }
+        first
+    }
+}
