@@ -55,8 +55,8 @@ fn unit(declarations: &[Declaration], files: &dyn FileReader, find: Find<'_>) ->
     let mut seen = BTreeSet::new();
     let mut new = |path: &PathBuf| seen.insert(path.clone());
     for declaration in declarations {
-        let include = find(&declaration.include_directory).filter(&mut new);
-        unit.include_directories.extend(include);
+        let folders = include_folders(declaration, files, find).into_iter();
+        unit.include_directories.extend(folders.filter(&mut new));
         for library in &declaration.libraries {
             let name = find(library).filter(|path| files.is_file(path));
             let name = name.map_or(library.clone(), |path| path.display().to_string());
@@ -72,12 +72,30 @@ fn unit(declarations: &[Declaration], files: &dyn FileReader, find: Find<'_>) ->
     unit
 }
 
+/// Where the files are that a declaration includes: in its folder for them, and, as in libraries from
+/// before there was one, in that of the package.
+fn include_folders(
+    declaration: &Declaration,
+    files: &dyn FileReader,
+    find: Find<'_>,
+) -> Vec<PathBuf> {
+    let own = find(&declaration.include_directory);
+    let package = declaration.class.split('.').next().unwrap_or_default();
+    let package = find(&format!("modelica://{package}/"));
+    let is_there = |folder: &Option<PathBuf>, name: &str| {
+        folder.as_ref().is_some_and(|folder| files.is_file(&folder.join(name)))
+    };
+    let is_old =
+        declaration.included().any(|name| !is_there(&own, name) && is_there(&package, name));
+    own.into_iter().chain(package.filter(|_| is_old)).collect()
+}
+
 /// Names the function and every file of the library that would be compiled or linked for it.
 fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) -> Fault {
-    let folder = find(&declaration.include_directory);
+    let folders = include_folders(declaration, files, find);
     let mut named: Vec<String> = declaration
         .included()
-        .filter_map(|name| folder.as_ref().map(|folder| folder.join(name)))
+        .flat_map(|name| folders.iter().map(move |folder| folder.join(name)))
         .filter(|path| files.is_file(path))
         .map(|path| format!("`{}`", path.display()))
         .collect();
