@@ -103,3 +103,39 @@ end M;";
     let error = translated(text, "M").expect_err("only equality has a meaning for numbers");
     assert!(error.message.contains("text that is unknown"), "{}", error.message);
 }
+
+/// What a function passes on to another one is not known there either.
+#[test]
+fn a_string_that_is_made_may_be_a_local_of_a_function_of_a_function() {
+    let text = "model M
+  function shortened
+    input String text;
+    input Boolean is_short;
+    output Boolean ok;
+  protected
+    String start;
+  algorithm
+    if is_short then
+      start := text;
+    else
+      start := \"long: \" + text;
+    end if;
+    ok := start == \"long: 2 kPa\" or start == \"1 kPa\";
+  end shortened;
+  function f
+    input Real x;
+    output Boolean ok;
+  algorithm
+    ok := shortened(String(x) + \" kPa\", x < 1.5);
+  end f;
+  discrete Real k(start = 0, fixed = true);
+equation
+  when sample(1, 1) then
+    k = if f(time) then 1 else 2;
+  end when;
+end M;";
+    let program = translated(text, "M").expect("a model");
+    let mut system = program.system();
+    let rows = rows(&mut system, 1);
+    assert_eq!(values(&program, &system, &rows, "k"), [0.0, 1.0, 1.0, 2.0, 2.0]);
+}

@@ -160,6 +160,9 @@ impl Body<'_, '_> {
         let mut scalars = Vec::new();
         value.append_scalars(&mut scalars);
         if !place.fits(&value) {
+            // A String that is made at run time needs variables for such.
+            self.instances.misses_text |=
+                value.shape().is_some_and(|shape| shape.holds_number_of_text());
             return Err(fault!(
                 ARRAY_MISMATCH,
                 "the value of `{}` has a different size",
