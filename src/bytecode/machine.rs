@@ -7,6 +7,7 @@ use super::memo::{Kept, Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
+use std::ops::Range;
 
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 2_000;
@@ -84,6 +85,11 @@ impl Machine {
     /// What calls would have written since the last [`Machine::restart`].
     pub fn journal(&self) -> &Journal {
         &self.externals.journal
+    }
+
+    /// Takes back what the requests in this range would have written.
+    pub(crate) fn take_back(&mut self, requests: Range<usize>) {
+        self.externals.journal.take_back(requests);
     }
 
     /// Calls a function; returns its scalar outputs, NaN for components of records without value.

@@ -4,7 +4,7 @@ use super::instruction::Call;
 use super::linear_system::LinearSystem;
 use super::registers::Registers;
 use crate::bytecode::{Failure, Functions, Journal, Machine};
-use std::ops::{Deref, DerefMut};
+use std::ops::{Deref, DerefMut, Range};
 use std::sync::Arc;
 
 /// Registers and machine; it reads as its registers.
@@ -38,6 +38,8 @@ struct ImpureCall {
     /// The bits of the arguments, the last of which is the place of the call.
     arguments: Vec<u64>,
     results: Vec<f64>,
+    /// The requests that it made to write something.
+    requests: Range<usize>,
 }
 
 impl Memory {
@@ -130,10 +132,27 @@ impl Calls {
             r[call.d as usize..][..n].copy_from_slice(&known.results);
             return Ok(());
         }
+        self.take_back(call.function, &arguments);
+        let before = self.machine.journal().len();
         self.run_anew(call, r)?;
         let results = r[call.d as usize..][..n].to_vec();
-        self.impure.push(ImpureCall { function: call.function, arguments, results });
+        let requests = before..self.machine.journal().len();
+        self.impure.push(ImpureCall { function: call.function, arguments, results, requests });
         Ok(())
+    }
+
+    /// What a call at the same place has written at this instant was for other values.
+    fn take_back(&mut self, function: u32, arguments: &[u64]) {
+        let place = arguments.last();
+        let machine = &mut self.machine;
+        self.impure.retain(|known| {
+            let is_other = known.function == function && known.arguments.last() == place;
+            let is_done_again = is_other && !known.requests.is_empty();
+            if is_done_again {
+                machine.take_back(known.requests.clone());
+            }
+            !is_done_again
+        });
     }
 
     fn run_anew(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {

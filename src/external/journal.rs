@@ -3,6 +3,7 @@
 
 use super::Outside;
 use crate::diag::Fault;
+use std::ops::Range;
 
 /// Bytes that a simulation may write.
 const MOST_BYTES: usize = 1 << 28;
@@ -10,10 +11,22 @@ const MOST_BYTES: usize = 1 << 28;
 /// One request.
 #[derive(Debug, Clone, PartialEq)]
 enum Deed {
-    Write { path: String, bytes: Vec<u8> },
-    Append { path: String, bytes: Vec<u8> },
-    Remove { path: String },
-    Print { text: String },
+    Write {
+        path: String,
+        bytes: Vec<u8>,
+    },
+    Append {
+        path: String,
+        bytes: Vec<u8>,
+    },
+    Remove {
+        path: String,
+    },
+    Print {
+        text: String,
+    },
+    /// Taken back.
+    Nothing,
 }
 
 /// Requests that wait.
@@ -29,6 +42,16 @@ impl Journal {
         *self = Journal::default();
     }
 
+    /// How many requests there are.
+    pub(crate) fn len(&self) -> usize {
+        self.deeds.len()
+    }
+
+    /// Takes requests back: what made them has been done again, with other values.
+    pub(crate) fn take_back(&mut self, requests: Range<usize>) {
+        self.deeds[requests].fill(Deed::Nothing);
+    }
+
     /// The content of a file as it would be; `before` reads what it is.
     pub fn read(
         &self,
@@ -39,7 +62,7 @@ impl Journal {
             Deed::Write { path: other, .. }
             | Deed::Append { path: other, .. }
             | Deed::Remove { path: other } => other == path,
-            Deed::Print { .. } => false,
+            Deed::Print { .. } | Deed::Nothing => false,
         };
         let mut deeds = self.deeds.iter().filter(of_path).peekable();
         let mut content = match deeds.peek() {
@@ -54,7 +77,7 @@ impl Journal {
                     all.extend(bytes);
                     Some(all)
                 }
-                Deed::Remove { .. } | Deed::Print { .. } => None,
+                Deed::Remove { .. } | Deed::Print { .. } | Deed::Nothing => None,
             };
         }
         match content {
@@ -68,6 +91,7 @@ impl Journal {
             Deed::Write { bytes, .. } | Deed::Append { bytes, .. } => bytes.len(),
             Deed::Remove { path } => path.len(),
             Deed::Print { text } => text.len(),
+            Deed::Nothing => 0,
         };
         if self.bytes > MOST_BYTES {
             return Err(crate::fault!(
@@ -106,6 +130,7 @@ impl Journal {
             Deed::Append { path, bytes } => outside.append(path, bytes),
             Deed::Remove { path } => outside.remove(path),
             Deed::Print { text } => outside.print(text),
+            Deed::Nothing => Ok(()),
         })
     }
 }

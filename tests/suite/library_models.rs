@@ -53,13 +53,6 @@ fn what_a_function_prints_at_the_start_becomes_a_note() {
         model M Boolean result; Real x = if result then 5 else 0; \
         algorithm when initial() then result := check(3); end when; end M;";
     assert_eq!(at_end(contents), 5.0);
-    let repeated = "function say input String s; external \"C\" ModelicaMessage(s); end say; \
-        impure function check output Boolean ok; \
-        algorithm ok := true; say(\"again\"); end check; \
-        model M Boolean result; Real x = if result then 5 else 0; \
-        algorithm when sample(0.1, 0.2) then result := check(); end when; end M;";
-    let flat = attempted(repeated).expect("a flat model").model;
-    assert!(gapilib::causalize::causalize(&flat).is_err(), "the output of later events is lost");
 }
 
 /// FCSys gives a constant of a component the value of a parameter around it.

@@ -241,10 +241,66 @@ end W;";
     }
     let (_, _, errors) = after_writer(model, &read("never.mat", "A"));
     assert!(errors.contains("never.mat"), "a branch that is not taken writes nothing: {errors}");
-    // In a part of an expression nobody could tell when it is carried out.
-    let part = model.replace("other = write(", "other = x > 3 and write(");
-    let (code, _, errors) = after_writer(&part, "");
-    assert!(code != 0 && errors.contains("its value cannot be used"), "{errors}");
+    // A part of an expression that is not needed writes nothing.
+    let part = model.replace("other = write(", "other = x > 3 or write(");
+    let (code, output, errors) = after_writer(&part, &read("other.mat", "A"));
+    assert_eq!((code, errors.as_str()), (0, ""), "{output}");
+    assert!(output.contains("[0.5"), "{output}");
+}
+
+const TALKING: &str = "model P
+  function say
+    input String text;
+    external \"C\" ModelicaMessage(text);
+  end say;
+  function f
+    input Real x;
+    output Real y;
+  algorithm
+    say(\"f of \" + String(x));
+    y := 2*x;
+  end f;
+  Real y(start = 0, fixed = true);
+  Real w(start = 0, fixed = true);
+  Real v = w + y/3;
+  Real z(start = 0, fixed = true);
+  Real u(start = 0, fixed = true);
+equation
+  der(z) = 1;
+  when time > 2 then
+    w = 1;
+  end when;
+algorithm
+  when sample(0.25, 0.25) then
+    y := if time > 0.3 then f(time) else 3;
+    if time > 0.6 then
+      u := f(10*time);
+    end if;
+  end when;
+end P;";
+
+/// What functions print whose values are used, at events and in equations.
+#[test]
+fn functions_print_what_they_say_once_at_each_event() {
+    let script = "openModel(\"P.mo\");\nsimulateModel(\"P\", stopTime = 1);";
+    let said = |output: &str| {
+        let lines = output.lines().filter_map(|line| line.split_once("f of "));
+        lines.map(|(_, x)| x.to_owned()).collect::<Vec<_>>()
+    };
+    let (code, output, errors) = run(TALKING, script);
+    assert_eq!((code, errors.as_str()), (0, ""), "{output}");
+    assert_eq!(said(&output), ["0.5", "0.75", "7.5", "1", "10"]);
+    // A loop calls the function for every value that it tries.
+    let looped = TALKING.split_once("  when time").expect("a when-clause").0.to_owned()
+        + "  when sample(0.25, 0.25) then y = f(v); w = pre(w) + 1; u = y; end when;\nend P;";
+    let (code, output, errors) = run(&looped, script);
+    assert_eq!((code, errors.as_str()), (0, ""), "{output}");
+    assert_eq!(said(&output), ["3", "6", "9", "12"]);
+    // Between events nobody could tell how often it is called.
+    let stepwise = TALKING.replace("der(z) = 1", "der(z) = f(z) + 1");
+    let (code, output, errors) = run(&stepwise, script);
+    assert_eq!((code, said(&output).len()), (0, 5), "{output}");
+    assert!(errors.contains("what `P.f` prints is left out"), "{errors}");
 }
 
 /// Not allowed by MLS §12.3, but in the standard library.

@@ -34,6 +34,18 @@ pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
 /// may take.
 const MAX_FOLDED: u64 = 25;
 
+/// What becomes of the output of a function whose value is used.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Output {
+    /// It is written at an event.
+    Written,
+    /// What it prints is left out, since it is called at every step.
+    #[default]
+    LeftOut,
+    /// It depends on branches that are not those of the function at hand.
+    Refused,
+}
+
 /// What a function is compiled for.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct Signature {
@@ -43,6 +55,8 @@ struct Signature {
     at_run_time: bool,
     /// Whether Strings are made when the function runs.
     composes: bool,
+    /// Whether what it would print is left out.
+    silent: bool,
 }
 
 impl Signature {
@@ -119,6 +133,8 @@ pub(crate) struct Instance {
     pub(super) folds: bool,
     /// Whether equal calls may give different results.
     pub(super) impure: bool,
+    /// Whether what it prints is left out.
+    pub(super) silenced: bool,
     /// Whether calls write files or print.
     pub(super) writes: bool,
     /// Which scalars of the arguments are passed; the others are known.
@@ -148,6 +164,10 @@ pub(crate) struct Instances {
     instructions: usize,
     /// Whether a statement is at hand that may write.
     pub(crate) may_write: bool,
+    /// What becomes of the output of functions whose values are used.
+    pub(super) output: Output,
+    /// Whether functions are compiled without what they print.
+    pub(super) silent: bool,
     /// Whether statements are compiled size by size where a computed Integer decides.
     pub(super) sizes_at_run_time: bool,
     /// Whether a text was needed that is made at run time.
@@ -194,18 +214,39 @@ impl Instances {
             found = self.general_or_special(flat, function, arguments, false, span);
         }
         let found = found?;
-        if found.writes
-            && !self.may_write
-            && self.depth == 0
-            && (found.outputs.is_empty() || !self.changes_objects_alone(found.code))
-        {
-            return Err(fault!(NOT_SUPPORTED, "the function `{}` writes output, so its value \
-                cannot be used",
-                function.name;
-                help: "call it in a when-clause, without using its value")
-            .at(span));
+        if !found.writes || self.may_write || self.depth > 0 {
+            return Ok(found);
         }
-        Ok(found)
+        if !found.outputs.is_empty()
+            && (self.output == Output::Written || self.changes_objects_alone(found.code))
+        {
+            return Ok(found);
+        }
+        self.without_output(flat, function, arguments, span)?.ok_or_else(|| {
+            fault!(NOT_SUPPORTED, "the function `{}` writes files, so its value cannot be used in \
+                equations",
+                function.name;
+                help: "call it in a when-clause")
+            .at(span)
+        })
+    }
+
+    /// A function without what it prints; `None` if it writes otherwise.
+    fn without_output(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Option<f64>>],
+        span: Span,
+    ) -> Result<Option<Instance>, Diagnostic> {
+        if self.output != Output::LeftOut {
+            return Ok(None);
+        }
+        self.silent = true;
+        let found = self.with_texts(flat, function, arguments, span);
+        self.silent = false;
+        let silenced = |instance: Instance| Instance { silenced: true, ..instance };
+        Ok(found.map(silenced).ok().filter(|instance| !instance.writes))
     }
 
     /// A function whose Strings are known; one that makes them when it runs where they are not.
@@ -254,7 +295,7 @@ impl Instances {
         for known in [ByValue::Nothing, ByValue::DeclaredSizes, ByValue::Everything] {
             let signature = signature(function, arguments, known, span)
                 .inspect_err(|_| self.misses_text = true)?;
-            let signature = Signature { at_run_time, composes, ..signature };
+            let signature = Signature { at_run_time, composes, silent: self.silent, ..signature };
             if before.as_ref() == Some(&signature) {
                 continue;
             }
@@ -340,6 +381,7 @@ impl Instances {
                 && !signature.takes_numbers_of_texts(),
             impure: function.impure,
             writes: false,
+            silenced: false,
             passed: passed(&signature.arguments),
         };
         let gives_texts = instance.outputs.iter().any(Shape::holds_number_of_text);
@@ -550,7 +592,7 @@ fn signature(
         list.push(known);
     }
     let name = function.name.clone();
-    Ok(Signature { name, arguments: list, at_run_time: false, composes: false })
+    Ok(Signature { name, arguments: list, at_run_time: false, composes: false, silent: false })
 }
 
 /// What is known of an argument; `None` if it is or holds a text that changes.

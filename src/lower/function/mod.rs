@@ -27,6 +27,7 @@ mod target;
 
 pub(super) use external_kinds::{confirms, prints};
 pub(super) use instances::Instances;
+use instances::Output;
 pub(super) use inverse::{Inverts, inverts};
 pub(super) use results::CallResults;
 
@@ -175,6 +176,29 @@ pub(super) fn call_of_any_size(
     result
 }
 
+/// What becomes of the output of a function that is called where the builder is.
+fn output(builder: &Builder<'_>) -> Output {
+    match builder.place.in_when || builder.place.initial {
+        false => Output::LeftOut,
+        true if builder.calls.depth == 0 => Output::Written,
+        true => Output::Refused,
+    }
+}
+
+/// Says, once for each function, that nothing is printed.
+fn warn_silenced(builder: &mut Builder<'_>, function: &Function, span: Span) {
+    let warning =
+        fault!(NOT_SUPPORTED, "what `{}` prints is left out here, where it is called at every \
+        step",
+        function.name;
+        help: "to see it, call it in a when-clause")
+        .at(span)
+        .warning();
+    if builder.dae.warnings.iter().all(|known| known.message != warning.message) {
+        builder.dae.warnings.push(warning);
+    }
+}
+
 /// Expressions that call the code of a function.
 pub(super) fn compiled_call(
     builder: &mut Builder<'_>,
@@ -185,7 +209,11 @@ pub(super) fn compiled_call(
     let pool = &builder.dae.pool;
     let known: Vec<Lowered<Option<f64>>> =
         arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    builder.calls.functions.output = output(builder);
     let instance = builder.calls.functions.instance(builder.flat, function, &known, span)?;
+    if instance.silenced {
+        warn_silenced(builder, function, span);
+    }
     let mut scalars = instance.passed_of(&arguments);
     if instance.impure {
         // Calls in different places are different calls, though their arguments are the same.
@@ -205,7 +233,7 @@ pub(super) fn compiled_call(
         None => {
             let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
             results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
-            if instance.writes {
+            if instance.writes && builder.calls.functions.may_write {
                 builder.calls.written.push(pool.call(instance.code, 0, &scalars));
             } else if n == 0 && instance.impure {
                 return Err(fault!(

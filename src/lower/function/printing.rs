@@ -28,6 +28,9 @@ impl Body<'_, '_> {
         span: Span,
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
+        if self.instances.silent {
+            return Ok(());
+        }
         self.emitter.place(span);
         self.emitter.open();
         let file = message_text(&mut self.lowering(loops), nth(arguments, 1, "fileName"));
