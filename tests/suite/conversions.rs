@@ -229,10 +229,19 @@ fn what_cannot_be_converted_says_why() {
     refused("model M Pumps.Pump p; Real x = p.speed; end M;", "set the flow");
 }
 
-/// Without `uses`, of the loaded version, of one that needs no conversion or has no rules.
+/// A version that the library has forgotten is older than those that it names.
+#[test]
+fn a_version_without_rules_is_converted_by_those_of_the_next_one() {
+    for version in ["0.1", "0.9.3", "1.0.7", "1"] {
+        let old = flat("model M Pumps.Pump p(nom = 4); end M;", version);
+        assert!(old.as_ref().is_ok_and(|text| text.contains("'p.nominal' = 4")), "{old:?}");
+    }
+}
+
+/// Without `uses`, of the loaded version, of one that needs no conversion or is newer than those that do.
 #[test]
 fn nothing_else_is_converted() {
-    for version in ["2.0", "1.9", "0.1"] {
+    for version in ["2.0", "1.9", "1.9.5", "3.0", "next"] {
         assert!(flat("model M Pumps.Pump p; end M;", version).is_err());
         let new = flat("model M Pumps.Machines.Pump p; end M;", version);
         assert!(new.as_ref().is_ok_and(|text| text.contains("'p.nominal' = 1")), "{new:?}");

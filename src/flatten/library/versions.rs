@@ -67,7 +67,9 @@ impl Library {
     }
 
     /// The rules that convert users of a version of a library to the one that is loaded, in as many
-    /// steps as it takes: a `from` with `to` leads to another old version.
+    /// steps as it takes: a `from` with `to` leads to another old version. A version that the library
+    /// does not name is taken as the next later one that it names: what has changed since then has
+    /// changed since the older one, too.
     fn rules_from(
         &self,
         library: ClassId,
@@ -77,7 +79,9 @@ impl Library {
         let definition = self.read(library).definition.clone();
         let annotation = annotation_of(&definition);
         let own = annotation.and_then(|annotation| text(&annotation.arguments, "version"));
-        let (mut now, mut passed) = (Arc::<str>::from(version), Vec::new());
+        let asked = Arc::<str>::from(version);
+        let (mut now, mut passed) =
+            (next_named(annotation, version, own.as_deref()).unwrap_or(asked), Vec::new());
         let mut steps = Vec::new();
         while own.as_deref() != Some(&*now) && !needs_no_conversion(annotation, &now) {
             let found = steps_from(annotation, &now);
@@ -144,6 +148,32 @@ fn steps_from<'a>(annotation: Option<&'a Annotation>, version: &str) -> Vec<&'a 
     let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
     let arguments = from.filter_map(|one| one.modification.as_ref()).map(|m| &*m.arguments);
     arguments.filter(|one| texts(one, "version").iter().any(|known| &**known == version)).collect()
+}
+
+/// The next later version that a library names in its conversions, for one that it does not name.
+fn next_named(
+    annotation: Option<&Annotation>,
+    version: &str,
+    own: Option<&str>,
+) -> Option<Arc<str>> {
+    if is_known(annotation, version, own) {
+        return None;
+    }
+    let none = inside(annotation, "conversion").filter(|one| is_named(one, "noneFromVersion"));
+    let none = none.filter_map(|one| string(bound(one)?));
+    let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
+    let from = from.filter_map(|one| one.modification.as_ref());
+    let named = from.flat_map(|one| texts(&one.arguments, "version")).chain(none);
+    let own = own.map(Arc::from);
+    let asked = numbers(version);
+    let later = named.chain(own).filter(|one| !asked.is_empty() && numbers(one) > asked);
+    later.min_by_key(|one| numbers(one))
+}
+
+/// The numbers of a version up to those of a build, for comparison.
+fn numbers(version: &str) -> Vec<u64> {
+    let version = version.split(['-', '+', ' ']).next().unwrap_or_default();
+    version.split('.').map_while(|part| part.parse().ok()).collect()
 }
 
 /// Whether a version is the loaded one, or one that a library tells how to convert.
