@@ -29,84 +29,147 @@ pub struct Solution {
     pub is_exact: bool,
 }
 
+/// `(coefficient * v + rest) / denominator` with none of them containing v.
+#[derive(Debug, Clone, Copy)]
+struct Fraction {
+    coefficient: Expr,
+    rest: Expr,
+    denominator: Expr,
+}
+
 /// Takes an expression apart that is linear in `variable`; `None` if it is not, or not visibly.
 pub fn linear_in(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Linear> {
+    let Fraction { coefficient, rest, .. } = fraction_in(pool, expr, variable, |pool, a, b| {
+        Fraction { coefficient: pool.div(a.coefficient, b), rest: pool.div(a.rest, b), ..a }
+    })?;
+    Some(Linear { coefficient, rest })
+}
+
+/// The same with what the variable is divided by apart: to multiply with it is always possible, to
+/// divide by its inverse is not where it is zero.
+fn with_denominator(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Fraction> {
+    fraction_in(pool, expr, variable, |pool, a, b| Fraction {
+        denominator: pool.mul(a.denominator, b),
+        ..a
+    })
+}
+
+/// Takes an expression apart; `divide` makes of a part what it is when it is divided.
+fn fraction_in(
+    pool: &mut Pool,
+    expr: Expr,
+    variable: VarId,
+    divide: impl Fn(&mut Pool, Fraction, Expr) -> Fraction,
+) -> Option<Fraction> {
     let (zero, one) = (pool.constant(0.0), pool.constant(1.0));
-    let mut parts: FxHashMap<Expr, Option<Linear>> = FxHashMap::default();
+    let free = |rest: Expr| Fraction { coefficient: zero, rest, denominator: one };
+    let mut parts: FxHashMap<Expr, Option<Fraction>> = FxHashMap::default();
     for node in pool.reachable_with(&[expr], variable) {
-        let of = |operand: &Expr| {
-            parts
-                .get(operand)
-                .copied()
-                .unwrap_or(Some(Linear { coefficient: zero, rest: *operand }))
-        };
+        let of =
+            |operand: &Expr| parts.get(operand).copied().unwrap_or_else(|| Some(free(*operand)));
         let part = match pool.node(node).clone() {
-            Node::Variable(v) if v == variable => Some(Linear { coefficient: one, rest: zero }),
+            Node::Variable(v) if v == variable => {
+                Some(Fraction { coefficient: one, rest: zero, denominator: one })
+            }
             other => {
                 let mut contains = false;
                 other.for_each_operand(|operand| contains |= parts.contains_key(&operand));
                 if !contains {
                     continue;
                 }
-                linear_node(pool, &other, of)
+                fraction_of(pool, &other, of, &divide)
             }
         };
         parts.insert(node, part);
     }
-    parts.remove(&expr).unwrap_or(Some(Linear { coefficient: zero, rest: expr }))
+    parts.remove(&expr).unwrap_or_else(|| Some(free(expr)))
 }
 
 /// The parts of a node from the parts of its operands.
-fn linear_node(
+fn fraction_of(
     pool: &mut Pool,
     node: &Node,
-    of: impl Fn(&Expr) -> Option<Linear>,
-) -> Option<Linear> {
-    let constant = |pool: &Pool, part: Linear| pool.as_constant(part.coefficient) == Some(0.0);
+    of: impl Fn(&Expr) -> Option<Fraction>,
+    divide: impl Fn(&mut Pool, Fraction, Expr) -> Fraction,
+) -> Option<Fraction> {
+    let is_free = |pool: &Pool, part: Fraction| pool.as_constant(part.coefficient) == Some(0.0);
     match node {
         Node::Neg(a) => {
             let a = of(a)?;
-            Some(Linear { coefficient: pool.neg(a.coefficient), rest: pool.neg(a.rest) })
+            Some(Fraction { coefficient: pool.neg(a.coefficient), rest: pool.neg(a.rest), ..a })
         }
         Node::Add(a, b) => {
-            let (a, b) = (of(a)?, of(b)?);
+            let (a, b) = with_one_denominator(pool, of(a)?, of(b)?);
             let coefficient = pool.add(a.coefficient, b.coefficient);
-            Some(Linear { coefficient, rest: pool.add(a.rest, b.rest) })
+            Some(Fraction { coefficient, rest: pool.add(a.rest, b.rest), ..a })
         }
         Node::Sub(a, b) => {
-            let (a, b) = (of(a)?, of(b)?);
+            let (a, b) = with_one_denominator(pool, of(a)?, of(b)?);
             let coefficient = pool.sub(a.coefficient, b.coefficient);
-            Some(Linear { coefficient, rest: pool.sub(a.rest, b.rest) })
+            Some(Fraction { coefficient, rest: pool.sub(a.rest, b.rest), ..a })
         }
         Node::Mul(a, b) => {
             let (a, b) = (of(a)?, of(b)?);
-            let (factor, other) = if constant(pool, a) {
+            let (factor, other) = if is_free(pool, a) {
                 (a.rest, b)
-            } else if constant(pool, b) {
+            } else if is_free(pool, b) {
                 (b.rest, a)
             } else {
                 return None;
             };
             let coefficient = pool.mul(factor, other.coefficient);
-            Some(Linear { coefficient, rest: pool.mul(factor, other.rest) })
+            Some(Fraction { coefficient, rest: pool.mul(factor, other.rest), ..other })
         }
         Node::Div(a, b) => {
             let (a, b) = (of(a)?, of(b)?);
-            if !constant(pool, b) {
+            if !is_free(pool, b) {
                 return None;
             }
-            let coefficient = pool.div(a.coefficient, b.rest);
-            Some(Linear { coefficient, rest: pool.div(a.rest, b.rest) })
+            Some(divide(pool, a, b.rest))
         }
         Node::If(condition, a, b) => {
             let (c, a, b) = (of(condition)?, of(a)?, of(b)?);
-            if !constant(pool, c) {
+            if !is_free(pool, c) {
                 return None;
             }
-            let coefficient = pool.if_then_else(c.rest, a.coefficient, b.coefficient);
-            Some(Linear { coefficient, rest: pool.if_then_else(c.rest, a.rest, b.rest) })
+            Some(Fraction {
+                coefficient: pool.if_then_else(c.rest, a.coefficient, b.coefficient),
+                rest: pool.if_then_else(c.rest, a.rest, b.rest),
+                denominator: pool.if_then_else(c.rest, a.denominator, b.denominator),
+            })
         }
         _ => None,
+    }
+}
+
+/// Two terms over one denominator. What does not contain the variable takes that of the other; two
+/// that contain it and are divided by different things are divided.
+fn with_one_denominator(pool: &mut Pool, a: Fraction, b: Fraction) -> (Fraction, Fraction) {
+    if a.denominator == b.denominator {
+        return (a, b);
+    }
+    let is_free = |pool: &Pool, part: Fraction| pool.as_constant(part.coefficient) == Some(0.0);
+    match (is_free(pool, a), is_free(pool, b)) {
+        (true, _) => (over(pool, a, b.denominator), b),
+        (false, true) => {
+            let b = over(pool, b, a.denominator);
+            (a, b)
+        }
+        (false, false) => (divided(pool, a), divided(pool, b)),
+    }
+}
+
+/// A term without the variable over another denominator.
+fn over(pool: &mut Pool, term: Fraction, denominator: Expr) -> Fraction {
+    let term = divided(pool, term);
+    Fraction { rest: pool.mul(term.rest, denominator), denominator, ..term }
+}
+
+fn divided(pool: &mut Pool, term: Fraction) -> Fraction {
+    Fraction {
+        coefficient: pool.div(term.coefficient, term.denominator),
+        rest: pool.div(term.rest, term.denominator),
+        denominator: pool.constant(1.0),
     }
 }
 
@@ -124,13 +187,14 @@ pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Optio
     };
     let mut moved = Solution { value: other, divisor: one, inverted: one, is_exact: true };
     loop {
-        if let Some(linear) = linear_in(pool, side, variable) {
-            if pool.as_constant(linear.coefficient) == Some(0.0) {
+        if let Some(fraction) = with_denominator(pool, side, variable) {
+            if pool.as_constant(fraction.coefficient) == Some(0.0) {
                 return None;
             }
-            let difference = pool.sub(moved.value, linear.rest);
-            let value = pool.div(difference, linear.coefficient);
-            let divisor = pool.mul(moved.divisor, linear.coefficient);
+            let multiplied = pool.mul(moved.value, fraction.denominator);
+            let difference = pool.sub(multiplied, fraction.rest);
+            let value = pool.div(difference, fraction.coefficient);
+            let divisor = pool.mul(moved.divisor, fraction.coefficient);
             return Some(Solution { value, divisor, ..moved });
         }
         (side, moved) = peel(pool, side, moved, variable)?;
