@@ -5,7 +5,7 @@ use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
-use crate::eval::ValueType;
+use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::instantiate::tree::Tree;
@@ -221,14 +221,18 @@ impl Types<'_> {
             | ExpressionKind::String(_) => Some(0),
             ExpressionKind::Reference(reference) => self.reference_rank(reference),
             ExpressionKind::Unary { operand, .. } => self.rank_of(operand),
-            ExpressionKind::Binary { left, right, .. } => {
-                match (self.rank_of(left)?, self.rank_of(right)?) {
-                    (0, 0) => Some(0),
-                    _ => None,
-                }
+            ExpressionKind::Binary { operator, left, right } => {
+                rank_of_operation(*operator, self.rank_of(left)?, self.rank_of(right)?)
             }
+            ExpressionKind::If { branches, otherwise } => {
+                self.rank_of(branches.first().map_or(otherwise, |(_, value)| value))
+            }
+            ExpressionKind::Range { .. } => Some(1),
             ExpressionKind::Array(elements) => Some(1 + self.rank_of(elements.first()?)?),
             ExpressionKind::Call { function, arguments } => {
+                if let Some(Some(user)) = self.functions.table.get(&function.name()) {
+                    return self.rank_of_output(user, arguments);
+                }
                 let entry = functions::find(function.as_ident()?.as_str())?;
                 if entry.shape != ShapeRule::Planned || !arguments.iterators.is_empty() {
                     return None;
@@ -237,6 +241,18 @@ impl Types<'_> {
             }
             _ => None,
         }
+    }
+
+    /// The number of dimensions of the first output of a function, unless it may be called element by
+    /// element.
+    fn rank_of_output(&self, user: &Function, arguments: &Arguments) -> Option<usize> {
+        let fits = |(argument, input): (&Expression, &FunctionComponent)| {
+            self.rank_of(argument) == Some(input.dims.len())
+        };
+        let all_fit = arguments.named.is_empty()
+            && arguments.iterators.is_empty()
+            && arguments.positional.iter().zip(&user.inputs).all(fits);
+        all_fit.then(|| user.outputs.first().map(|output| output.dims.len()))?
     }
 
     fn reference_rank(&self, reference: &ComponentReference) -> Option<usize> {
@@ -254,6 +270,29 @@ impl Types<'_> {
             }
         }
         dims.checked_sub(gone)
+    }
+}
+
+/// The number of dimensions of what an operation makes of such operands (MLS §10.6).
+fn rank_of_operation(operator: BinaryOperator, left: usize, right: usize) -> Option<usize> {
+    use BinaryOperator as Op;
+    match (operator, left, right) {
+        (_, 0, 0) => Some(0),
+        (Op::Multiply, 1, 1) => Some(0),
+        (Op::Multiply, 2, 1) | (Op::Multiply, 1, 2) => Some(1),
+        (Op::Multiply, 2, 2) | (Op::Power, 2, 0) => Some(2),
+        (Op::Multiply, rank, 0) | (Op::Multiply, 0, rank) | (Op::Divide, rank, 0) => Some(rank),
+        (Op::Add | Op::Subtract, _, _) => (left == right).then_some(left),
+        (
+            Op::ElementwiseAdd
+            | Op::ElementwiseSubtract
+            | Op::ElementwiseMultiply
+            | Op::ElementwiseDivide
+            | Op::ElementwisePower,
+            _,
+            _,
+        ) => (left == right || left == 0 || right == 0).then_some(left.max(right)),
+        _ => None,
     }
 }
 

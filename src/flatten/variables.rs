@@ -101,8 +101,10 @@ impl Instantiation<'_> {
         if let Some(binding) = variable.binding.take() {
             check_literal(&binding, &variable.base, &variable)?;
             let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
-            // `each` is about the array that holds the component, whose own value may be an array.
-            let each = each && self.types().rank_of(&binding) != Some(variable.dims.len());
+            // `each` is about the array that holds the component, whose own value is an array, as a
+            // rule.
+            let is_short = |rank: usize| rank < variable.dims.len();
+            let each = each && self.types().rank_of(&binding).is_some_and(is_short);
             let binding = self.checked_value(binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }

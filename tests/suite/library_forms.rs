@@ -384,6 +384,35 @@ fn one_value_without_each_is_that_of_all_elements() {
     assert!(warnings(&text).contains(&"size-mismatch"));
 }
 
+/// `each` is about the array of components: what follows is the whole value of each of them.
+#[test]
+fn the_value_of_each_component_may_be_a_computed_array() {
+    let part = "model Part parameter Real a[3] = {1, 1, 1}; parameter Real s = 1; \
+        Real x = s*sum(a)*time; end Part; \
+        function f input Real x; output Real y[3]; algorithm y := {x, 2*x, 3*x}; end f; ";
+    for (value, expected) in [
+        ("2*{1, 2, 3}", 24.0),
+        ("{1, 2, 3}*2", 24.0),
+        ("{1, 2, 3} + {1, 1, 1}", 18.0),
+        ("{1, 2, 3} .* {2, 2, 2}", 24.0),
+        ("[1, 0, 0; 0, 2, 0; 0, 0, 3]*{1, 1, 1}", 12.0),
+        ("f(1)", 12.0),
+        ("b", 30.0),
+        ("b/5", 6.0),
+        ("if k > 1 then b else {0, 0, 0}", 30.0),
+        ("{i for i in 1:3}", 12.0),
+        ("1:3", 12.0),
+        ("7", 42.0),
+        ("{1, 2, 3}*{1, 1, 1}", 36.0),
+    ] {
+        let model = format!(
+            "{part} model M parameter Real k = 2; parameter Real b[3] = {{4, 5, 6}}; \
+             Part p[2](each a = {value}); Real x = p[1].x + p[2].x; end M;"
+        );
+        assert_eq!(at_end(&model), expected, "{value}");
+    }
+}
+
 #[test]
 fn modifiers_of_a_class_are_those_of_each_element_of_an_array_of_it() {
     let text = "record R parameter Real c[2] = {0, 0}; parameter Real k = 0; end R; \
