@@ -82,6 +82,13 @@ impl Machine {
         &self.defaults
     }
 
+    /// Notes that zero was taken in the call of a function, and where.
+    pub(crate) fn note_default(&mut self, called: u32, failure: Failure) {
+        if !self.defaults.iter().any(|(known, _)| *known == called) {
+            self.defaults.push((called, failure));
+        }
+    }
+
     /// What calls would have written since the last [`Machine::restart`].
     pub fn journal(&self) -> &Journal {
         &self.externals.journal
@@ -201,8 +208,8 @@ impl Machine {
         self.has_defaults = true;
         let result = self.run_once::<T>(functions, function);
         self.has_defaults = false;
-        if result.is_ok() && !self.defaults.iter().any(|(known, _)| *known == function) {
-            self.defaults.push((function, failure));
+        if result.is_ok() {
+            self.note_default(function, failure);
         }
         result
     }

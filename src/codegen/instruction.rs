@@ -81,9 +81,11 @@ pub(crate) enum Instruction {
     Call {
         call: u32,
     },
-    /// Fails if a component of a record that a function gave has no value.
+    /// A component of a record that a function gave: one without value fails, or is zero.
     Given {
+        d: Register,
         a: Register,
+        is_zero: bool,
         function: u32,
     },
     /// The linear system of this number in the tape.
@@ -183,9 +185,9 @@ impl Instruction {
             | Instruction::And { d, .. }
             | Instruction::Or { d, .. }
             | Instruction::Relation { d, .. }
+            | Instruction::Given { d, .. }
             | Instruction::Binary { d, .. } => Some(d),
             Instruction::Call { .. }
-            | Instruction::Given { .. }
             | Instruction::Solve { .. }
             | Instruction::Jump { .. }
             | Instruction::JumpUnless { .. }

@@ -3,7 +3,7 @@
 use super::instruction::Call;
 use super::linear_system::LinearSystem;
 use super::registers::Registers;
-use crate::bytecode::{Failure, Functions, Journal, Machine};
+use crate::bytecode::{Failure, Functions, Journal, Machine, Reason};
 use std::ops::{Deref, DerefMut, Range};
 use std::sync::Arc;
 
@@ -29,6 +29,8 @@ pub(crate) struct Calls {
     impure: Vec<ImpureCall>,
     /// Why the last call failed.
     pub(crate) failure: Option<Failure>,
+    /// Whether what a function gives no value stays without one.
+    pub(crate) keeps_unassigned: bool,
 }
 
 /// An impure call that was carried out.
@@ -50,6 +52,7 @@ impl Memory {
             machine: Machine::of_fixed_functions(),
             impure: Vec::new(),
             failure: None,
+            keeps_unassigned: false,
         };
         let mut memory = Memory {
             registers: Vec::new(),
@@ -103,6 +106,16 @@ impl Calls {
     /// Where zero was taken for variables that nothing was assigned to.
     pub(crate) fn defaults(&self) -> &[(u32, Failure)] {
         self.machine.defaults()
+    }
+
+    /// The value of a component of a record that a function leaves without one, if it may have any.
+    pub(super) fn default_of(&mut self, function: u32) -> Option<f64> {
+        if self.keeps_unassigned {
+            return None;
+        }
+        let at = self.end_of(function);
+        self.machine.note_default(function, Failure { function, at, reason: Reason::Unassigned });
+        Some(0.0)
     }
 
     /// Impure calls have new values from here on.

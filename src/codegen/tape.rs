@@ -88,10 +88,12 @@ impl Tape {
                     let call = &self.calls[call as usize];
                     calls.run(call, r).map_err(|_| at as u32 - 1)?;
                 }
-                Instruction::Given { a, .. } => {
-                    if r[a as usize].is_nan() {
-                        return Err(at as u32 - 1);
-                    }
+                Instruction::Given { d, a, is_zero, function } => {
+                    r[d as usize] = match r[a as usize] {
+                        value if !value.is_nan() => value,
+                        _ if is_zero => calls.default_of(function).ok_or(at as u32 - 1)?,
+                        _ => return Err(at as u32 - 1),
+                    };
                 }
                 Instruction::Solve { solve } => {
                     let solve = &self.solves[solve as usize];

@@ -159,10 +159,14 @@ impl<'a> TapeBuilder<'a> {
                 return register;
             }
             Node::Call { function, output, arguments } => {
-                let d = output + self.call(*function, Box::new([]), *arguments);
-                if self.registers.functions().codes[*function as usize].may_lack {
-                    self.tape.code.push(Instruction::Given { a: d, function: *function });
+                let a = output + self.call(*function, Box::new([]), *arguments);
+                let functions = self.registers.functions();
+                if !functions.codes[*function as usize].may_lack {
+                    return a;
                 }
+                let (is_zero, function) = (functions.takes_defaults, *function);
+                let d = self.registers.fresh();
+                self.tape.code.push(Instruction::Given { d, a, is_zero, function });
                 return d;
             }
             Node::CallDerivative { function, output, inputs, arguments } => {

@@ -359,10 +359,20 @@ impl Translation<'_> {
             Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
             Instruction::Perform { .. } | Instruction::Return { .. } => return None,
             Instruction::Call { call } => self.ask_for_call(call),
-            Instruction::Given { a, .. } => {
+            Instruction::Given { d, a, is_zero, .. } => {
                 let a = self.get(a);
                 let is_given = self.builder.ins().fcmp(FloatCC::Equal, a, a);
-                self.go_on_if(is_given);
+                let value = match is_zero {
+                    true => {
+                        let zero = self.builder.ins().f64const(0.0);
+                        self.builder.ins().select(is_given, a, zero)
+                    }
+                    false => {
+                        self.go_on_if(is_given);
+                        a
+                    }
+                };
+                self.set(d, value);
             }
             Instruction::Solve { solve } => match self.upcalls.solve(solve) {
                 Some(_) => self.ask_for_solution(solve),

@@ -103,7 +103,10 @@ pub fn run_parameter(
     tape: &Tape,
     registers: &mut Memory,
 ) -> Result<Option<Failure>, Failure> {
-    match tape.run(registers) {
+    registers.calls.keeps_unassigned = true;
+    let result = tape.run(registers);
+    registers.calls.keeps_unassigned = false;
+    match result {
         Err(at) if tape.lacking(at).is_some() => {
             registers[parameter.0 as usize] = f64::NAN;
             Ok(Some(failure(tape, registers, at)))

@@ -150,6 +150,22 @@ fn functions_that_assign_all_they_use_have_no_warning() {
     assert_eq!(simulated(&program), Ok((2.0, Vec::new())));
 }
 
+/// The components of a record that a function leaves out are zero where they become variables.
+#[test]
+fn components_without_value_are_zero_where_they_are_used() {
+    let record = "record State Real a; Real b; Real c[2]; end State;
+        function state input Real x; output State s; algorithm
+          for i in 1:2 loop s.a := i*x; end for; s.c[1] := x; end state;
+        State s = state(time);";
+    let (program, _) =
+        translated(&format!("{record} Real y = s.a + s.b + s.c[2];"), false).expect("a model");
+    let (found, warnings) = simulated(&program).expect("a simulation");
+    assert_eq!((found, warnings.len()), (0.5, 1), "{warnings:?}");
+    assert!(warnings[0].starts_with(&format!("`M.state` {BEFORE}")), "{warnings:?}");
+    let (program, _) = translated(&format!("{record} Real y = s.a + s.b;"), true).expect("a model");
+    assert!(simulated(&program).is_err(), "strict");
+}
+
 #[test]
 fn zero_is_taken_at_translation_with_a_warning() {
     let rest = "parameter Integer n = integer(sum_up(1)); Real v[n] = fill(time, n); \
