@@ -259,6 +259,21 @@ fn redeclarations_fit_what_they_replace() {
     accepted(&format!(
         "{classes} model C replaceable A a; end C; model M C c(redeclare B a); end M;"
     ));
+    let media = "package Gas constant Real R = 2; constant Real table = 3; end Gas; \
+        package Liquid constant Real R = 4; end Liquid; \
+        model C replaceable package Medium = Gas; Real x = Medium.R; end C;";
+    refused_if_strict(
+        &format!("{media} model M C c(redeclare package Medium = Liquid); end M;"),
+        code,
+    );
+    warned(&format!("{media} model M C c(redeclare package Medium = Liquid); end M;"), code);
+    refused(
+        &format!(
+            "{media} model D extends C; Real y = Medium.table; end D; \
+             model M D d(redeclare package Medium = Liquid); end M;"
+        ),
+        "unknown-name",
+    );
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Argument, ClassDefinition, ClassSpecifier, ComponentClause, Constraint, Element,
-    ElementPrefixes, RedeclaredElement, VariabilityPrefix, Visibility,
+    ElementPrefixes, RedeclaredElement, Restriction, VariabilityPrefix, Visibility,
 };
 
 /// The most base classes in a row that are followed.
@@ -166,7 +166,13 @@ fn incompatible(
     let candidates = [given, own];
     candidates.into_iter().flatten().find_map(|candidate| {
         let Lack(reason) = lack(candidate, expected)?;
-        Some(unfit(name, expected, &reason, span))
+        let error = unfit(name, expected, &reason, span);
+        // Media are exchanged for others that have not all of the constants and functions of the
+        // first one: what is used is looked for where it is used.
+        Some(match expected.restriction() {
+            Restriction::Package => error.warning(),
+            _ => error,
+        })
     })
 }
 

@@ -307,13 +307,7 @@ fn what_is_not_supported_is_a_warning() {
     let path = here.path().join("M.mo");
     let text = "\
 model M
-  function f
-    input Real u;
-    output Real y = u;
-  algorithm
-    Modelica.Utilities.Streams.print(\"u\");
-  end f;
-  Real x = f(time);
+  Boolean early = String(integer(time)) < \"2\";
 end M;
 ";
     client.open(&path, text);
