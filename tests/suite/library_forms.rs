@@ -644,6 +644,22 @@ fn connectors_that_are_passed_on_have_the_sizes_of_the_first() {
     assert_eq!(at_end(text), 1.0);
 }
 
+/// What is passed on into a component whose part for it is switched off has one equation for each flow.
+#[test]
+fn what_is_passed_on_to_a_disabled_part_flows_nowhere() {
+    let text = "connector Pin Real v; flow Real i; end Pin; \
+        expandable connector Phase end Phase; expandable connector Bus end Bus; \
+        model Source Pin p; equation p.v = 3 + 2*p.i; end Source; \
+        model Gas Phase phase; Source h2; equation connect(h2.p, phase.H2); end Gas; \
+        model Region parameter Boolean has_gas = true; Bus bus; Gas gas if has_gas; Gas other; \
+        equation connect(gas.phase, bus.gas); connect(other.phase, bus.other); end Region; \
+        model Layer parameter Boolean has_gas = true; Bus bus; Region region(has_gas = has_gas); \
+        equation connect(region.bus, bus); end Layer; \
+        model M Layer a; Layer b(has_gas = false); Real x = a.region.gas.h2.p.v; \
+        equation connect(a.bus, b.bus); end M;";
+    assert_eq!(at_end(text), 3.0);
+}
+
 #[test]
 fn expandable_connectors_within_new_members_get_members_too() {
     let text = "connector Pin Real v; flow Real i; end Pin; expandable connector Bus end Bus; \

@@ -181,6 +181,9 @@ impl Classes<'_> {
         for node in nodes {
             self.leaves_below(node, &mut leaves);
         }
+        // A component that was passed on may have been passed others of its own.
+        leaves.sort_unstable_by_key(|node| node.0);
+        leaves.dedup();
         for node in leaves {
             let NodeKind::Variable(leaf) = &self.tree.nodes[node.0].kind else { continue };
             if leaf.connection != Some(ConnectionPrefix::Flow)
