@@ -15,7 +15,7 @@ use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
 use crate::source::Span;
-use crate::symbolic::{Expr, Inverse, VarId};
+use crate::symbolic::{Expr, Inverse, VarId, up_to_rounding};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -596,6 +596,7 @@ impl<'a> Builder<'a> {
             Some(level) if lowering.shaping(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
+        let condition = up_to_rounding(&mut lowering.target.dae.pool, condition);
         // What ends a simulation is told with what was known when compiling.
         let parts = match level {
             Level::Error => {

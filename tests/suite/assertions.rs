@@ -168,3 +168,26 @@ fn initial_sections_assert_at_the_start_alone() {
     fails("BadCall", "y too large (at t = 0)");
     fails("When", "too small at the start (at t = 0)");
 }
+
+/// `|Σ f - 1| <= 0` asks more of a sum than arithmetic gives; a difference that matters fails.
+#[test]
+fn sums_are_asserted_up_to_rounding() {
+    let model = |value: &str| {
+        format!(
+            "model M parameter Real f[3] = {{{value}, 0.2, 0.1}}; initial equation \
+             assert(abs(f[1] + f[2] + f[3] - 1) <= 0, \"the fractions\"); \
+             equation assert(sum(f) <= 1 and abs(1 - sum(f))*time <= 0, \"the sum\"); end M;"
+        )
+    };
+    let run = |value: &str| {
+        let world = gapilib::script::world::MemoryWorld::new().with_file("M.mo", model(value));
+        let errors = world.streams();
+        let script = "openModel(\"M.mo\");\nsimulateModel(\"M\", stopTime = 1);";
+        let status = Session::new(Box::new(world)).run_text("s.mos", script);
+        (status.code, errors.errors())
+    };
+    let (code, errors) = run("0.7");
+    assert_eq!(code, 0, "{errors}");
+    let (code, errors) = run("0.70000001");
+    assert!(code != 0 && errors.contains("the fractions"), "{errors}");
+}
