@@ -5,6 +5,7 @@ use super::code::CompiledRelation;
 use crate::causalize::CausalizedDae;
 use crate::lower::Kind;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
+use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// For every block that is solved at once, the relations in it.
@@ -14,18 +15,18 @@ pub(super) fn relations_of_blocks(pool: &Pool, sorted: &CausalizedDae) -> Vec<Ve
     let mut containing = Containing::new(|pool, e| {
         pool.as_variable(e).is_some_and(|variable| numbers.contains_key(&variable))
     });
-    let mut groups = Vec::new();
+    let mut groups = IndexSet::new();
     for block in sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks) {
         let values = block.assignments().iter().map(|a| a.value).chain(block.residuals());
         let values: Vec<Expr> = values.filter(|e| containing.contains(pool, *e)).collect();
         let mut group: Vec<usize> = Vec::new();
         pool.visit_variables(&values, |v| group.extend(numbers.get(&v).copied()));
         group.sort_unstable();
-        if group.len() > 1 {
-            groups.push(group);
+        if !group.is_empty() {
+            groups.insert(group);
         }
     }
-    groups
+    groups.into_iter().collect()
 }
 
 /// For every relation, whether nothing follows from it at events but values that are functions of

@@ -284,9 +284,11 @@ impl System {
             if number == PASSES_AT_ONCE {
                 self.inconsistent.fill(false);
             }
-            match self.pass(t, stage, change)? {
-                None => return Ok(any),
-                Some(moved) => any |= moved == Moved::Relation,
+            match self.pass(t, stage, change) {
+                Ok(None) => return Ok(any),
+                Ok(Some(moved)) => any |= moved == Moved::Relation,
+                Err(_) if self.find_other_branch(t, stage) => return Ok(true),
+                Err(failure) => return Err(failure),
             }
         }
         if self.find_combination(t, stage) {

@@ -11,6 +11,8 @@ use super::system::System;
 
 /// The most relations that are tried in all combinations.
 const MOST_RELATIONS: usize = 10;
+/// The most combinations that are tried where the branches at hand cannot be solved.
+const MOST_BRANCHES: usize = 64;
 /// Passes in which variables of discrete loops must come to rest.
 const PASSES: usize = 10;
 
@@ -39,6 +41,24 @@ impl System {
         }
         self.registers.copy_from_slice(&before);
         false
+    }
+
+    /// Looks for values of the relations of one block with which all can be solved and hold, where the
+    /// branches at hand cannot be solved: a limiter that begins at its limit does not let through
+    /// what determines its input. Without, all is as before.
+    pub(super) fn find_other_branch(&mut self, t: f64, stage: Stage) -> bool {
+        let before = self.registers.clone();
+        let program = self.program.clone();
+        let mut tried = 0;
+        let groups = program.relations_of_blocks.iter();
+        let found = groups.filter(|group| group.len() <= MOST_RELATIONS).any(|group| {
+            tried += 1 << group.len();
+            tried <= MOST_BRANCHES && self.try_combinations(group, &before, t, stage)
+        });
+        if !found {
+            self.registers.copy_from_slice(&before);
+        }
+        found
     }
 
     /// The relations that stand in a block with one of a group.
