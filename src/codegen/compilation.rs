@@ -441,6 +441,7 @@ fn depend_on_time(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> boo
 /// warning where a function gives none.
 fn default_values(program: &Program) -> (Vec<f64>, Vec<Diagnostic>) {
     let mut registers = Memory::new(&program.registers);
+    registers.calls.keeps_unassigned = true;
     let mut warnings = Vec::new();
     for (parameter, tape) in &program.parameter_tapes {
         if let Err(failed) = tape.run(&mut registers) {

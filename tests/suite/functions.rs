@@ -486,18 +486,23 @@ fn components_without_value_are_faults_of_who_reads_them() {
              model Main Real y = chosen(part(time + 2)); end Main; end P;"
         )
     };
-    let run = |text: &str| {
+    let run = |text: &str, strict: bool| {
         let file = parse_stored_definition(SourceId::NONE, text).expect("Modelica");
         let mut library = Library::new();
+        library.set_strict(strict);
         library.load(&file).expect("a loadable file");
         let program = compiled(&library).expect("it compiles");
         let settings = Settings { stop: 0.5, ..Settings::default() };
-        let result = simulate(&mut program.system(), &settings);
-        result.map(|_| ()).map_err(|error| program.explain(&error).message.clone())
+        let mut system = program.system();
+        let result = simulate(&mut system, &settings);
+        let result = result.map_err(|error| program.explain(&error).message.clone());
+        result.map(|_| system.defaults().len())
     };
-    assert_eq!(run(&text("a")), Ok(()));
+    assert_eq!(run(&text("a"), true), Ok(0));
     let expected = "a variable has no value in the function `P.part` (at t = 0)";
-    assert_eq!(run(&text("b")).unwrap_err(), expected);
+    assert_eq!(run(&text("b"), true).unwrap_err(), expected);
+    // Zero with a warning, as for other variables of functions.
+    assert_eq!(run(&text("b"), false), Ok(1));
 }
 
 /// A parameter that a function leaves without value is a fault of the equations that read it.
@@ -734,4 +739,35 @@ fn what_a_partial_application_binds_may_have_sizes_of_other_inputs() {
     let mut out = [0.0; 2];
     system.observe(3.0, &[], &mut out).expect("values");
     assert_eq!(out, [6.0, 3.0]);
+}
+
+/// The least and the greatest of nothing are the ends of the type (MLS §10.3.4.1).
+#[test]
+fn the_least_of_no_elements_is_the_greatest_value_of_their_type() {
+    let model = "model Ends
+      function all_of input Boolean b[:]; output Boolean r = min(b); algorithm annotation(Inline = true);
+      end all_of;
+      function any_of input Boolean b[:]; output Boolean r; algorithm
+        for i in 1:2 loop r := max(b); end for;
+      end any_of;
+      parameter Integer n = 0;
+      Boolean v[n];
+      Real truths[:] = {if all_of(fill(false, 0)) == true then 1 else 0,
+        if any_of(fill(true, 0)) == false then 1 else 0,
+        if min(v) == true and max(v) == false then 1 else 0};
+      Integer k[n];
+      Boolean ends = max(k) < min(k);
+      Real x = sum(truths) + (if ends then 1 else 0);
+    end Ends;";
+    let file = parse_stored_definition(SourceId::NONE, model).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let flat = flatten(&library, &Name::parse("Ends"), &[]).expect("a model").model;
+    let program = Program::compile(causalize(&flat).expect("a model")).expect("a model");
+    let mut system = program.system();
+    system.observe_only(&[program.find_variable("x").expect("x")]);
+    system.initialize(0.0, &mut []).expect("a start");
+    let mut out = [0.0];
+    system.observe(0.0, &[], &mut out).expect("a value");
+    assert_eq!(out, [4.0]);
 }

@@ -142,6 +142,22 @@ fn functions_that_draw_random_numbers_draw_them_again() {
     assert_eq!((found, warnings.len()), (7.0, 1));
 }
 
+/// What an initial section does to the hidden state it does when the simulation starts, though all
+/// that it needs for it is known when the model is translated.
+#[test]
+fn the_hidden_state_is_set_when_a_simulation_starts() {
+    let rest = "function start input Integer n; output Integer id; algorithm
+          id := 4321; seed({n * i for i in 1:33}, 33, id); end start;
+        parameter Integer id(fixed = false); discrete Real y(start = 0, fixed = true);
+        initial algorithm id := start(7); equation
+        when time > 0.125 then y = next(id); end when;";
+    let (program, _) = translated(rest, false).expect("a model");
+    let (first, _) = simulated(&program).expect("a simulation");
+    assert!(first > 0.0 && first < 1.0, "{first}");
+    // A simulation knows nothing of the one before.
+    assert_eq!(simulated(&program), Ok((first, Vec::new())));
+}
+
 #[test]
 fn functions_that_assign_all_they_use_have_no_warning() {
     let (program, warnings) =

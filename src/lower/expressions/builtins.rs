@@ -4,6 +4,7 @@
 use super::records::{arrays, field, of_texts, text_arrays};
 use super::{Array, Binary, ClockedCall, Lowered, Lowering, Target, Unary, placed, size_fault};
 use crate::diag::{Diagnostic, Fault, suggest};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::functions::{
     self, Argument, Builtin, Clocked, Element, Known, Meaning, Operator, Plan, PlanOf, Reduction,
@@ -339,7 +340,12 @@ impl<T: Target> Lowering<'_, T> {
         }
         let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
             // The greatest and the least value (MLS §10.3.4.1), as the interpreter has them.
-            let none = if reduction == Reduction::Min { f64::MAX } else { f64::MIN };
+            let [greatest, least] = match self.type_of(element) {
+                Some(ValueType::Boolean) => [1.0, 0.0],
+                Some(ValueType::Integer) => [i64::MAX as f64, i64::MIN as f64],
+                _ => [f64::MAX, f64::MIN],
+            };
+            let none = if reduction == Reduction::Min { greatest } else { least };
             return scalar(self.fold(Binary::Add, none, &[]));
         };
         let mut result = *first;

@@ -87,6 +87,11 @@ impl<T: Target> Lowering<'_, T> {
         if function.impure && (!self.target.runs_once() || c_function::is_in_c(function)) {
             return Err(None);
         }
+        let is_external = matches!(function.body, eval::FunctionBody::External(_));
+        if (function.impure || is_external) && function.outputs.is_empty() {
+            // What it does, such as to set the state of random numbers, it does to a simulation.
+            return Err(None);
+        }
         let known = function
             .inputs
             .iter()

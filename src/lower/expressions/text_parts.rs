@@ -88,8 +88,8 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Some(TextPart::Number(row, None)))
     }
 
-    /// The type of a scalar in a text; Real where it cannot be told from a Real.
-    fn type_of(&mut self, e: &Expression) -> Option<ValueType> {
+    /// The type of a scalar or of the elements of an array; Real where it cannot be told from a Real.
+    pub(super) fn type_of(&mut self, e: &Expression) -> Option<ValueType> {
         let both = |own: &mut Self, a: &Expression, b: &Expression| {
             let types = [own.type_of(a)?, own.type_of(b)?];
             let is_whole = types.iter().all(|t| matches!(t, ValueType::Integer));
@@ -106,7 +106,9 @@ impl<T: Target> Lowering<'_, T> {
                 let Ok(path) = self.path(reference) else { return Some(ValueType::Real) };
                 Some(self.target.value_type(&path).unwrap_or(ValueType::Real))
             }
-            ExpressionKind::Call { function, .. } => match function.as_ident() {
+            ExpressionKind::Array(elements) => self.type_of(elements.first()?),
+            ExpressionKind::Call { function, arguments } => match function.as_ident() {
+                Some(name) if name == "fill" => self.type_of(arguments.positional.first()?),
                 Some(name) if name == "integer" || name == "Integer" || name == "size" => {
                     Some(ValueType::Integer)
                 }
