@@ -154,6 +154,9 @@ fn an_interrupt_stops_the_call_and_keeps_the_session() {
 fn an_interrupt_at_the_prompt_forgets_the_line() {
     let mut prompt = Prompt::new();
     prompt.line("a = 42");
+    // An interrupt before it is read would take this line.
+    prompt.line("3*a");
+    prompt.expect(" = 126");
     prompt.send("a = 1");
     prompt.session.send_control('c').expect("it reads");
     prompt.expect("> ");
