@@ -159,6 +159,8 @@ fn an_interrupt_at_the_prompt_forgets_the_line() {
     prompt.expect(" = 126");
     prompt.send("a = 1");
     prompt.session.send_control('c').expect("it reads");
+    // The end of bracketed paste is that of the line.
+    prompt.expect("[?2004l");
     prompt.expect("> ");
     prompt.line("2*a");
     prompt.expect(" = 84");
