@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
+//! initialization         the initial system and the first instant
 //! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
 //! newton                 torn loops: Newton, then global_newton and levenberg_marquardt; zeros that
 //!                        are isolated though the Jacobian is singular: multiple_roots; a start
@@ -22,6 +23,7 @@ mod event_iteration;
 mod execution;
 mod failure_messages;
 mod global_newton;
+mod initialization;
 mod instants;
 mod levenberg_marquardt;
 mod linearization;

@@ -16,17 +16,9 @@ use crate::codegen::sequence::{expressions, observing};
 use crate::diag::Fault;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::lower::Homotopy;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::VarId;
 use std::sync::{Arc, OnceLock};
-
-/// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
-const CONSISTENT: f64 = 1e-6;
-
-/// Parts of the way from simplified to actual expressions.
-const FIRST_HOMOTOPY_STEP: f64 = 0.1;
-const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 
 /// A system whose relations inside `noEvent` are looked at, or have events.
 #[derive(Debug, Clone, Default)]
@@ -269,7 +261,7 @@ impl System {
         self.agree_with_transported(t)
     }
 
-    fn unload(&self, y: &mut [f64]) {
+    pub(super) fn unload(&self, y: &mut [f64]) {
         for (variable, value) in self.program.unknowns.iter().zip(y.iter_mut()) {
             *value = self.registers[variable.0 as usize];
         }
@@ -294,7 +286,7 @@ impl System {
     }
 
     /// Evaluates all assertions.
-    fn assert_all(&mut self) -> Result<(), Failure> {
+    pub(super) fn assert_all(&mut self) -> Result<(), Failure> {
         (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))
     }
 
@@ -445,7 +437,7 @@ impl System {
     }
 
     /// Everything as it is before the initial system is solved.
-    fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
+    pub(super) fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
         let program = self.program.clone();
         self.registers[0] = t;
         for variable in program.observed.iter().chain(&program.solved) {
@@ -473,92 +465,12 @@ impl System {
     }
 
     /// Chooses better states where those at hand come to their end; whether it did.
-    fn improve_choices(&mut self) -> Result<bool, Failure> {
+    pub(super) fn improve_choices(&mut self) -> Result<bool, Failure> {
         let mut improved = false;
         for (choice, selection) in self.choices.iter_mut().zip(&self.program.selections) {
             improved |= choice.improve(selection, &mut self.registers)?;
         }
         Ok(improved)
-    }
-
-    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
-    fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
-        if let Some(homotopy) = self.program.sorted.dae.homotopy
-            && self.follow_homotopy(t, homotopy).is_ok()
-        {
-            return Ok(());
-        }
-        self.take_start_values(t)?;
-        self.settle(t, Stage::Initial).map(|_| ())
-    }
-
-    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
-    /// there to the actual ones, in shorter steps where a solution is missed.
-    fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
-        let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
-        self.take_start_values(t)?;
-        self.registers[active] = 1.0;
-        self.registers[lambda] = 0.0;
-        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
-        let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
-        let mut reached = self.registers.clone();
-        while outcome.is_ok() && done < 1.0 {
-            let next = f64::min(done + step, 1.0);
-            self.registers[lambda] = next;
-            match self.settle(t, Stage::Initial) {
-                Ok(_) => {
-                    done = next;
-                    step *= 2.0;
-                    reached.copy_from_slice(&self.registers);
-                }
-                Err(failure) => {
-                    self.registers.copy_from_slice(&reached);
-                    step *= 0.25;
-                    if step < SMALLEST_HOMOTOPY_STEP {
-                        outcome = Err(failure);
-                    }
-                }
-            }
-        }
-        self.registers[active] = 0.0;
-        outcome?;
-        self.settle(t, Stage::Initial).map(|_| ())
-    }
-
-    /// Compares both sides of the initial equations that were not needed.
-    fn check_initial_values(&mut self) -> Result<(), Failure> {
-        for (number, check) in self.program.initial_checks.iter().enumerate() {
-            run(&check.tape, &mut self.registers)?;
-            let [a, b] = [check.outputs[0], check.outputs[1]];
-            let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
-            if (a - b).abs() > CONSISTENT * a.abs().max(b.abs()).max(1.0) {
-                return Err(Failure::Inconsistent { check: number as u32 });
-            }
-        }
-        Ok(())
-    }
-
-    fn initialize_once(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        self.forget_notices();
-        self.treated.clear();
-        self.kept.clear();
-        self.transported.clear();
-        self.solve_initial_system(t)?;
-        self.note_open_at_start(t);
-        self.check_initial_values()?;
-        self.assert_at_event()?;
-        self.log_assertions_at_event(t)?;
-        self.improve_choices()?;
-        self.start_clocks(t)?;
-        self.start_histories(t)?;
-        self.start_transported(t)?;
-        self.start_sensitivities()?;
-        self.iterate_at_start(t)?;
-        self.improve_choices()?;
-        self.reschedule();
-        self.unload(y);
-        self.assert_all()?;
-        self.log_assertions(t)
     }
 }
 

@@ -4,9 +4,9 @@
 //! abs(a + b - 1) < eps     a + b = 1 + 2 eps, because a and b were rounded
 //! ```
 //!
-//! In which order a sum is computed, and so by how much it is wrong in its last digits, is nobody's
-//! promise: who asserts something of it means it up to that (Higham, *Accuracy and Stability of
-//! Numerical Algorithms*, §3.3, running error analysis).
+//! No tool promises the order in which a sum is computed, and so its last digits: who asserts
+//! something of it means it up to that (Higham, *Accuracy and Stability of Numerical Algorithms*,
+//! §3.3, running error analysis).
 
 use super::function;
 use super::node::{Expr, Node, RelationOperator};

@@ -88,7 +88,7 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Some(TextPart::Number(row, None)))
     }
 
-    /// The type of a scalar or of the elements of an array; Real where it cannot be told from a Real.
+    /// The type of a scalar or of the elements of an array; Real where it is not known.
     pub(super) fn type_of(&mut self, e: &Expression) -> Option<ValueType> {
         let both = |own: &mut Self, a: &Expression, b: &Expression| {
             let types = [own.type_of(a)?, own.type_of(b)?];

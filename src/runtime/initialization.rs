@@ -1,0 +1,97 @@
+//! The initial system (MLS §8.6): homotopy, redundant initial equations, the first instant.
+
+use super::execution::run;
+use super::instants::Stage;
+use super::system::System;
+use crate::lower::Homotopy;
+use crate::sim::Failure;
+
+/// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
+const CONSISTENT: f64 = 1e-6;
+
+/// Parts of the way from simplified to actual expressions.
+const FIRST_HOMOTOPY_STEP: f64 = 0.1;
+const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
+
+impl System {
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
+        if let Some(homotopy) = self.program.sorted.dae.homotopy
+            && self.follow_homotopy(t, homotopy).is_ok()
+        {
+            return Ok(());
+        }
+        self.take_start_values(t)?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
+    /// there to the actual ones, in shorter steps where a solution is missed.
+    fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
+        let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
+        self.take_start_values(t)?;
+        self.registers[active] = 1.0;
+        self.registers[lambda] = 0.0;
+        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
+        let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
+        let mut reached = self.registers.clone();
+        while outcome.is_ok() && done < 1.0 {
+            let next = f64::min(done + step, 1.0);
+            self.registers[lambda] = next;
+            match self.settle(t, Stage::Initial) {
+                Ok(_) => {
+                    done = next;
+                    step *= 2.0;
+                    reached.copy_from_slice(&self.registers);
+                }
+                Err(failure) => {
+                    self.registers.copy_from_slice(&reached);
+                    step *= 0.25;
+                    if step < SMALLEST_HOMOTOPY_STEP {
+                        outcome = Err(failure);
+                    }
+                }
+            }
+        }
+        self.registers[active] = 0.0;
+        outcome?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Compares both sides of the initial equations that were not needed.
+    fn check_initial_values(&mut self) -> Result<(), Failure> {
+        for (number, check) in self.program.initial_checks.iter().enumerate() {
+            run(&check.tape, &mut self.registers)?;
+            let [a, b] = [check.outputs[0], check.outputs[1]];
+            let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+            if (a - b).abs() > CONSISTENT * a.abs().max(b.abs()).max(1.0) {
+                return Err(Failure::Inconsistent { check: number as u32 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves the initial system, with what the events of the first instant do.
+    pub(super) fn initialize_once(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.forget_notices();
+        self.treated.clear();
+        self.kept.clear();
+        self.transported.clear();
+        self.solve_initial_system(t)?;
+        self.note_open_at_start(t);
+        self.check_initial_values()?;
+        self.assert_at_event()?;
+        self.log_assertions_at_event(t)?;
+        self.improve_choices()?;
+        self.start_clocks(t)?;
+        self.start_histories(t)?;
+        self.start_transported(t)?;
+        self.start_sensitivities()?;
+        self.iterate_at_start(t)?;
+        self.improve_choices()?;
+        self.reschedule();
+        self.unload(y);
+        self.assert_all()?;
+        self.log_assertions(t)
+    }
+}
