@@ -324,7 +324,8 @@ fn a_filter_keeps_what_is_wanted_and_changes_no_byte_of_it() {
 fn long_scripts_are_not_kept_as_trees() {
     let text = "x = 0;\n".to_owned() + &"x = x + 1;\n".repeat(150_000) + "print(String(x))\n";
     let here = folder(&[("long.mos", &text)]);
-    let (code, out, errors) = gapi(&here, &["run", "long.mos", "--memory-limit", "180"]);
+    // 150 to 160 MiB, somewhat more on a busy machine; with the trees it takes 300.
+    let (code, out, errors) = gapi(&here, &["run", "long.mos", "--memory-limit", "220"]);
     assert_eq!((code, out.trim()), (0, "150000"), "{errors}");
 }
 
