@@ -162,3 +162,15 @@ fn a_branch_that_cannot_be_solved_is_left_for_one_that_can() {
     let upper = text.replace("y = 1;", "y = 2.5;");
     assert_eq!(simulated(&upper, 0.0).last("filtered"), 2.0);
 }
+
+/// To multiply with what an unknown is divided by is possible where it is zero, too.
+#[test]
+fn an_unknown_over_zero_is_multiplied_out() {
+    let one = Run::of("model H Real h; Real a = time; equation h/a^2 = 2 + time; end H;", 1.0);
+    one.follows("h", 1e-12, |t| (2.0 + t) * t * t);
+    let text = "model B Real h; Real a = time; equation
+        if a < 0.5 then (h - 1)/a + 3 = 2*time; else h/a + 1 = 2*time; end if; end B;";
+    Run::of(text, 1.0).follows("h", 1e-12, |t| {
+        if t < 0.5 { 1.0 + (2.0 * t - 3.0) * t } else { (2.0 * t - 1.0) * t }
+    });
+}
