@@ -21,6 +21,7 @@
 mod alias_elimination;
 mod blt;
 mod causalized;
+mod constant_conditions;
 mod discrete;
 mod dummy_derivatives;
 mod dump;
@@ -31,6 +32,7 @@ mod homotopy;
 mod index_reduction;
 mod initial_system;
 mod linear_loops;
+mod numbers;
 mod parameter_order;
 mod passes;
 mod reinit;

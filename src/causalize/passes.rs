@@ -7,8 +7,8 @@ use super::hidden_constraints::{hidden_constraints, may_be_dependent};
 use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
 use super::{
-    alias_elimination, blt, discrete, homotopy, index_reduction, parameter_order, reinit, report,
-    state_select, zero_coefficients, zero_derivatives,
+    alias_elimination, blt, constant_conditions, discrete, homotopy, index_reduction,
+    parameter_order, reinit, report, state_select, zero_coefficients, zero_derivatives,
 };
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
@@ -59,6 +59,9 @@ pub const PASSES: &[Pass] = &[
     }),
     pass("eliminate_aliases", "alias elimination: `a = b` and `a = -b`", |system| {
         system.eliminate_aliases()
+    }),
+    pass("fold_conditions", "branches that are never taken left out", |system| {
+        system.fold_conditions()
     }),
     pass("drop_vanishing", "derivatives with zero coefficients removed", |system| {
         system.drop_zero_derivatives()
@@ -176,6 +179,11 @@ impl<'a> Causalization<'a> {
 
     fn eliminate_aliases(&mut self) -> Result<(), Diagnostic> {
         self.aliases = alias_elimination::eliminate_aliases(&mut self.dae);
+        Ok(())
+    }
+
+    fn fold_conditions(&mut self) -> Result<(), Diagnostic> {
+        constant_conditions::fold_conditions(&mut self.dae);
         Ok(())
     }
 

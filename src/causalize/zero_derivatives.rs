@@ -8,12 +8,10 @@
 //! A coefficient is zero if the equations of its variables say so, whatever parameters are set to.
 
 use super::causalized::Alias;
+use super::numbers::Numbers;
 use crate::lower::{Dae, Equation, Kind, used_variables};
-use crate::symbolic::{Expr, Node, VarId, substitute};
+use crate::symbolic::{Expr, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
-
-/// Variables through which the value of a coefficient is followed.
-const DEEPEST: usize = 20;
 
 /// Drops the terms, then the derivatives that stand nowhere.
 pub(super) fn drop_zero_derivatives(dae: &mut Dae, aliases: &[Option<Alias>]) {
@@ -62,7 +60,7 @@ fn without_zeros(
         for (factor, other) in [(a, b), (b, a)] {
             let is_term = contained(dae, factor, derivatives).is_empty()
                 && !contained(dae, other, derivatives).is_empty();
-            if is_term && numbers.value(dae, factor, 0) == Some(0.0) {
+            if is_term && numbers.value(dae, factor) == Some(0.0) {
                 zeros.insert(node);
             }
         }
@@ -85,55 +83,6 @@ fn without_zeros(
         successors.insert(old, new);
     }
     successors[&e]
-}
-
-/// What equations say that variables are.
-struct Numbers {
-    /// The other side of the equation that a variable makes a side of.
-    given: FxHashMap<VarId, Expr>,
-    known: FxHashMap<VarId, Option<f64>>,
-}
-
-impl Numbers {
-    fn of(dae: &Dae) -> Numbers {
-        let mut given = FxHashMap::default();
-        for Equation { left, right, .. } in &dae.equations {
-            for (side, other) in [(*left, *right), (*right, *left)] {
-                if let Some(v) = dae.pool.as_variable(side)
-                    && dae.is_solved_for(v)
-                    && !dae.pool.depends_on(other, v)
-                {
-                    given.entry(v).or_insert(other);
-                }
-            }
-        }
-        Numbers { given, known: FxHashMap::default() }
-    }
-
-    fn value(&mut self, dae: &mut Dae, e: Expr, depth: usize) -> Option<f64> {
-        if let Some(value) = dae.pool.as_constant(e) {
-            return Some(value);
-        }
-        let mut numbers: FxHashMap<VarId, Expr> = FxHashMap::default();
-        for v in dae.pool.variables(e) {
-            if let Some(value) = self.value_of(dae, v, depth) {
-                numbers.insert(v, dae.pool.constant(value));
-            }
-        }
-        let replaced = substitute(&mut dae.pool, e, &|v| numbers.get(&v).copied());
-        dae.pool.as_constant(replaced)
-    }
-
-    fn value_of(&mut self, dae: &mut Dae, v: VarId, depth: usize) -> Option<f64> {
-        if let Some(known) = self.known.get(&v) {
-            return *known;
-        }
-        let other = self.given.get(&v).copied().filter(|_| depth < DEEPEST)?;
-        self.known.insert(v, None);
-        let value = self.value(dae, other, depth + 1);
-        self.known.insert(v, value);
-        value
-    }
 }
 
 /// Derivatives that no equation contains any more are no unknowns.

@@ -294,10 +294,17 @@ impl System {
         if self.find_combination(t, stage) {
             return Ok(true);
         }
-        match self.settle_leniently(t, stage)? {
-            true => Ok(true),
-            false => Err(Failure::EventIteration { variable: self.unstable }),
+        let (registers, inconsistent) = (self.registers.clone(), self.inconsistent.clone());
+        let settled = self.settle_leniently(t, stage);
+        if settled == Ok(true) {
+            return Ok(true);
         }
+        (self.registers, self.inconsistent) = (registers, inconsistent);
+        if self.find_lenient_combination(t, stage) {
+            return Ok(true);
+        }
+        settled?;
+        Err(Failure::EventIteration { variable: self.unstable })
     }
 
     /// The same where relations are excused that hold but for what the tolerance makes of their

@@ -21,7 +21,7 @@ use super::execution::run_loop;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
-use super::open_loops::{is_open, polish};
+use super::open_loops::{is_on_a_line, is_open, polish};
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
@@ -187,7 +187,11 @@ impl LoopSolver {
                     return Ok(());
                 }
                 // A pivot that is a rounding error makes steps without end of a singular Jacobian.
-                Err(_) if !initial && is_open(equations, &self.start, &self.nominal) => {
+                Err(_)
+                    if !initial
+                        && (is_open(equations, &self.start, &self.nominal)
+                            || is_on_a_line(equations, &self.start, &self.nominal)) =>
+                {
                     self.is_singular = true;
                     self.x.copy_from_slice(&self.start);
                     polish(equations, &mut self.x, &self.nominal);

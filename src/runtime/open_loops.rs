@@ -4,6 +4,11 @@
 //! There the equations depend on each other, and the Jacobian has the same rank, less than the number
 //! of unknowns, at the solution and beside it. Which of the solutions is taken changes nothing that
 //! the equations determine.
+//!
+//! Others leave unknowns open at some solutions only: the energy balance of a pump without flow, 0 = 0,
+//! lets its enthalpy be anything. Beside such a solution, along the kernel of the Jacobian, there are
+//! others; beside a turning point there are none. The solution nearest to the values before is taken, so
+//! that an enthalpy stays what it was.
 
 use crate::sim::Equations;
 
@@ -34,6 +39,38 @@ pub(super) fn is_open(equations: &mut dyn Equations, x: &[f64], nominal: &[f64])
     };
     let ranks = [beside(0.0), beside(1.0), beside(-1.0)];
     ranks[0].is_some_and(|rank| rank < x.len()) && ranks.iter().all(|rank| *rank == ranks[0])
+}
+
+/// Residuals of solutions beside a solution, in units of what the rows of the Jacobian make of the
+/// magnitudes of the unknowns; beside a turning point they are as large as [`DISTANCE`] squared, 1e-6,
+/// and a 64th of this after [`CORRECTIONS`].
+const ALONG: f64 = 1e-10;
+
+/// Whether a solution is one of many along each direction in which the Jacobian is singular.
+pub(super) fn is_on_a_line(equations: &mut dyn Equations, x: &[f64], nominal: &[f64]) -> bool {
+    let n = x.len();
+    if n > MOST_UNKNOWNS {
+        return false;
+    }
+    let scale: Vec<f64> = x.iter().zip(nominal).map(|(x, nominal)| x.abs().max(*nominal)).collect();
+    let Some((matrix, rows)) = scaled_jacobian(equations, x, &scale) else { return false };
+    let Some(factors) = matrix.try_svd(false, true, f64::EPSILON, MOST_SWEEPS) else {
+        return false;
+    };
+    let Some(directions) = factors.v_t else { return false };
+    let smallest = RANK * factors.singular_values.amax();
+    let kernel: Vec<usize> = (0..n).filter(|at| factors.singular_values[*at] <= smallest).collect();
+    let mut continues = |direction: usize, sign: f64| {
+        let step = |i: usize| sign * DISTANCE * directions[(direction, i)];
+        let mut moved: Vec<f64> = (0..n).map(|i| x[i] + step(i) * scale[i]).collect();
+        polish(equations, &mut moved, nominal);
+        let way: f64 = (0..n).map(|i| (moved[i] - x[i]) / scale[i] * step(i)).sum();
+        let mut residual = vec![0.0; n];
+        equations.residual(&moved, &mut residual).is_ok()
+            && residual.iter().zip(&rows).all(|(f, row)| (f * row).abs() <= ALONG)
+            && way >= 0.5 * DISTANCE * DISTANCE
+    };
+    !kernel.is_empty() && kernel.iter().all(|at| continues(*at, 1.0) && continues(*at, -1.0))
 }
 
 /// Improves a solution by steps of Gauss and Newton, the shortest ones in units of the unknowns: least

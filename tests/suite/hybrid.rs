@@ -342,6 +342,24 @@ fn logic_without_a_stable_state_is_reported() {
     assert!(diagnostic.message.contains("`a`"), "{}", diagnostic.message);
 }
 
+/// IMC_InverterDrive: rounding errors of a current that is zero contradict a diode that conducts and
+/// one that does not.
+#[test]
+fn relations_that_rounding_errors_contradict_settle() {
+    let diode = |error: &str| {
+        let text = format!(
+            "model D parameter Real e = {error}; Boolean off(start = true); Real s; Real x;
+               Boolean large = 230*time > 100;
+             equation off = s < 0; s = x + (if off then e else -e); x = max(time - 0.5, 0);
+             end D;"
+        );
+        attempt(&text, 1.0).3
+    };
+    assert!(diode("2e-13").is_ok());
+    let error = diode("2e-9").expect_err("it does not settle");
+    near(error.time, 0.0, 1e-9);
+}
+
 #[test]
 fn a_latch_of_two_gates_keeps_its_state() {
     let text = "model L Boolean s = time > 1 and time < 1.5; Boolean r = time > 2 and time < 2.5;

@@ -100,6 +100,28 @@ fn a_function_is_differentiated_through_its_body() {
     run.follows("a", 1e-12, a);
 }
 
+/// A vessel of Modelica.Fluid without data of its ports: all branches together look as if its pressure
+/// was free and its flow given.
+#[test]
+fn branches_that_are_never_taken_do_not_count() {
+    let text = "model Vessel Real p; Real q; Real level = 0; Real height; Boolean is_full; Real s;
+        parameter Real C = 2;
+        equation
+          height = 0; is_full = level >= height; C*der(p) = q;
+          if is_full then p = sin(time); s = 1;
+          elseif s > 0 then q = s; s = time; else q = 0; s = -1; end if;
+        end Vessel;";
+    let run = Run::of(text, 2.0);
+    assert!(run.states().is_empty());
+    run.follows("q", 1e-12, |t| 2.0 * t.cos());
+    run.follows("is_full", 0.0, |_| 1.0);
+    // What a parameter decides may be set otherwise, and stays.
+    let decided = text
+        .replace("height = 0;", "height = h;")
+        .replace("Real s;", "Real s; parameter Real h = 0;");
+    assert_eq!(compiled(&decided).sorted().states.len(), 1);
+}
+
 #[test]
 fn rigidly_connected_inertias_move_as_one() {
     let text = "model Shaft

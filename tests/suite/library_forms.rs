@@ -880,3 +880,17 @@ fn parameters_of_functions_with_computed_sizes_are_evaluated() {
     let at = program.find_variable("bias").expect("there is a bias");
     assert!(matches!(program.variables()[at].access, Access::Constant(_)), "it can be set");
 }
+
+/// FrequencySweepVoltageSource of the standard library 4.0.0 declares what it inherits again, without
+/// its attribute `min`; MLS §7.1 wants declarations that are identical.
+#[test]
+fn what_is_inherited_and_declared_may_differ_in_attributes() {
+    let model = |value: &str| {
+        format!(
+            "partial model Base parameter Integer m(min = 1) = 3; end Base; \
+             model M extends Base; parameter Integer m = {value} \"phases\"; Real x = m*time; end M;"
+        )
+    };
+    assert_eq!(at_end(&model("3")), 3.0);
+    assert!(attempted(&model("4")).is_err());
+}

@@ -129,6 +129,22 @@ fn a_network_without_ground_has_its_currents() {
     assert!((last(&difference, "d") - (3.0f64 * 1.15).sqrt()).abs() < 1e-12);
 }
 
+/// The energy balance of a pump without flow is 0 = 0: its medium stays as warm as it was.
+#[test]
+fn what_nothing_determines_any_more_stays_as_it_was() {
+    let pump = "function density input Real p; input Real h; output Real d; algorithm
+          d := 1 + 0.01*h^2 + 0.001*p; annotation(Inline = false); end density;
+        Real v(start = 1); Real h(start = 1); Real p(start = 2); Real m; Real rho;
+        Real open = max(1 - 2*time, 0); Real q(start = 0, fixed = true);
+        equation m = open*(p - 1)/sqrt(abs(p - 1) + 0.1); m = rho*v; rho = density(p, h);
+          p = rho*(2 - v - v^2); der(q) = v;
+          0 = (if m > 0 then m else m*h) - (if m > 0 then m*h else m) + v*p/0.8;";
+    warns(pump, "may not determine `p`, `h`, `v`");
+    // As long as there is a flow, h = 1 + p/(0.8 rho), with p = 2 rho when it ends.
+    near(last(pump, "h"), 3.5, 1e-3);
+    near(last(pump, "v"), 0.0, 1e-12);
+}
+
 #[test]
 fn a_turning_point_is_an_error() {
     let text = "Real x(start = 1), y; equation x^2 + y = 1 - time; y = 0.5*time;";

@@ -167,7 +167,9 @@ impl Classes<'_> {
         if let Some(known) = found.get(name).cloned() {
             if known.span == declaration.span
                 || (known.scope != declaration.scope
-                    && known.is_same(&declaration)
+                    && (known.is_same(&declaration)
+                        || (!self.library.is_strict()
+                            && known.differs_in_attributes(&declaration)))
                     && self.have_same_type(&known, &declaration))
             {
                 return Ok(());
@@ -256,6 +258,17 @@ impl Classes<'_> {
 impl Declaration {
     /// Whether both declare the same, their types aside, as two base classes may (MLS §7.1).
     fn is_same(&self, other: &Declaration) -> bool {
+        self.modifier.is_same(&other.modifier) && self.is_same_but_for_modifier(other)
+    }
+
+    /// Whether two declarations with one value have other attributes, such as `m(min = 1) = 3` and
+    /// `m = 3`. The specification wants them identical; libraries have such (FrequencySweepVoltageSource
+    /// of the standard library 4.0.0), and the first one counts.
+    fn differs_in_attributes(&self, other: &Declaration) -> bool {
+        self.modifier.has_same_binding(&other.modifier) && self.is_same_but_for_modifier(other)
+    }
+
+    fn is_same_but_for_modifier(&self, other: &Declaration) -> bool {
         let size = |(size, _): &(Subscript, ScopeId)| match size {
             Subscript::All(_) => ":".to_owned(),
             Subscript::Index(size) => print::expression(size),
@@ -266,7 +279,6 @@ impl Declaration {
         };
         self.prefixes == other.prefixes
             && self.type_prefixes == other.type_prefixes
-            && self.modifier.is_same(&other.modifier)
             && sizes(self) == sizes(other)
             && condition(self) == condition(other)
     }

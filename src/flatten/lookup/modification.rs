@@ -191,19 +191,21 @@ impl Modifier {
 
     /// Whether both are written alike, wherever they stand.
     pub fn is_same(&self, other: &Modifier) -> bool {
-        let value = |one: &Modifier| {
-            one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
-        };
         let elements = || {
             self.elements.iter().all(|(name, modifier)| {
                 other.elements.get(name).is_some_and(|other| modifier.is_same(other))
             })
         };
-        value(self) == value(other)
-            && self.redeclaration.is_none()
-            && other.redeclaration.is_none()
-            && self.elements.len() == other.elements.len()
-            && elements()
+        self.has_same_binding(other) && self.elements.len() == other.elements.len() && elements()
+    }
+
+    /// Whether both give the same value, and neither another declaration.
+    pub fn has_same_binding(&self, other: &Modifier) -> bool {
+        let value = |one: &Modifier| {
+            one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
+        };
+        let is_redeclared = self.redeclaration.is_some() || other.redeclaration.is_some();
+        value(self) == value(other) && !is_redeclared
     }
 
     /// Where it is written, or the first of the modifiers in it.
