@@ -51,14 +51,21 @@ pub(super) struct ChosenStates {
 /// Pivots smaller than this, relative to the largest entry of their row, do not count.
 const SMALLEST_PIVOT: f64 = 1e-6;
 
-/// The states of a differentiated system.
-pub(super) fn choose_states(dae: &mut Dae, chains: &Chains) -> Result<ChosenStates, Diagnostic> {
+/// Equations of the highest derivatives, and what they determine.
+pub(super) type HighestBlock = (Vec<usize>, Vec<usize>);
+
+/// The states of a differentiated system, block by block.
+pub(super) fn choose_states(
+    dae: &mut Dae,
+    chains: &Chains,
+    blocks: Vec<HighestBlock>,
+) -> Result<ChosenStates, Diagnostic> {
     let eq_to_origin = inverse(&chains.eq_to_derivative);
     let var_to_origin = inverse(&chains.var_to_derivative);
     let values = start_values(dae);
     let mut is_dummy = vec![false; chains.variables.len()];
     let mut selections = Vec::new();
-    for (mut equations, mut variables) in highest_blocks(dae, chains) {
+    for (mut equations, mut variables) in blocks {
         loop {
             equations.retain(|e| eq_to_origin[*e].is_some());
             variables.retain(|v| var_to_origin[*v].is_some());
@@ -88,7 +95,7 @@ pub(super) fn choose_states(dae: &mut Dae, chains: &Chains) -> Result<ChosenStat
     Ok(ChosenStates { states, selections })
 }
 
-fn inverse(to: &[Option<usize>]) -> Vec<Option<usize>> {
+pub(super) fn inverse(to: &[Option<usize>]) -> Vec<Option<usize>> {
     let mut from = vec![None; to.len()];
     for (source, target) in to.iter().enumerate() {
         if let Some(target) = target {
@@ -99,7 +106,7 @@ fn inverse(to: &[Option<usize>]) -> Vec<Option<usize>> {
 }
 
 /// Equations and variables of every block of the highest derivatives.
-fn highest_blocks(dae: &Dae, chains: &Chains) -> Vec<(Vec<usize>, Vec<usize>)> {
+pub(super) fn highest_blocks(dae: &Dae, chains: &Chains) -> Vec<HighestBlock> {
     let highest = |to: &[Option<usize>]| -> Vec<usize> {
         (0..to.len()).filter(|number| to[*number].is_none()).collect()
     };

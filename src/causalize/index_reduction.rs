@@ -11,7 +11,8 @@
 //! Reference: [Pantelides 1988](crate::bibliography#pantelides-1988).
 
 use super::causalized::Alias;
-use super::dummy_derivatives::{Chains, ChosenStates, choose_states};
+use super::dummy_derivatives::{Chains, ChosenStates, choose_states, highest_blocks};
+use super::preferred_states::joined;
 use super::{blt, singularity};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -21,10 +22,12 @@ use crate::lower::{Dae, Equation, Kind, Variable, derivative_of};
 use crate::symbolic::{Expr, Node, Pool, VarId, differentiate, differentiate_forward};
 use rustc_hash::FxHashMap;
 
-/// Appends differentiated equations and the derivatives they need; returns the states.
+/// Appends differentiated equations and the derivatives they need; returns the states, chosen with
+/// regard to those that are preferred and were not differentiated.
 pub(super) fn reduce_index(
     dae: &mut Dae,
     aliases: &mut Vec<Option<Alias>>,
+    preferred: &[VarId],
 ) -> Result<ChosenStates, Diagnostic> {
     let states = differentiated_variables(dae, aliases);
     if is_regular(dae, aliases, &states) {
@@ -49,7 +52,8 @@ pub(super) fn reduce_index(
         negated: system.negated,
         var_to_equation: differentiated.var_to_equation,
     };
-    let chosen = choose_states(dae, &chains)?;
+    let blocks = joined(dae, &chains, highest_blocks(dae, &chains), preferred);
+    let chosen = choose_states(dae, &chains, blocks)?;
     aliases.resize(dae.variables.len(), None);
     Ok(chosen)
 }

@@ -35,6 +35,7 @@ mod linear_loops;
 mod numbers;
 mod parameter_order;
 mod passes;
+mod preferred_states;
 mod reinit;
 mod report;
 mod singularity;

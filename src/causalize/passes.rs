@@ -8,7 +8,8 @@ use super::initial_system::{self, InitialSystem};
 use super::zero_coefficients::ZeroCoefficients;
 use super::{
     alias_elimination, blt, constant_conditions, discrete, homotopy, index_reduction,
-    parameter_order, reinit, report, state_select, zero_coefficients, zero_derivatives,
+    parameter_order, preferred_states, reinit, report, state_select, zero_coefficients,
+    zero_derivatives,
 };
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
@@ -200,8 +201,40 @@ impl<'a> Causalization<'a> {
         let pool = std::mem::take(&mut self.dae.pool);
         self.before = (self.dae.clone(), self.aliases.clone());
         self.dae.pool = pool;
-        self.chosen = index_reduction::reduce_index(&mut self.dae, &mut self.aliases)?;
+        if !self.reduce_to_preferred_states() {
+            self.chosen = index_reduction::reduce_index(&mut self.dae, &mut self.aliases, &[])?;
+        }
         Ok(())
+    }
+
+    /// Index reduction with states that are preferred and not differentiated; whether there are any
+    /// that can be states.
+    fn reduce_to_preferred_states(&mut self) -> bool {
+        let mut wanted = preferred_states::preferred(&self.dae, &self.aliases);
+        while !wanted.is_empty() {
+            preferred_states::declare_derivatives(&mut self.dae, &mut self.aliases, &wanted);
+            let reduced = index_reduction::reduce_index(&mut self.dae, &mut self.aliases, &wanted);
+            let n_wanted = wanted.len();
+            match reduced {
+                Ok(chosen) => {
+                    wanted.retain(|v| chosen.states.binary_search(v).is_ok());
+                    if wanted.len() == n_wanted {
+                        self.chosen = chosen;
+                        return true;
+                    }
+                }
+                Err(_) => wanted.clear(),
+            }
+            self.restore();
+        }
+        false
+    }
+
+    /// The system before index reduction.
+    fn restore(&mut self) {
+        let pool = std::mem::take(&mut self.dae.pool);
+        (self.dae, self.aliases) = self.before.clone();
+        self.dae.pool = pool;
     }
 
     /// Sorts, and begins again with index reduction where constraints between states come to light.
@@ -214,9 +247,7 @@ impl<'a> Causalization<'a> {
             if constraints.is_empty() {
                 break;
             }
-            let pool = std::mem::take(&mut self.dae.pool);
-            (self.dae, self.aliases) = self.before.clone();
-            self.dae.pool = pool;
+            self.restore();
             for (number, equation) in constraints {
                 self.dae.equations[number] = equation;
             }

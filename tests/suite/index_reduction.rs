@@ -100,6 +100,38 @@ fn a_function_is_differentiated_through_its_body() {
     run.follows("a", 1e-12, a);
 }
 
+/// A volume of Modelica.Fluid: its mass and energy are differentiated, its pressure and enthalpy are
+/// preferred.
+#[test]
+fn what_is_not_differentiated_may_be_preferred() {
+    let volume = |wish: &str| {
+        format!(
+            "model Volume parameter Real V = 2; Real p({wish}start = 1); Real h({wish}start = 3);
+               Real m; Real U; Real d; Real u; Real y({wish}start = 0) = sin(time) + p;
+             initial equation p = 1; h = 3;
+             equation m = V*d; U = m*u; u = h - p/d; d = 2*(p + 0.1*p^2)/(1 + h);
+               der(m) = 0.5*cos(time) + 1 - p; der(U) = 3*(0.5*cos(time) + 1) - p*h; end Volume;"
+        )
+    };
+    let plain = Run::of(&volume(""), 2.0);
+    let preferred = Run::of(&volume("stateSelect = StateSelect.prefer, "), 2.0);
+    assert_eq!(plain.states(), ["m", "U"]);
+    // `y` follows from `p` and time, and needs no state of its own.
+    assert_eq!(preferred.states(), ["p", "h"]);
+    for name in ["p", "h", "m", "U"] {
+        let (one, other) = (plain.values(name), preferred.values(name));
+        for (a, b) in one.iter().zip(&other) {
+            assert!((a - b).abs() <= 1e-6 * a.abs(), "{name}: {a}, {b}");
+        }
+    }
+    // Nothing is iterated.
+    let loops = |run: &Run| {
+        let blocks = run.program.sorted().blocks.iter();
+        blocks.filter(|block| matches!(block, gapilib::causalize::Block::Loop(_))).count()
+    };
+    assert_eq!((loops(&plain), loops(&preferred)), (1, 0));
+}
+
 /// A vessel of Modelica.Fluid without data of its ports: all branches together look as if its pressure
 /// was free and its flow given.
 #[test]
