@@ -40,6 +40,11 @@ pub(super) fn reduce_index(
         Ok(differentiated) => differentiated,
         Err(_) => return Err(system.singular(dae)),
     };
+    if !preferred.is_empty() {
+        let numbered = system.equations.iter().zip(&differentiated.eq_to_derivative);
+        let constraints = numbered.filter(|(_, derivative)| derivative.is_some());
+        constraints.map(|(e, _)| dae.equations[*e]).try_for_each(|e| refuse_jumps(dae, e))?;
+    }
     let given = system.var_to_derivative.len();
     system.var_to_derivative = differentiated.var_to_derivative;
     system.declare_derivatives(dae, given);
@@ -56,6 +61,33 @@ pub(super) fn reduce_index(
     let chosen = choose_states(dae, &chains, blocks)?;
     aliases.resize(dae.variables.len(), None);
     Ok(chosen)
+}
+
+/// A constraint with what changes at events may jump there: a state that is chosen by it would go on,
+/// and the one that its author differentiates would jump. Functions of whole numbers are taken for
+/// continuous, as the density of a medium by the number of its phases.
+fn refuse_jumps(dae: &Dae, equation: Equation) -> Result<(), Diagnostic> {
+    let changes = |e: Expr, is_argument: bool| {
+        let Some(variable) = dae.pool.as_variable(e).map(|v| dae.variable(v)) else { return false };
+        match variable.kind {
+            Kind::Discrete | Kind::Previous(_) => !is_argument || variable.base == BaseType::Real,
+            kind => matches!(kind, Kind::Frozen | Kind::Signal),
+        }
+    };
+    let sides = [equation.left, equation.right];
+    let mut jumps = sides.iter().any(|side| changes(*side, false));
+    for node in dae.pool.reachable(&sides) {
+        let node = dae.pool.node(node);
+        let is_call = matches!(node, Node::Call { .. } | Node::CallDerivative { .. });
+        node.for_each_operand(|operand| jumps |= changes(operand, is_call));
+    }
+    match jumps {
+        false => Ok(()),
+        true => {
+            let words = "a preferred state is constrained by an equation that may jump at events";
+            Err(fault!(crate::lower::errors::STATE_SELECT, "{words}").at(equation.span))
+        }
+    }
 }
 
 /// Whether `variable` is one, and `value` does not depend on it.

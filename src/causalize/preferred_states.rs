@@ -8,7 +8,7 @@
 //!
 //! With derivatives of their own, such variables are constrained by the states that there are, and
 //! index reduction decides as `stateSelect` wants (MLS §4.9.7.1). What does not become a state then
-//! gets none.
+//! gets none, and nothing does where a constraint may jump at events.
 
 use super::causalized::Alias;
 use super::dummy_derivatives::{Chains, HighestBlock, inverse};

@@ -132,6 +132,23 @@ fn what_is_not_differentiated_may_be_preferred() {
     assert_eq!((loops(&plain), loops(&preferred)), (1, 0));
 }
 
+/// What jumps at events is no state in the place of what does not.
+#[test]
+fn a_preferred_variable_that_jumps_is_no_state() {
+    for jump in ["if x > 0.5 then 2*x else x", "k*x"] {
+        let text = format!(
+            "model Jump Real x(start = 0, fixed = true); discrete Real k(start = 1, fixed = true);
+               Real y(stateSelect = StateSelect.prefer) = {jump};
+             equation der(x) = 1; when time > 0.5 then k = 2; end when; end Jump;"
+        );
+        let run = Run::of(&text, 1.0);
+        assert_eq!(run.states(), ["x"]);
+        run.follows("x", 1e-9, |t| t);
+        let end = *run.values("y").last().expect("a value");
+        assert!((end - 2.0).abs() < 1e-9, "{end}");
+    }
+}
+
 /// A vessel of Modelica.Fluid without data of its ports: all branches together look as if its pressure
 /// was free and its flow given.
 #[test]
