@@ -65,7 +65,7 @@ impl Numbers {
         if depth >= DEEPEST {
             return None;
         }
-        // What depends on itself is no number.
+        // What depends on itself has no known value.
         self.known.insert(v, None);
         let value = match (self.given.get(&v), self.relations.get(&v)) {
             (Some(other), _) => self.value_below(dae, *other, depth + 1),

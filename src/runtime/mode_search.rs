@@ -47,8 +47,8 @@ impl System {
     }
 
     /// As [`find_combination`](System::find_combination), where relations are excused that hold but for
-    /// what the tolerance, or rounding, makes of their sides: of two diodes without a current, errors
-    /// of 1e-13 A beside the 100 A of others decide which one conducts, and may contradict each of them.
+    /// what the tolerance, or rounding, makes of their sides: of two diodes without a current, rounding
+    /// errors decide which one conducts, and may contradict each of them.
     pub(super) fn find_lenient_combination(&mut self, t: f64, stage: Stage) -> bool {
         let rounding = ROUNDING * self.largest_side();
         self.uncertainty.iter_mut().for_each(|error| *error = error.max(rounding));

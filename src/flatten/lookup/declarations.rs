@@ -263,7 +263,7 @@ impl Declaration {
 
     /// Whether two declarations with one value have other attributes, such as `m(min = 1) = 3` and
     /// `m = 3`. The specification wants them identical; libraries have such (FrequencySweepVoltageSource
-    /// of the standard library 4.0.0), and the first one counts.
+    /// of the standard library 4.0.0), and the one that is found first counts.
     fn differs_in_attributes(&self, other: &Declaration) -> bool {
         self.modifier.has_same_binding(&other.modifier) && self.is_same_but_for_modifier(other)
     }
