@@ -33,6 +33,11 @@ pub fn instruction_limit() -> u64 {
     LIMIT.load(Ordering::Relaxed)
 }
 
+/// The most statements and iterations of loops that the interpreter runs in one call of a simulation.
+pub(crate) fn statement_limit() -> u64 {
+    instruction_limit() / INSTRUCTIONS_A_STATEMENT
+}
+
 /// The most statements and iterations of loops that the interpreter runs to find the values that one model
 /// needs at translation: one takes as long as some instructions of compiled functions.
 pub(crate) fn step_limit() -> u64 {

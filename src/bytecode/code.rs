@@ -3,7 +3,7 @@
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use super::run_time_texts::Texts;
-use crate::external::{Contents, Effect, Entry, Kind, Objects, Slot};
+use crate::external::{Callable, Contents, Effect, Entry, Kind, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
@@ -115,6 +115,11 @@ pub struct Code {
 }
 
 impl Code {
+    /// Whether the interpreter carries it out.
+    pub fn is_interpreted(&self) -> bool {
+        self.externals.iter().any(|call| call.in_modelica.is_some())
+    }
+
     /// The place behind the last instruction.
     pub fn end(&self) -> u32 {
         self.instructions.len() as u32
@@ -131,6 +136,21 @@ pub struct ExternalCall {
     pub arguments: Vec<Slot>,
     /// Its result.
     pub result: Option<Slot>,
+    /// What is called in the place of the function, if it is written in Modelica.
+    #[serde(with = "crate::external::none")]
+    pub in_modelica: Option<Arc<dyn Callable>>,
+}
+
+impl ExternalCall {
+    /// A call of a function in Rust or in C.
+    pub fn new(entry: &'static Entry, arguments: Vec<Slot>, result: Option<Slot>) -> ExternalCall {
+        ExternalCall { entry, arguments, result, in_modelica: None }
+    }
+
+    /// Whether what it says when it fails is kept.
+    pub(super) fn keeps_words(&self) -> bool {
+        self.entry.c.is_some() || self.in_modelica.is_some()
+    }
 }
 
 impl std::fmt::Debug for ExternalCall {
@@ -258,8 +278,9 @@ impl Functions {
                 "a division by zero or an overflow of a division".to_owned()
             }
             (Reason::External, Some(Instruction::External { external })) => {
-                let entry = code.externals[*external as usize].entry;
-                if let Some(message) = entry.c.and_then(|_| said(entry.name)) {
+                let call = &code.externals[*external as usize];
+                let entry = call.entry;
+                if let Some(message) = said(entry.name).filter(|_| call.keeps_words()) {
                     return (message, span);
                 }
                 format!("the external function `{}` has no result", entry.name)

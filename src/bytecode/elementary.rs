@@ -75,6 +75,13 @@ impl Elementary {
         *LOGARITHM
     }
 
+    /// Whether the value for an argument is beyond the largest number, and not outside the domain.
+    pub(super) fn overflows_at(&self, argument: f64) -> bool {
+        argument.is_finite()
+            && self.id.get().accepts(&[argument])
+            && self.value.of(&[argument]).is_infinite()
+    }
+
     /// The maximum of two numbers.
     pub(crate) fn maximum() -> &'static Elementary {
         Elementary::of(function::find("max").expect("the function table has a maximum"))

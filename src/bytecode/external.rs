@@ -50,21 +50,41 @@ struct Granted<'a> {
     journal: &'a mut Journal,
 }
 
+impl Granted<'_> {
+    /// The name under which the journal has a file: functions that look for files name them now by
+    /// their absolute paths and now by others.
+    fn absolute(&self, path: &str) -> String {
+        self.files.full_path(path).unwrap_or_else(|_| path.to_owned())
+    }
+}
+
 impl Outside for Granted<'_> {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
-        self.journal.read(path, || self.files.read(path))
+        self.journal.read(&self.absolute(path), || self.files.read(path))
     }
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
-        self.journal.write(path, bytes)
+        self.journal.write(&self.absolute(path), bytes)
     }
 
     fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
-        self.journal.append(path, bytes)
+        self.journal.append(&self.absolute(path), bytes)
     }
 
     fn remove(&mut self, path: &str) -> Result<(), Fault> {
-        self.journal.remove(path)
+        self.journal.remove(&self.absolute(path))
+    }
+
+    fn make_folder(&mut self, path: &str) -> Result<(), Fault> {
+        self.journal.make_folder(&self.absolute(path))
+    }
+
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        self.journal.is_folder(&self.absolute(path), || self.files.is_folder(path))
+    }
+
+    fn full_path(&mut self, path: &str) -> Result<String, Fault> {
+        self.files.full_path(path)
     }
 
     fn print(&mut self, text: &str) -> Result<(), Fault> {
@@ -92,7 +112,7 @@ impl Externals {
 
     /// Keeps what a function said that failed.
     fn failed(&mut self, call: &ExternalCall, fault: Fault) -> Reason {
-        if call.entry.c.is_some() {
+        if call.keeps_words() {
             SAID.set((call.entry.name, fault.message.clone()));
         }
         self.message = fault.message;
@@ -178,9 +198,10 @@ fn run(
             journal: &mut externals.journal,
         },
     };
-    let done = match call.entry.makes_object() {
+    let done = match (&call.in_modelica, call.entry.makes_object()) {
+        (Some(function), _) => function.call(&mut arguments),
         // Objects of C may change: everyone has its own.
-        true if call.entry.c.is_none() => {
+        (None, true) if call.entry.c.is_none() => {
             functions.objects.remember(&mut arguments, call.entry.run)
         }
         _ => call.entry.call(&mut arguments),

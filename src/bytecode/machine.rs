@@ -554,8 +554,12 @@ fn execute<T: Number>(
                 r[d as usize] = truth(operator.holds(a, b));
             }
             Instruction::Unary { function, d, a } => {
-                let result = finite(r[a as usize].unary(function));
-                r[d as usize] = result.or_else(|e| given(r, a, a).and(Err(e)))?;
+                let argument = r[a as usize];
+                let result = argument.unary(function);
+                r[d as usize] = match finite(result) {
+                    Err(_) if function.overflows_at(argument.value()) => result,
+                    finite => finite.or_else(|e| given(r, a, a).and(Err(e)))?,
+                };
             }
             Instruction::Binary { function, d, a, b } => {
                 given(r, a, b)?;
@@ -663,11 +667,8 @@ mod tests {
     /// `y = x*x`, after `String(x)` was made.
     fn making_a_string(gives_texts: bool) -> Functions {
         let slot = |kind, first, dims: &[u32]| Slot { kind, first, dims: dims.into() };
-        let call = ExternalCall {
-            entry: &COMPOSE,
-            arguments: vec![slot(Kind::Number, 0, &[5])],
-            result: Some(slot(Kind::Numbered, 5, &[])),
-        };
+        let arguments = vec![slot(Kind::Number, 0, &[5])];
+        let call = ExternalCall::new(&COMPOSE, arguments, Some(slot(Kind::Numbered, 5, &[])));
         let instructions =
             vec![Instruction::External { external: 0 }, Instruction::Mul { d: 6, a: 0, b: 0 }];
         let code = Code {

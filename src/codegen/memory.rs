@@ -39,7 +39,7 @@ struct ImpureCall {
     function: u32,
     /// The bits of the arguments, the last of which is the place of the call.
     arguments: Vec<u64>,
-    results: Vec<f64>,
+    results: Result<Vec<f64>, Failure>,
     /// The requests that it made to write something.
     requests: Range<usize>,
 }
@@ -142,16 +142,28 @@ impl Calls {
         let is_known =
             |known: &&ImpureCall| known.function == call.function && known.arguments == arguments;
         if let Some(known) = self.impure.iter().find(is_known) {
-            r[call.d as usize..][..n].copy_from_slice(&known.results);
-            return Ok(());
+            return match &known.results {
+                Ok(results) => {
+                    r[call.d as usize..][..n].copy_from_slice(results);
+                    Ok(())
+                }
+                Err(failure) => {
+                    self.failure = Some(*failure);
+                    Err(*failure)
+                }
+            };
         }
         self.take_back(call.function, &arguments);
         let before = self.machine.journal().len();
-        self.run_anew(call, r)?;
-        let results = r[call.d as usize..][..n].to_vec();
+        let done = self.run_anew(call, r);
+        let results = done.map(|()| r[call.d as usize..][..n].to_vec());
         let requests = before..self.machine.journal().len();
-        self.impure.push(ImpureCall { function: call.function, arguments, results, requests });
-        Ok(())
+        if results.is_err() {
+            self.machine.take_back(requests.clone());
+        }
+        let function = call.function;
+        self.impure.push(ImpureCall { function, arguments, results, requests });
+        done
     }
 
     /// What a call at the same place has written at this instant was for other values.

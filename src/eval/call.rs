@@ -220,7 +220,11 @@ impl Evaluator<'_> {
         match arguments.positional.as_slice() {
             [only] => {
                 let value = self.expression(only)?;
-                entry.value(std::slice::from_ref(&value)).at(span)
+                let result = entry.value(std::slice::from_ref(&value));
+                match infinite(entry, &value).filter(|_| self.host.overflows()) {
+                    Some(infinite) if result.is_err() => Ok(infinite),
+                    _ => result.at(span),
+                }
             }
             [first, second] => {
                 let values = [self.expression(first)?, self.expression(second)?];
@@ -247,6 +251,16 @@ impl Evaluator<'_> {
         let values = self.complete(header, given, span)?;
         self.host.call_builtin_among(header, values, span, self.scope)
     }
+}
+
+/// The value of a function beyond the largest Real.
+fn infinite(entry: &Builtin, argument: &Value) -> Option<Value> {
+    let (Meaning::Mathematical(function), Value::Real(x)) = (entry.meaning, argument) else {
+        return None;
+    };
+    let function = function.get();
+    let value = function.value.of(&[*x]);
+    (function.accepts(&[*x]) && value.is_infinite()).then_some(Value::Real(value))
 }
 
 /// A row `[1, n]` or column `[n, 1]` as a vector where the built-in wants a vector, and a vector as

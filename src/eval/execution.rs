@@ -2,7 +2,9 @@
 
 use super::errors::MODEL_ONLY;
 use super::variable::Variable;
-use super::{Compiled, Evaluator, Function, FunctionBody, Scope, ValueType, depth};
+use super::{
+    Compiled, Evaluator, Function, FunctionBody, FunctionComponent, Scope, ValueType, depth,
+};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::source::Span;
@@ -56,6 +58,9 @@ impl Evaluator<'_> {
             FunctionBody::PartialDerivative { .. } => return Err(partial_derivative(function)),
             FunctionBody::External(external) => self.external(function, external)?,
             FunctionBody::Algorithm(statements) => {
+                if let Some(outputs) = self.run_compiled(function) {
+                    return Ok(outputs);
+                }
                 for component in function.outputs.iter().chain(&function.locals) {
                     self.prepare(component.name)?;
                 }
@@ -72,6 +77,17 @@ impl Evaluator<'_> {
             outputs.push(self.or_default(value, output.span)?);
         }
         Ok(outputs)
+    }
+
+    /// The outputs of a function whose inputs are declared, if the host has compiled it.
+    fn run_compiled(&mut self, function: &Arc<Function>) -> Option<Vec<Value>> {
+        if function.impure {
+            return None;
+        }
+        let compiler = self.host.compiler()?;
+        let value = |input: &FunctionComponent| self.scope.get(input.name);
+        let inputs = function.inputs.iter().map(value).collect::<Option<Vec<_>>>()?;
+        compiler.run_compiled(function, &inputs)
     }
 
     /// The record made of the inputs (MLS §12.6).

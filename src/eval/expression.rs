@@ -16,6 +16,18 @@ use crate::value::construct::{self, Range};
 use crate::value::errors::{REAL_OVERFLOW, TYPE_MISMATCH};
 use crate::value::{FunctionValue, Value, ops};
 
+/// The sum, difference or product of two numbers beyond the largest Real; a quotient or a power without
+/// a finite value is a fault in compiled functions too.
+fn infinite(operator: BinaryOperator, a: &Value, b: &Value) -> Option<Value> {
+    let (Value::Real(a), Value::Real(b)) = (a, b) else { return None };
+    Some(Value::Real(match operator {
+        BinaryOperator::Add | BinaryOperator::ElementwiseAdd => a + b,
+        BinaryOperator::Subtract | BinaryOperator::ElementwiseSubtract => a - b,
+        BinaryOperator::Multiply | BinaryOperator::ElementwiseMultiply => a * b,
+        _ => return None,
+    }))
+}
+
 impl Evaluator<'_> {
     /// All outputs of a call; the one value of any other expression.
     pub(super) fn outputs(&mut self, expression: &Expression) -> Result<Vec<Value>, Diagnostic> {
@@ -166,7 +178,12 @@ impl Evaluator<'_> {
             _ => {}
         }
         let b = self.expression(right)?;
-        apply(operator, &a, &b).at(span)
+        match apply(operator, &a, &b) {
+            Err(e) if e.code == REAL_OVERFLOW && self.host.overflows() => {
+                infinite(operator, &a, &b).ok_or_else(|| e.at(span))
+            }
+            result => result.at(span),
+        }
     }
 
     /// Only the chosen branch is evaluated (MLS §3.3).

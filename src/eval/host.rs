@@ -17,6 +17,13 @@ pub enum Callee {
     Builtin(Arc<Function>),
 }
 
+/// Runs functions in a quicker way than statement by statement.
+pub trait RunCompiled {
+    /// The outputs of a pure function for values of all its inputs, the same that its statements give;
+    /// `None` where they have to be carried out, which gives the errors and the warnings.
+    fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>>;
+}
+
 /// Answers calls and names that are not local to the function or script being evaluated.
 pub trait Host {
     /// The function of this name, as seen from where the evaluated text stands; `None` if there is
@@ -111,6 +118,16 @@ pub trait Host {
             Ok(Some(Callee::Function(destructor))) => vec![destructor],
             _ => Vec::new(),
         }
+    }
+
+    /// Whether results beyond the largest Real are infinite, as in compiled functions, and not faults.
+    fn overflows(&self) -> bool {
+        false
+    }
+
+    /// Who may have compiled a pure function that has become worth it; `None` by default.
+    fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
+        None
     }
 
     /// Told before each turn of an outermost loop of a script, not of a function: `turn` counts

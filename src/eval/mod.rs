@@ -39,7 +39,7 @@ pub use declaration::{Given, declare};
 pub use depth::{MAX_CALLS, with_stack};
 pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
-pub use host::{Callee, Host};
+pub use host::{Callee, Host, RunCompiled};
 pub use scalar_function::Compiled;
 pub use scope::Scope;
 

@@ -171,6 +171,9 @@ impl Evaluator<'_> {
         }
         match self.expression(level)? {
             Value::Enumeration(value) => Ok(value.literal()),
+            // In the functions of loaded classes literals are ordinals (MLS §8.3.7 has two).
+            Value::Integer(1) => Ok("warning"),
+            Value::Integer(2) => Ok("error"),
             other => {
                 Err(fault!(TYPE_MISMATCH, "expected an AssertionLevel, got {}", other.type_name())
                     .at(level.span))

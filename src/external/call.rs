@@ -99,6 +99,11 @@ pub trait Outside {
         self.print(text)
     }
 
+    /// Makes a folder.
+    fn make_folder(&mut self, path: &str) -> Result<(), Fault> {
+        Err(refused(&format!("to make the folder `{path}`")))
+    }
+
     /// Whether a path is a file (`Some(false)`) or a folder (`Some(true)`), if it exists.
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
         Err(refused(&format!("to check whether `{path}` exists")))
@@ -130,6 +135,15 @@ impl Outside for () {}
 
 fn refused(what: &str) -> Fault {
     fault!(EXTERNAL_OUTSIDE, "an external function needs {what}, which is not allowed here")
+}
+
+/// A function that is called as external ones are, though it is written in Modelica.
+pub trait Callable: Send + Sync {
+    /// Carries out a call.
+    ///
+    /// # Errors
+    /// What the function says.
+    fn call(&self, call: &mut Call<'_>) -> Result<(), Fault>;
 }
 
 /// A call: positions of its arguments and what stands there.

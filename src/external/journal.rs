@@ -22,6 +22,9 @@ enum Deed {
     Remove {
         path: String,
     },
+    MakeFolder {
+        path: String,
+    },
     Print {
         text: String,
     },
@@ -62,7 +65,7 @@ impl Journal {
             Deed::Write { path: other, .. }
             | Deed::Append { path: other, .. }
             | Deed::Remove { path: other } => other == path,
-            Deed::Print { .. } | Deed::Nothing => false,
+            Deed::MakeFolder { .. } | Deed::Print { .. } | Deed::Nothing => false,
         };
         let mut deeds = self.deeds.iter().filter(of_path).peekable();
         let mut content = match deeds.peek() {
@@ -77,7 +80,7 @@ impl Journal {
                     all.extend(bytes);
                     Some(all)
                 }
-                Deed::Remove { .. } | Deed::Print { .. } | Deed::Nothing => None,
+                _ => None,
             };
         }
         match content {
@@ -89,7 +92,7 @@ impl Journal {
     fn add(&mut self, deed: Deed) -> Result<(), Fault> {
         self.bytes += match &deed {
             Deed::Write { bytes, .. } | Deed::Append { bytes, .. } => bytes.len(),
-            Deed::Remove { path } => path.len(),
+            Deed::Remove { path } | Deed::MakeFolder { path } => path.len(),
             Deed::Print { text } => text.len(),
             Deed::Nothing => 0,
         };
@@ -118,6 +121,29 @@ impl Journal {
         self.add(Deed::Remove { path: path.to_owned() })
     }
 
+    /// Makes a folder.
+    pub fn make_folder(&mut self, path: &str) -> Result<(), Fault> {
+        self.add(Deed::MakeFolder { path: path.to_owned() })
+    }
+
+    /// Whether there would be a file (`Some(false)`) or a folder (`Some(true)`) of this name; `before`
+    /// says what is there now.
+    pub fn is_folder(
+        &self,
+        path: &str,
+        before: impl FnOnce() -> Result<Option<bool>, Fault>,
+    ) -> Result<Option<bool>, Fault> {
+        let last = self.deeds.iter().rev().find_map(|deed| match deed {
+            Deed::Write { path: other, .. } | Deed::Append { path: other, .. } => {
+                (other == path).then_some(Some(false))
+            }
+            Deed::Remove { path: other } => (other == path).then_some(None),
+            Deed::MakeFolder { path: other } => (other == path).then_some(Some(true)),
+            Deed::Print { .. } | Deed::Nothing => None,
+        });
+        last.map_or_else(before, Ok)
+    }
+
     /// Takes a line for the user.
     pub fn print(&mut self, text: &str) -> Result<(), Fault> {
         self.add(Deed::Print { text: text.to_owned() })
@@ -129,6 +155,7 @@ impl Journal {
             Deed::Write { path, bytes } => outside.write(path, bytes),
             Deed::Append { path, bytes } => outside.append(path, bytes),
             Deed::Remove { path } => outside.remove(path),
+            Deed::MakeFolder { path } => outside.make_folder(path),
             Deed::Print { text } => outside.print(text),
             Deed::Nothing => Ok(()),
         })

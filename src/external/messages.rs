@@ -19,6 +19,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
     Entry::impure("ModelicaInternal_fullPathName", "t->t", full_path),
     Entry::writing("ModelicaInternal_removeFile", "t", remove),
+    Entry::writing("ModelicaInternal_mkdir", "t", make_folder),
     Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
@@ -50,6 +51,11 @@ fn print(call: &mut Call<'_>) -> Result<(), Fault> {
 fn remove(call: &mut Call<'_>) -> Result<(), Fault> {
     let path = call.text(0).to_owned();
     call.outside.remove(&path)
+}
+
+fn make_folder(call: &mut Call<'_>) -> Result<(), Fault> {
+    let path = call.text(0).to_owned();
+    call.outside.make_folder(&path)
 }
 
 /// The content of the file that an argument names.

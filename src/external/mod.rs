@@ -46,7 +46,7 @@ mod tables;
 mod xorshift;
 
 pub use at_translation::AtTranslation;
-pub use call::{Call, Kind, Object, Outside, Slot};
+pub use call::{Call, Callable, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
@@ -57,6 +57,7 @@ pub use xorshift::Random;
 
 use crate::diag::Fault;
 use errors::EXTERNAL_CALL;
+use std::sync::{Mutex, PoisonError};
 
 /// What an external function is implemented by.
 pub type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
@@ -108,6 +109,29 @@ pub(crate) mod by_name {
     }
 }
 
+/// A function in Modelica has no name by which it could be found again: it cannot be written.
+pub(crate) mod none {
+    use super::Callable;
+    use serde::{Deserializer, Serializer, ser};
+    use std::sync::Arc;
+
+    pub fn serialize<S: Serializer>(
+        function: &Option<Arc<dyn Callable>>,
+        target: S,
+    ) -> Result<S::Ok, S::Error> {
+        match function {
+            None => target.serialize_unit(),
+            Some(_) => Err(ser::Error::custom("a function in Modelica")),
+        }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        source: D,
+    ) -> Result<Option<Arc<dyn Callable>>, D::Error> {
+        serde::Deserialize::deserialize(source).map(|()| None)
+    }
+}
+
 /// What calls of a function do besides giving results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Effect {
@@ -122,6 +146,27 @@ pub enum Effect {
 }
 
 impl Entry {
+    /// A function in Modelica that is called as external ones are.
+    pub(crate) fn in_modelica(
+        name: &'static str,
+        signature: &'static str,
+        effect: Effect,
+    ) -> &'static Entry {
+        static KNOWN: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_it = |entry: &&&Entry| {
+            entry.name == name && entry.signature == signature && entry.effect == effect
+        };
+        match known.iter().find(is_it) {
+            Some(entry) => entry,
+            None => {
+                let entry = Entry { effect, ..Entry::pure(name, signature, in_modelica) };
+                known.push(Box::leak(Box::new(entry)));
+                known[known.len() - 1]
+            }
+        }
+    }
+
     /// A function without effects.
     const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
         let effect = Effect::None;
@@ -243,6 +288,11 @@ impl Entry {
             _ => Ok(()),
         }
     }
+}
+
+/// What stands for a function in Modelica that is not there.
+fn in_modelica(call: &mut Call<'_>) -> Result<(), Fault> {
+    Err(call.fault("it is written in Modelica"))
 }
 
 fn with_result(is_there: bool) -> &'static str {

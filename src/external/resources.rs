@@ -49,6 +49,11 @@ impl Resources {
         self.provider(name)?.path(name)
     }
 
+    /// Whether there are files at all.
+    fn is_granted(&self) -> bool {
+        self.0.is_some()
+    }
+
     fn provider(&self, name: &str) -> Result<&dyn Provide, Fault> {
         self.0.as_deref().ok_or_else(|| {
             fault!(
@@ -87,31 +92,57 @@ impl Outside for Resources {
 
 /// Contents of files by the names that external functions are called with; shared by clones.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
-pub struct Contents(Arc<BTreeMap<Arc<str>, Arc<[u8]>>>);
+pub struct Contents {
+    kept: Arc<BTreeMap<Arc<str>, Arc<[u8]>>>,
+    /// Answers for files whose names only the simulation knows.
+    #[serde(skip)]
+    others: Resources,
+}
 
 impl fmt::Debug for Contents {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_set().entries(self.0.keys()).finish()
+        f.debug_set().entries(self.kept.keys()).finish()
     }
 }
 
 impl Contents {
     /// Keeps the content of a file, unless it is there already.
     pub fn keep(&mut self, name: &Arc<str>, resources: &Resources) -> Result<(), Fault> {
-        if !self.0.contains_key(name) {
+        if !self.kept.contains_key(name) {
             let bytes = resources.clone().read(name)?;
-            Arc::make_mut(&mut self.0).insert(name.clone(), bytes.into());
+            Arc::make_mut(&mut self.kept).insert(name.clone(), bytes.into());
         }
         Ok(())
     }
-}
 
-impl Contents {
-    /// The content of a file that was kept.
+    /// Lets files be read whose names only the simulation knows.
+    pub fn grant_others(&mut self, resources: &Resources) {
+        self.others = resources.clone();
+    }
+
+    /// The content of a file that was kept, or of another.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, Fault> {
-        match self.0.get(path) {
+        match self.kept.get(path) {
             Some(bytes) => Ok(bytes.to_vec()),
+            None if self.others.is_granted() => self.others.clone().read(path),
             None => ().read(path),
+        }
+    }
+
+    /// Whether a path is a file (`Some(false)`) or a folder (`Some(true)`), if it exists.
+    pub fn is_folder(&self, path: &str) -> Result<Option<bool>, Fault> {
+        match self.kept.contains_key(path) {
+            true => Ok(Some(false)),
+            false if self.others.is_granted() => self.others.clone().is_folder(path),
+            false => ().is_folder(path),
+        }
+    }
+
+    /// The absolute path of a file or a folder.
+    pub fn full_path(&self, path: &str) -> Result<String, Fault> {
+        match self.others.is_granted() {
+            true => self.others.path(path),
+            false => ().full_path(path),
         }
     }
 }

@@ -53,7 +53,8 @@ impl DefaultValues {
     }
 }
 
-/// Values of variables, and a machine for calls.
+/// Values of variables, and a machine for calls. What only the simulation knows is not called, nor what
+/// the interpreter takes long for.
 struct Calling<'a> {
     values: &'a [f64],
     functions: &'a Functions,
@@ -66,7 +67,8 @@ impl Environment for Calling<'_> {
     }
 
     fn call(&self, function: u32, output: u32, inputs: &[u32], arguments: &[f64]) -> f64 {
-        if arguments.iter().any(|a| a.is_nan()) {
+        let code = &self.functions.codes[function as usize];
+        if arguments.iter().any(|a| a.is_nan()) || code.impure || code.is_interpreted() {
             return f64::NAN;
         }
         let mut machine = self.machine.borrow_mut();

@@ -28,6 +28,7 @@ mod guarded;
 mod inline;
 mod inputs;
 mod message;
+mod number_values;
 mod real_values;
 mod record_values;
 mod shape;

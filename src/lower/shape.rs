@@ -56,6 +56,16 @@ impl Shape {
         }
     }
 
+    /// Whether a text in it is not known.
+    pub fn holds_unknown_text(&self) -> bool {
+        match self {
+            Shape::Array(_) | Shape::Numbered => false,
+            Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_unknown_text()),
+            Shape::Text(text) => text.contains(UNKNOWN_TEXT),
+            Shape::Texts(texts) => texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)),
+        }
+    }
+
     /// Whether it is the number of a text, or a record with one.
     pub fn holds_number_of_text(&self) -> bool {
         match self {

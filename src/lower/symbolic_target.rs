@@ -244,6 +244,15 @@ impl Target for Builder<'_> {
         super::function::call(self, function, arguments, span)
     }
 
+    fn interpreted_call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Expr>],
+        span: Span,
+    ) -> Option<Vec<Lowered<Expr>>> {
+        super::function::interpreted_call(self, function, arguments, span)
+    }
+
     fn runs_once(&self) -> bool {
         self.place.initial || self.place.at_start
     }

@@ -586,10 +586,11 @@ fn a_computed_size_that_does_not_fit_is_a_fault() {
         model M Integer n = integer(8*time); Real x = cut({1, 2, 4}, n); end M;";
     let flat = flattened(text).model;
     let program = Program::compile(causalize(&flat).expect("it can be sorted"));
-    let mut system = program.expect("it compiles").system();
+    let program = program.expect("it compiles");
     let to_one = Settings { stop: 1.0, ..Settings::default() };
-    let failed = simulate(&mut system, &to_one).expect_err("five elements of three");
-    assert!(format!("{failed:?}").contains("Assertion"), "{failed:?}");
+    let failed = simulate(&mut program.system(), &to_one).expect_err("five elements of three");
+    let message = program.explain(&failed).message.clone();
+    assert!(message.contains("the subscript 4 is outside 1:3"), "{message}");
 }
 
 #[test]

@@ -46,6 +46,7 @@ mod identified_models;
 mod identify;
 mod index_reduction;
 mod initialization;
+mod interpreted_calls;
 mod laboratory;
 mod lapack;
 mod lapack_accuracy;

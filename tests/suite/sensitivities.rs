@@ -132,6 +132,30 @@ fn decay_has_the_derivatives_of_the_exponential() {
     }
 }
 
+/// Impure functions too: what they compute once, at the start, follows the parameters.
+#[test]
+fn what_functions_compute_at_the_start_follows_parameters() {
+    let text = "model M \
+        function interpreted input Integer s[:]; input Real a; output Real y; \
+        protected Integer n = max(s .* s); Real d[n] = fill(a^2, n); algorithm y := sum(d); \
+        end interpreted; \
+        impure function compiled input Real a; output Real y; protected Integer i = 0; algorithm \
+        while i < 2 loop i := i + 1; y := exp(a)*i; end while; end compiled; \
+        parameter Real a = 2; parameter Integer s[2](each fixed = false); \
+        parameter Real k[2](each fixed = false); Real x(start = 1, fixed = true); \
+        initial equation s = {integer(time) + 2, 1}; \
+        k = {interpreted(s, a), compiled(a)}; \
+        equation der(x) = -0.1*k[1]*x + k[2]; end M;";
+    check(text, &["a"], &["x"], &[0.0, 0.5, 1.0], &[0.7], 1e-6);
+    let text = "model M \
+        impure function compiled input Real a; output Real y; protected Integer i = 0; algorithm \
+        while i < 2 loop i := i + 1; y := exp(a)*i; end while; end compiled; \
+        parameter Real a = 2; discrete Real k(start = 0, fixed = true); Real x(start = 1, fixed = true); \
+        equation when time > 0.4 then k = compiled(a); end when; \
+        der(x) = -0.1*k*x; end M;";
+    check(text, &["a"], &["x"], &[0.0, 0.5, 1.0], &[0.7], 1e-6);
+}
+
 #[test]
 fn a_static_curve_has_the_derivatives_of_its_formula() {
     let text = "model M parameter Real a = 2; parameter Real b = 3; Real y; Real z; \

@@ -110,13 +110,53 @@ impl<T: Target> Lowering<'_, T> {
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
                     && !self.target.gives_up() =>
             {
-                self.settled_call(user, &values, span).map_err(|why| match why {
-                    Some(why) => error.or_else("evaluated at translation", &why),
-                    None => error,
-                })
+                self.settled_or_interpreted(user, (&values, arguments), (error, span))
             }
             outputs => outputs,
         }
+    }
+
+    /// The outputs of a function that cannot be compiled: run now, as its arguments are known, or by the
+    /// interpreter whenever it is called. What an impure function does, it does to the simulation.
+    fn settled_or_interpreted(
+        &mut self,
+        user: &std::sync::Arc<Function>,
+        (values, arguments): (&[Lowered<T::Scalar>], &Arguments),
+        (error, span): (Diagnostic, Span),
+    ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
+        if user.impure
+            && let Some(outputs) = self.interpreted_call(user, (values, arguments), span)
+        {
+            return Ok(outputs);
+        }
+        let why = match self.settled_call(user, values, span) {
+            Ok(outputs) => return Ok(outputs),
+            Err(why) => why,
+        };
+        let interpreted = self.interpreted_call(user, (values, arguments), span);
+        interpreted.ok_or_else(|| match why {
+            Some(why) => error.or_else("evaluated at translation", &why),
+            None => error,
+        })
+    }
+
+    /// The outputs of a function that the interpreter carries out whenever it is called; Strings among
+    /// its arguments that are not known now are made then.
+    fn interpreted_call(
+        &mut self,
+        user: &std::sync::Arc<Function>,
+        (values, arguments): (&[Lowered<T::Scalar>], &Arguments),
+        span: Span,
+    ) -> Option<Vec<Lowered<T::Scalar>>> {
+        let is_unknown = |value: &Lowered<T::Scalar>| match value {
+            Lowered::Text(text) => text.contains(UNKNOWN_TEXT),
+            _ => false,
+        };
+        let values = match values.iter().any(is_unknown) {
+            true => self.composing(|own| own.inputs(user, arguments, span)).ok()?,
+            false => values.to_vec(),
+        };
+        self.target.interpreted_call(user, &values, span)
     }
 
     /// The values of the inputs: arguments by position, by name, or defaults.

@@ -8,6 +8,7 @@ mod builtins;
 mod calls;
 mod expression;
 mod homotopy;
+mod message_text;
 mod operators;
 mod placed;
 mod records;
@@ -17,8 +18,8 @@ mod varying_strings;
 mod vectorized;
 
 pub(crate) use arrays::Choice;
+pub(crate) use message_text::message_text;
 pub(crate) use records::field_of;
-pub(crate) use strings::message_text;
 pub(crate) use text_parts::TextPart;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
@@ -215,6 +216,17 @@ pub(crate) trait Target {
         arguments: Vec<Lowered<Self::Scalar>>,
         span: Span,
     ) -> Result<Vec<Lowered<Self::Scalar>>, Diagnostic>;
+    /// As [`Target::call`], of a function that the interpreter carries out whenever it is called; `None`
+    /// where that is not possible.
+    fn interpreted_call(
+        &mut self,
+        function: &Arc<crate::eval::Function>,
+        arguments: &[Lowered<Self::Scalar>],
+        span: Span,
+    ) -> Option<Vec<Lowered<Self::Scalar>>> {
+        let _ = (function, arguments, span);
+        None
+    }
     /// What leads from `simplified` to `actual` at the start, and is `actual` afterwards.
     fn homotopy(&mut self, actual: Self::Scalar, _simplified: Self::Scalar) -> Self::Scalar {
         actual

@@ -4,18 +4,18 @@ use super::records::of_texts;
 use super::{Array, Choice, Lowered, Lowering, Target};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
-use crate::eval::{self, Callee, Function, Host, Scope, ValueType, c_function};
+use crate::eval::{self, Callee, Function, Host, RunCompiled, Scope, ValueType, c_function};
 use crate::external::{AtTranslation, Outside, Resources};
 use crate::fault;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use crate::lower::function::{OnDemand, library_of};
+use crate::lower::number_values::{append_numbers, value_of};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::text_array::Texts;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
-};
-use crate::value::{ArrayValue, Elements, EnumerationValue, RecordValue, Value};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
+use crate::value::{ArrayValue, Elements, RecordValue, Value};
 use indexmap::IndexMap;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -26,6 +26,9 @@ const FIND_FILES: &[&str] = &[
     "ModelicaServices.ExternalReferences.loadResource",
     "Modelica.Utilities.Files.fullPathName",
 ];
+
+/// Statements of a call after which the functions in it are compiled.
+const LONG: u64 = 10_000;
 
 impl<T: Target> Lowering<'_, T> {
     /// The outputs of a function that takes or gives texts, if all its arguments are known and it
@@ -230,19 +233,16 @@ impl<T: Target> Lowering<'_, T> {
                 self.known_object(array)
             }
             Lowered::Array(array) => {
-                let mut values = Vec::with_capacity(array.elements.len());
+                let mut numbers = Vec::with_capacity(array.elements.len());
                 for element in &array.elements {
                     let known = self.target.as_constant(*element);
                     let known = match settle {
                         true => known.or_else(|| self.target.settle(*element)),
                         false => known,
                     };
-                    values.push(typed(known?, wanted)?);
+                    numbers.push(known?);
                 }
-                match array.dims.is_empty() {
-                    true => values.pop(),
-                    false => gathered(array.dims.clone(), values),
-                }
+                value_of(&numbers, &array.dims, wanted)
             }
         }
     }
@@ -317,13 +317,9 @@ impl<T: Target> Lowering<'_, T> {
             let texts = texts.as_slice().into();
             return Some(Lowered::Texts(Texts { dims: dims.clone(), texts }));
         }
-        let (dims, numbers) = match value {
-            Value::Array(array) => {
-                let all = (0..array.elements.len()).map(|at| number(&array.elements.get(at)));
-                (array.dims.clone(), all.collect::<Option<Vec<f64>>>()?)
-            }
-            other => (Vec::new(), vec![number(other)?]),
-        };
+        let mut numbers = Vec::new();
+        append_numbers(value, &mut numbers)?;
+        let dims = value.dims().to_vec();
         let elements = numbers.into_iter().map(|number| self.target.constant(number)).collect();
         Some(Lowered::Array(Array { dims, elements }))
     }
@@ -340,13 +336,17 @@ struct Compiling<'a, T> {
     resources: Resources,
     outside: AtTranslation,
     warnings: Vec<Diagnostic>,
+    /// How many statements the interpreter had run before.
+    before: u64,
+    compiler: Option<OnDemand>,
 }
 
 impl<'a, T: Target> Compiling<'a, T> {
     fn new(target: &'a T) -> Compiling<'a, T> {
         let resources = target.resources();
         let outside = AtTranslation::new(resources.clone());
-        Compiling { target, outside, resources, warnings: Vec::new() }
+        let before = target.interpreted().get();
+        Compiling { target, outside, resources, warnings: Vec::new(), before, compiler: None }
     }
 }
 
@@ -394,6 +394,22 @@ impl<T: Target> Host for Compiling<'_, T> {
     fn interrupted(&mut self) -> Option<Fault> {
         exhausted(self.target.interpreted())
     }
+
+    fn overflows(&self) -> bool {
+        true
+    }
+
+    fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
+        if self.compiler.is_none() {
+            if self.target.interpreted().get() - self.before < LONG {
+                return None;
+            }
+            let functions = self.target.functions();
+            let library = library_of(functions, &self.resources, true);
+            self.compiler = Some(OnDemand::new(library));
+        }
+        self.compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
+    }
 }
 
 /// Answers the interpreter with what is known of variables while a model is compiled.
@@ -432,63 +448,4 @@ fn exhausted(steps: &Cell<u64>) -> Option<Fault> {
         fault!(NOT_SUPPORTED, "the functions evaluated at translation take more than {} steps",
             budget::in_millions(limit); help: "{}", budget::REMEDY)
     })
-}
-
-/// Scalars of one type as an array.
-fn gathered(dims: Vec<usize>, values: Vec<Value>) -> Option<Value> {
-    let mut values = values.into_iter();
-    let mut elements = Elements::repeated(&values.next()?, 1).ok()?;
-    for value in values {
-        elements.append(Elements::repeated(&value, 1).ok()?).ok()?;
-    }
-    Some(Value::Array(ArrayValue { dims, elements }))
-}
-
-fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Real(value) => Some(*value),
-        Value::Integer(value) => Some(*value as f64),
-        Value::Boolean(value) => Some(f64::from(u8::from(*value))),
-        Value::Enumeration(value) => Some(value.ordinal as f64),
-        _ => None,
-    }
-}
-
-/// A number as a value of a type.
-fn typed(number: f64, wanted: &ValueType) -> Option<Value> {
-    Some(match wanted {
-        ValueType::Real => Value::Real(number),
-        ValueType::Integer => Value::Integer(number as i64),
-        ValueType::Boolean => Value::Boolean(number != 0.0),
-        ValueType::Enumeration(definition) => Value::Enumeration(EnumerationValue {
-            definition: definition.clone(),
-            ordinal: number as i64,
-        }),
-        _ => return None,
-    })
-}
-
-/// The text of a message as far as it is known when compiling.
-pub(crate) fn message_text<T: Target>(
-    lowering: &mut Lowering<'_, T>,
-    e: Option<&Expression>,
-) -> String {
-    let Some(e) = e else { return String::new() };
-    let text = match &e.kind {
-        ExpressionKind::String(text) => return text.to_string(),
-        ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } => {
-            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
-        }
-        ExpressionKind::Call { function, .. }
-            if function.as_ident().is_some_and(|name| name == "String") =>
-        {
-            lowering.lower(e)
-        }
-        ExpressionKind::Reference(_) => lowering.lower(e),
-        _ => return UNKNOWN_TEXT.into(),
-    };
-    match text {
-        Ok(Lowered::Text(text)) => text.to_string(),
-        _ => UNKNOWN_TEXT.into(),
-    }
 }

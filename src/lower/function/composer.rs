@@ -90,7 +90,7 @@ fn make(emitter: &mut Emitter, arguments: Vec<Slot>, d: Register) {
     let result = Some(Slot { kind: Kind::Numbered, first: d, dims: Box::new([]) });
     // No text was there before.
     emitter.emit(Instruction::Unassign { d, n: 1 });
-    let external = emitter.external(ExternalCall { entry: &COMPOSE, arguments, result });
+    let external = emitter.external(ExternalCall::new(&COMPOSE, arguments, result));
     emitter.emit(Instruction::External { external });
 }
 

@@ -2,9 +2,9 @@
 //!
 //! The function is compiled for every value that the Integer may take, and the call becomes a chain
 //! of `if n == 0 then … elseif n == 1 then …`. The Integer takes values between 0 and
-//! [`MOST`]; another one fails an assertion.
+//! [`MOST`]; for another one the interpreter carries out the call, or an assertion fails.
 
-use super::compiled_call;
+use super::{compiled_call, interpreted_call};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -70,8 +70,15 @@ fn chain(
     (at, value): (usize, Expr),
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-    let mut shapes = None;
-    let mut results: Option<Vec<Expr>> = None;
+    let scalars_of = |outputs: &[Lowered<Expr>]| {
+        let mut scalars = Vec::new();
+        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        scalars
+    };
+    let others = interpreted_call(builder, function, arguments, span);
+    let is_complete = others.is_some();
+    let mut results: Option<Vec<Expr>> = others.as_deref().map(scalars_of);
+    let mut shapes: Option<Vec<_>> = others.map(|o| o.iter().map(Lowered::shape).collect());
     let mut known = builder.dae.pool.constant(0.0);
     for number in (0..=MOST).rev() {
         // A size that the function cannot have is refused where it is compiled for it.
@@ -86,8 +93,7 @@ fn chain(
                 help: "give it a value that is known at translation")
             .at(span));
         }
-        let mut scalars = Vec::new();
-        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        let scalars = scalars_of(&outputs);
         let pool = &mut builder.dae.pool;
         let constant = pool.constant(f64::from(number));
         let is_it = pool.relation(RelationOperator::Equal, value, constant);
@@ -104,12 +110,14 @@ fn chain(
     let (Some(shapes), Some(results)) = (shapes, results) else {
         return with_value(builder, function, arguments, (at, 1), span);
     };
-    let text = format!(
-        "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}",
-        function.inputs[at].name, function.name
-    );
-    let parts = vec![Part::Text(text.into())];
-    builder.dae.assertions.push(Assertion::new(known, parts, Level::Error, span));
+    if !is_complete {
+        let text = format!(
+            "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}",
+            function.inputs[at].name, function.name
+        );
+        let parts = vec![Part::Text(text.into())];
+        builder.dae.assertions.push(Assertion::new(known, parts, Level::Error, span));
+    }
     let mut results = results.into_iter();
     let shapes = shapes.into_iter().flatten();
     Ok(shapes.map(|shape| Lowered::from_scalars(&shape, &mut results)).collect())

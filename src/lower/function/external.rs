@@ -56,7 +56,7 @@ impl Body<'_, '_> {
         self.refuse_unknown_files(entry, &arguments, clause.span)?;
         entry.check(&arguments, result.as_ref()).at(clause.span)?;
         self.keep_files(entry, &arguments, clause.span)?;
-        let external = self.emitter.external(ExternalCall { entry, arguments, result });
+        let external = self.emitter.external(ExternalCall::new(entry, arguments, result));
         self.emitter.emit(Instruction::External { external });
         self.emitter.close();
         Ok(())

@@ -2,7 +2,12 @@
 
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType, c_function};
 use crate::external::Effect;
+use crate::name::Name;
 use crate::syntax::ast;
+use crate::syntax::visit::{Visit, walk_reference};
+use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+use std::sync::Arc;
 
 /// The external name of a function.
 pub(super) fn external_name(function: &Function, clause: &ast::External) -> String {
@@ -37,6 +42,59 @@ pub(super) fn reads_texts(function: &Function) -> bool {
     match &function.body {
         FunctionBody::External(clause) => external_name(function, clause) != "ModelicaError",
         _ => false,
+    }
+}
+
+/// What calls of a function do besides giving results, itself or by what it calls.
+pub(super) fn effect_of(function: &Function, all: &IndexMap<Name, Arc<Function>>) -> Effect {
+    let mut search = Effects { all, seen: FxHashSet::default(), effect: Effect::None };
+    search.function(function);
+    search.effect
+}
+
+/// Looks at all functions that a function calls.
+struct Effects<'a> {
+    all: &'a IndexMap<Name, Arc<Function>>,
+    seen: FxHashSet<Name>,
+    effect: Effect,
+}
+
+impl Effects<'_> {
+    fn function(&mut self, function: &Function) {
+        let components = function.outputs.iter().chain(&function.locals);
+        components.filter_map(|c| c.binding.as_ref()).for_each(|binding| self.expression(binding));
+        match &function.body {
+            FunctionBody::Algorithm(statements) => {
+                statements.iter().for_each(|statement| self.statement(statement));
+            }
+            FunctionBody::External(clause) => {
+                let own = match c_function::in_rust(function, clause) {
+                    // What it learns of files is what the simulation has of them.
+                    Some(entry) if entry.effect == Effect::Outside => Effect::State,
+                    Some(entry) => entry.effect,
+                    None if function.outputs.is_empty() => Effect::Writes,
+                    None if function.impure => Effect::State,
+                    None => Effect::None,
+                };
+                let rank = |effect| [Effect::None, Effect::State].iter().position(|e| *e == effect);
+                if rank(own).unwrap_or(2) > rank(self.effect).unwrap_or(2) {
+                    self.effect = own;
+                }
+            }
+            FunctionBody::PartialDerivative { .. } | FunctionBody::RecordConstructor => {}
+        }
+    }
+}
+
+impl Visit for Effects<'_> {
+    fn reference(&mut self, reference: &ast::ComponentReference) {
+        walk_reference(self, reference);
+        let name = reference.name();
+        if let Some(function) = self.all.get(&name)
+            && self.seen.insert(name)
+        {
+            self.function(function);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Functions compiled for certain arguments, each combination once.
 
+use super::headers::{header_of, library_of, names_in_sizes};
 use super::statements::Body;
 use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
@@ -16,8 +17,6 @@ use crate::lower::shape::UNKNOWN_TEXT;
 use crate::lower::text_array::Texts;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::ComponentReference;
-use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
 use std::cell::Cell;
@@ -57,6 +56,8 @@ struct Signature {
     composes: bool,
     /// Whether what it would print is left out.
     silent: bool,
+    /// Whether the interpreter carries it out.
+    interpreted: bool,
 }
 
 impl Signature {
@@ -153,6 +154,8 @@ pub(crate) struct Instances {
     /// Functions that make Strings, by what they are made of.
     pub(super) composers: IndexMap<(Vec<Slot>, Vec<Arc<str>>), u32>,
     depth: usize,
+    /// A model with nothing but the functions, if some are interpreted.
+    pub(super) library: Option<Arc<FlatModel>>,
     /// How many statements the interpreter has run.
     pub(in crate::lower) interpreted: Cell<u64>,
     /// Where calls of numbers took zero for variables that nothing was assigned to.
@@ -307,6 +310,71 @@ impl Instances {
         }
         let unknown = || fault!(NO_CONSTANT_VALUE, "a size is not known").at(span);
         Err(first_error.unwrap_or_else(unknown))
+    }
+
+    /// The functions of a model alone, once for all that are interpreted.
+    pub(super) fn library(&mut self, flat: &FlatModel) -> Arc<FlatModel> {
+        let made = || {
+            let functions = flat.functions.values().cloned().collect();
+            library_of(functions, &flat.resources, flat.strict)
+        };
+        self.library.get_or_insert_with(made).clone()
+    }
+
+    /// A function that the interpreter carries out whenever it is called.
+    pub(super) fn interpreted_instance(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Option<f64>>],
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        if !matches!(function.body, FunctionBody::Algorithm(_)) {
+            return Err(fault!(NOT_SUPPORTED, "`{}` without statements", function.name).at(span));
+        }
+        let header = Arc::new(header_of(function));
+        let mut result = Err(fault!(NO_CONSTANT_VALUE, "a size is not known").at(span));
+        for known in [ByValue::Nothing, ByValue::DeclaredSizes] {
+            let signature = signature(&header, arguments, known, span)?;
+            let signature = Signature { interpreted: true, ..signature };
+            if let Some(known) = self.known.get(&signature) {
+                return Ok(known.clone());
+            }
+            result = self.interpreted(flat, (function, &header), signature, span);
+            if !matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE) {
+                break;
+            }
+        }
+        result
+    }
+
+    fn interpreted(
+        &mut self,
+        flat: &FlatModel,
+        (function, header): (&Arc<Function>, &Arc<Function>),
+        signature: Signature,
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        let library = self.library(flat);
+        let mut body = Body::new(flat, self, header);
+        let outputs = body.declare(&signature.arguments, &[], span)?;
+        let mut code = body.interpreted(function, &library, span)?;
+        code.writes = self.writes(&code);
+        code.impure = function.impure || self.has_effects(&code);
+        let instance = Instance {
+            outputs,
+            folds: false,
+            impure: code.impure,
+            writes: code.writes,
+            silenced: false,
+            passed: passed(&signature.arguments),
+            code: self.finished.len() as u32,
+        };
+        self.functions.files.grant_others(&flat.resources);
+        self.functions.codes.push(code);
+        self.finished.push(true);
+        self.known.insert(signature, instance.clone());
+        Ok(instance)
     }
 
     fn compiled(
@@ -539,21 +607,6 @@ enum ByValue {
     Everything,
 }
 
-/// The names in the sizes of the outputs and local variables of a function.
-fn names_in_sizes(function: &Function) -> FxHashSet<Ident> {
-    struct Names(FxHashSet<Ident>);
-    impl Visit for Names {
-        fn reference(&mut self, reference: &ComponentReference) {
-            self.0.extend(reference.parts.first().map(|part| part.name));
-        }
-    }
-    let mut names = Names(FxHashSet::default());
-    for component in function.outputs.iter().chain(&function.locals) {
-        component.sizes().for_each(|size| names.expression(size));
-    }
-    names.0
-}
-
 fn signature(
     function: &Function,
     arguments: &[Lowered<Option<f64>>],
@@ -592,7 +645,14 @@ fn signature(
         list.push(known);
     }
     let name = function.name.clone();
-    Ok(Signature { name, arguments: list, at_run_time: false, composes: false, silent: false })
+    Ok(Signature {
+        name,
+        arguments: list,
+        at_run_time: false,
+        composes: false,
+        silent: false,
+        interpreted: false,
+    })
 }
 
 /// What is known of an argument; `None` if it is or holds a text that changes.

@@ -5,6 +5,7 @@
 //! A function is compiled once for every combination of sizes of its arguments. Where a size
 //! depends on the value of an Integer input, it is compiled for that value, which must be known.
 //! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
+//! Where sizes are known only when it is called, the interpreter carries out the call.
 
 mod assigned_shape;
 mod composer;
@@ -13,8 +14,11 @@ mod dispatch;
 mod emitter;
 mod external;
 mod external_kinds;
+mod headers;
 mod instances;
+mod interpreted;
 mod inverse;
+mod on_demand;
 mod partial_derivative;
 mod place;
 mod printing;
@@ -26,9 +30,11 @@ mod statements;
 mod target;
 
 pub(super) use external_kinds::{confirms, prints};
+pub(super) use headers::library_of;
 pub(super) use instances::Instances;
 use instances::Output;
 pub(super) use inverse::{Inverts, inverts};
+pub(super) use on_demand::OnDemand;
 pub(super) use results::CallResults;
 
 use super::builder::{Builder, MAX_STATEMENTS};
@@ -214,6 +220,41 @@ pub(super) fn compiled_call(
     if instance.silenced {
         warn_silenced(builder, function, span);
     }
+    call_of(builder, (function, instance), arguments, span)
+}
+
+/// Expressions that call a function which the interpreter carries out; `None` where it cannot, or where
+/// a call that writes does not stand in an event.
+pub(super) fn interpreted_call(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: &[Lowered<Expr>],
+    span: Span,
+) -> Option<Vec<Lowered<Expr>>> {
+    if builder.calls.depth > 0 {
+        return None;
+    }
+    let pool = &builder.dae.pool;
+    let known: Vec<Lowered<Option<f64>>> =
+        arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    let may_write = builder.calls.functions.may_write
+        || builder.place.at_start
+        || output(builder) == Output::Written;
+    let functions = &mut builder.calls.functions;
+    let instance = functions.interpreted_instance(builder.flat, function, &known, span).ok()?;
+    if instance.writes && !may_write {
+        return None;
+    }
+    call_of(builder, (function, instance), arguments.to_vec(), span).ok()
+}
+
+/// Expressions that call a compiled function.
+fn call_of(
+    builder: &mut Builder<'_>,
+    (function, instance): (&Arc<Function>, instances::Instance),
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     let mut scalars = instance.passed_of(&arguments);
     if instance.impure {
         // Calls in different places are different calls, though their arguments are the same.

@@ -43,7 +43,7 @@ impl Body<'_, '_> {
         if let Some(text) = nth(arguments, 0, "string") {
             self.parts_of_text(text, loops, &mut parts)?;
         }
-        let call = ExternalCall { entry: &PRINT, arguments: parts, result: None };
+        let call = ExternalCall::new(&PRINT, parts, None);
         let external = self.emitter.external(call);
         self.emitter.emit(Instruction::External { external });
         self.emitter.close();

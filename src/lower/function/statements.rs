@@ -81,6 +81,11 @@ impl<'a, 'f> Body<'a, 'f> {
         for jump in std::mem::take(&mut self.returns) {
             self.emitter.land(jump);
         }
+        Ok(self.finish())
+    }
+
+    /// The code, whose outputs have what they return.
+    pub(super) fn finish(mut self) -> Code {
         self.emitter.place(self.function.span);
         let mut outputs = Vec::new();
         let mut plain = Vec::new();
@@ -103,7 +108,7 @@ impl<'a, 'f> Body<'a, 'f> {
         let n: Register = plain.iter().map(|(_, n)| n).sum();
         let mut code = self.emitter.finish(name, self.n_inputs, first, outputs.len() as u32);
         code.may_lack = n < code.n_outputs;
-        Ok(code)
+        code
     }
 
     /// An input: a number, or registers that the caller fills.

@@ -184,6 +184,11 @@ impl Outside for Session {
         self.remove_file(&path)
     }
 
+    fn make_folder(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.create_directory(&path)
+    }
+
     fn print(&mut self, text: &str) -> Result<(), Fault> {
         Session::print(self, &format!("{text}\n"));
         Ok(())

@@ -126,9 +126,11 @@ impl Provide for ModelFiles {
 
     fn is_folder(&self, name: &str) -> Option<bool> {
         let path = self.found(name).ok()?;
+        // That the folders above the working directory exist is no secret.
+        let is_above = self.folders.first().is_some_and(|current| current.starts_with(&path));
         match self.files.is_file(&path) {
             true => Some(false),
-            false => self.has_entries(&path).then_some(true),
+            false => (is_above || self.files.list_dir(&path).is_ok()).then_some(true),
         }
     }
 }
