@@ -151,3 +151,29 @@ fn every_simulation_has_random_numbers_of_its_own() {
     assert_eq!(number(&session, "c"), 0.8755638338816416);
     assert_eq!(number(&session, "d"), 0.536539070551582);
 }
+
+/// The object is made when the model is flattened, and once more when the simulation starts.
+#[test]
+fn values_of_tables_shape_models() {
+    let (session, errors) = run(
+        world(),
+        "model M
+           parameter Real points[2, 2] = {{0, 1}, {1, 3}};
+           parameter Modelica.Blocks.Types.ExternalCombiTable1D table =
+             Modelica.Blocks.Types.ExternalCombiTable1D(\"NoName\", \"NoName\", points, {2},
+               Modelica.Blocks.Types.Smoothness.LinearSegments);
+           parameter Real u = 1;
+           parameter Integer n =
+             integer(Modelica.Blocks.Tables.Internal.getTable1DValueNoDer(table, 1, u) + 0.5);
+           Real x[n];
+           Real y = Modelica.Blocks.Tables.Internal.getTable1DValueNoDer(table, 1, time);
+         equation
+           for i in 1:n loop x[i] = i*time; end for;
+         end M;
+         simulateModel(\"M\", stopTime = 1, resultFile = \"r\");
+         all := readTrajectory(\"r.mat\", {\"x[3]\", \"y\"}, readTrajectorySize(\"r.mat\"));
+         x := all[1, end]; y := all[2, end];",
+    );
+    assert_eq!((errors.as_str(), number(&session, "x")), ("", 3.0));
+    assert!((number(&session, "y") - 3.0).abs() < 1e-12);
+}

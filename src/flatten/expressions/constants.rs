@@ -403,6 +403,10 @@ impl Host for Functions<'_, '_> {
     }
 
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        let object = reference.as_ident().and_then(|name| self.0.values.objects.get(&name));
+        if let Some(object) = object {
+            return Ok(Some(object.clone()));
+        }
         Err(fault!(NOT_CONSTANT, "`{}` is not known at translation", reference.name())
             .at(reference.span))
     }

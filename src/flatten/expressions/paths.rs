@@ -15,7 +15,7 @@ use crate::flatten::instantiate::instance::NodeKind;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::lookup::classes::Classes;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
@@ -286,6 +286,13 @@ impl Instantiation<'_> {
         let variable = leaf.variable;
         if local.values || self.classes.tree.in_package(node) {
             let value = self.value(variable, span)?;
+            if matches!(value, Value::External(_)) {
+                // It cannot be written as an expression.
+                let name = Ident::new(&self.classes.tree.variables[variable].0.name);
+                self.values.objects.insert(name, value);
+                let reference = ComponentReference::from_name(&Name::from(name), span);
+                return Ok(Expression::new(ExpressionKind::Reference(reference), span));
+            }
             return Ok(subscripted(literal(&value, span), subscripts, span));
         }
         let mut reference = flat_reference(&self.classes.tree.nodes[node.0].path, span);

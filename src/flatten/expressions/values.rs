@@ -1,6 +1,7 @@
 //! The values of constants and parameters found so far, with the parameters that each needed.
 
 use crate::external::AtTranslation;
+use crate::name::Ident;
 use crate::value::Value;
 use indexmap::IndexSet;
 use rustc_hash::FxHashMap;
@@ -21,6 +22,8 @@ pub struct Values {
     pub read: Read,
     /// Statements run so far to find values.
     pub steps: u64,
+    /// External objects by the names that stand for them in expressions of values.
+    pub objects: FxHashMap<Ident, Value>,
     /// Files that values are read from, and what was printed.
     pub outside: AtTranslation,
 }
