@@ -19,6 +19,7 @@ use super::sequence::{
 };
 use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
+use crate::bytecode::Functions;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -26,7 +27,7 @@ use crate::flatten::BaseType;
 use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
 use crate::lower::{Assertion, Kind, Level, Variable};
 use crate::sim::Pattern;
-use crate::symbolic::{Expr, Pool, VarId};
+use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
@@ -408,8 +409,24 @@ impl Compilation {
         let dae = &causalized.dae;
         let bindings =
             causalized.parameters.iter().filter_map(|p| Some((*p, dae.variable(*p).binding?)));
-        let parameters =
-            bindings.map(|(parameter, binding)| stored(registers, parameter, binding)).collect();
+        let mut results = ResultsOfCalls::default();
+        let mut parameters = Vec::new();
+        for (parameter, binding) in bindings {
+            let is_always_evaluated = dae.variable(parameter).kind == NEVER_SET;
+            let tape = match results.of(pool, binding) {
+                Some(register) if is_always_evaluated => {
+                    let mut builder = TapeBuilder::new(pool, registers);
+                    builder.origin(origin(parameter));
+                    builder.copy(parameter.0, register);
+                    builder.finish()
+                }
+                _ => stored(registers, parameter, binding).1,
+            };
+            if is_always_evaluated {
+                results.keep(pool, binding, &tape, registers.functions());
+            }
+            parameters.push((parameter, tape));
+        }
         let all = (0u32..).map(VarId).zip(&dae.variables);
         let solved =
             all.clone().filter(|(_, v)| v.kind == Kind::Solved).map(|(id, _)| id).collect();
@@ -428,6 +445,36 @@ impl Compilation {
             }
         }
         Values { parameters, starts, nominals, solved }
+    }
+}
+
+/// A parameter whose tape is run in every simulation.
+const NEVER_SET: Kind = Kind::Parameter { tunable: false };
+/// Calls with fewer outputs are repeated for each parameter that is bound to one of these.
+const MANY_OUTPUTS: u32 = 64;
+
+/// Where parameters that are never set have the results of calls: those after them copy these. Without
+/// it the outputs of a call would be written for each of them, n² numbers in all.
+#[derive(Default)]
+struct ResultsOfCalls(FxHashMap<(u32, Expr), Register>);
+
+impl ResultsOfCalls {
+    /// The register of the output that a parameter is bound to.
+    fn of(&self, pool: &Pool, binding: Expr) -> Option<Register> {
+        let Node::Call { function, output, arguments } = *pool.node(binding) else { return None };
+        self.0.get(&(function, arguments)).map(|first| first + output)
+    }
+
+    fn keep(&mut self, pool: &Pool, binding: Expr, tape: &Tape, functions: &Functions) {
+        let Node::Call { function, arguments, .. } = *pool.node(binding) else { return };
+        let code = &functions.codes[function as usize];
+        if let Some(call) = tape.calls.last()
+            && call.function == function
+            && code.n_outputs >= MANY_OUTPUTS
+            && !code.may_lack
+        {
+            self.0.entry((function, arguments)).or_insert(call.d);
+        }
     }
 }
 
@@ -535,4 +582,35 @@ fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         });
     }
     infos
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::causalize::causalize;
+    use crate::flatten::{Library, flatten};
+    use crate::source::SourceId;
+    use crate::syntax::parse_stored_definition;
+
+    const MODEL: &str = "model M function f input Real x; output Real y[200]; \
+        protected Integer i = 0; algorithm while i < 200 loop i := i + 1; y[i] := x*i; end while; \
+        end f; parameter Real x = 2; final parameter Real k[200] = f(x); \
+        Real s = sum(k)*time; end M;";
+
+    #[test]
+    fn outputs_of_a_call_have_registers_once() {
+        let file = parse_stored_definition(SourceId::NONE, MODEL).expect("Modelica");
+        let mut library = Library::new();
+        let names = library.load(&file).expect("a loadable file");
+        let flat = flatten(&library, &names[0], &[]).expect("a model").model;
+        let program = Program::compile(causalize(&flat).expect("it can be sorted"));
+        let program = program.expect("it compiles");
+        assert!(program.registers.len() < 2_000, "{}", program.registers.len());
+        let (values, _) = default_values(&program);
+        for (name, expected) in [("k[1]", 2.0), ("k[200]", 400.0)] {
+            let dae = &program.sorted.dae;
+            let at = dae.variables.iter().position(|v| &*v.name == name).expect(name);
+            assert_eq!(values[at], expected, "{name}");
+        }
+    }
 }

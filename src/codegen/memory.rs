@@ -192,6 +192,8 @@ impl Calls {
                 Ok(())
             }
             Err(failure) => {
+                let n = self.functions.n_outputs(call.function);
+                r[call.d as usize..][..n].fill(f64::NAN);
                 self.failure = Some(failure);
                 Err(failure)
             }

@@ -158,8 +158,11 @@ impl<'a> Builder<'a> {
                 }
             } else if let Some(binding) = &variable.binding {
                 let array = match self.sized(binding, &variable.dims) {
-                    Err(e) if is_parameter && e.code == NOT_SUPPORTED => {
-                        // A function that prints is called now, and its value stays.
+                    Err(e)
+                        if is_parameter && [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&e.code) =>
+                    {
+                        // A function that prints is called now, and its value stays; one that
+                        // writes files is called when the simulation starts.
                         self.parameter_value(binding, &variable.dims).map_err(|_| e)?
                     }
                     array => array?,

@@ -66,6 +66,17 @@ fn initial_loops_contain_impure_calls() {
     }
 }
 
+#[test]
+fn parameters_decide_the_sizes_of_results() {
+    let model = "model M \
+        function f input Integer m; input Integer s[:]; input Real x; output Real y[m]; \
+        protected Integer n = max(s .* s); Real d[n] = fill(x, n); \
+        algorithm y := fill(sum(d), m); end f; \
+        parameter Integer m = 2; Integer s[2] = {integer(time) + 2, 1}; \
+        Real y[2] = f(m, s, time); end M;";
+    assert_eq!(simulated(model, 1.0).at("y[2]", 0.5), 2.0);
+}
+
 /// Interpreted, the inner loop would exceed the limit of statements.
 #[test]
 fn what_is_called_again_and_again_is_compiled() {
@@ -186,4 +197,25 @@ fn files_that_are_there_already_are_read() {
     let (session, errors) = run(world, SIMULATE);
     assert_eq!(errors, "");
     assert!((last(&session) - 23.0).abs() < 1e-9, "{}", last(&session));
+}
+
+#[test]
+fn parameters_are_bound_to_calls_that_make_files() {
+    let text = KEEPS
+        .replace("parameter Integer s[2](each fixed = false);", "parameter Integer s[2] = {2, 1};")
+        .replace("parameter Real y[2, 1](each fixed = false);", "parameter Integer m = 2;")
+        .replace("  s = {integer(time) + 2, 1};\n", "")
+        .replace("  y = kept(s, x, \"a\" + String(s[1]), force);\n", "  z = 0;\n")
+        .replace(
+            "Real z(start = 0, fixed = true);",
+            "Real z; final parameter Real y[:, :] = kept(s, x, \"a2\", force, m);",
+        )
+        .replace(
+            "Boolean force = false;\n    output Real y[2, 1];",
+            "Boolean force = false;\n    input Integer m; output Real y[m, 1];",
+        );
+    let world = shipped::world().with_file("Keeps.mo", text);
+    let (session, errors) = run(world, SIMULATE);
+    assert_eq!(errors, "");
+    assert!((last(&session) - 10.0).abs() < 1e-9, "{}", last(&session));
 }

@@ -234,18 +234,33 @@ pub(super) fn interpreted_call(
     if builder.calls.depth > 0 {
         return None;
     }
-    let pool = &builder.dae.pool;
-    let known: Vec<Lowered<Option<f64>>> =
-        arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    let mut arguments = arguments.to_vec();
+    let mut found = interpreted_instance(builder, function, &arguments, span);
+    if matches!(&found, Err(e) if e.code == NO_CONSTANT_VALUE)
+        && settle_whole_numbers(builder, function, &mut arguments)
+    {
+        found = interpreted_instance(builder, function, &arguments, span);
+    }
+    let instance = found.ok()?;
     let may_write = builder.calls.functions.may_write
         || builder.place.at_start
         || output(builder) == Output::Written;
-    let functions = &mut builder.calls.functions;
-    let instance = functions.interpreted_instance(builder.flat, function, &known, span).ok()?;
     if instance.writes && !may_write {
         return None;
     }
-    call_of(builder, (function, instance), arguments.to_vec(), span).ok()
+    call_of(builder, (function, instance), arguments, span).ok()
+}
+
+fn interpreted_instance(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: &[Lowered<Expr>],
+    span: Span,
+) -> Result<instances::Instance, Diagnostic> {
+    let pool = &builder.dae.pool;
+    let known: Vec<Lowered<Option<f64>>> =
+        arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    builder.calls.functions.interpreted_instance(builder.flat, function, &known, span)
 }
 
 /// Expressions that call a compiled function.
