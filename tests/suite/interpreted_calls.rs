@@ -123,6 +123,18 @@ fn failures_say_what_the_function_says() {
 }
 
 #[test]
+fn endless_functions_end() {
+    let model = "model M \
+         function endless input Integer s[:]; input Real x; output Real y; \
+         protected Integer n = max(s .* s); Real d[n] = fill(x, n); \
+         algorithm while x > -1 loop y := d[n]; end while; end endless; \
+         Integer s[2] = {integer(time) + 2, 1}; Real y = endless(s, time); end M;";
+    let (program, _, _, ended) = attempt(model, 1.0);
+    let message = program.explain(&ended.expect_err("a limit")).message.clone();
+    assert!(message.contains("4 million statements (`--instruction-limit`"), "{message}");
+}
+
+#[test]
 fn warnings_of_assertions_let_the_simulation_go_on() {
     let model = "model M \
          function check input Integer s[:]; input Real x; output Real y; \

@@ -274,8 +274,11 @@ impl Host for Interpreting<'_> {
         self.steps += 1;
         let limit = budget::statement_limit();
         (self.steps > limit).then(|| {
-            fault!(NOT_SUPPORTED, "more than {} statements", budget::in_millions(limit);
-                help: "{}", budget::REMEDY)
+            let limit = budget::in_millions(limit);
+            fault!(
+                NOT_SUPPORTED,
+                "more than {limit} statements (`--instruction-limit` allows more)"
+            )
         })
     }
 
