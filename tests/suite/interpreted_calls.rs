@@ -109,6 +109,12 @@ fn results_beyond_the_largest_number_are_infinite() {
     assert_eq!((run.at("y", 0.5), run.at("z", 0.5)), (0.0, 0.0));
 }
 
+/// What a simulation says that fails.
+fn failure(model: &str) -> String {
+    let (program, _, _, ended) = attempt(model, 1.0);
+    program.explain(&ended.expect_err("a failure")).message.clone()
+}
+
 #[test]
 fn failures_say_what_the_function_says() {
     let check = "function check input Integer s[:]; input Real x; output Real y; \
@@ -117,8 +123,7 @@ fn failures_say_what_the_function_says() {
     let model = format!(
         "model M {check} Integer s[2] = {{integer(time) + 2, 1}}; Real y = check(s, time); end M;"
     );
-    let (program, _, _, ended) = attempt(&model, 1.0);
-    let message = program.explain(&ended.expect_err("an assertion")).message.clone();
+    let message = failure(&model);
     assert!(message.starts_with("d is too large"), "{message}");
 }
 
@@ -129,8 +134,7 @@ fn endless_functions_end() {
          protected Integer n = max(s .* s); Real d[n] = fill(x, n); \
          algorithm while x > -1 loop y := d[n]; end while; end endless; \
          Integer s[2] = {integer(time) + 2, 1}; Real y = endless(s, time); end M;";
-    let (program, _, _, ended) = attempt(model, 1.0);
-    let message = program.explain(&ended.expect_err("a limit")).message.clone();
+    let message = failure(model);
     assert!(message.contains("4 million statements (`--instruction-limit`"), "{message}");
 }
 
