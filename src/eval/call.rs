@@ -220,10 +220,11 @@ impl Evaluator<'_> {
         match arguments.positional.as_slice() {
             [only] => {
                 let value = self.expression(only)?;
-                let result = entry.value(std::slice::from_ref(&value));
-                match infinite(entry, &value).filter(|_| self.host.overflows()) {
-                    Some(infinite) if result.is_err() => Ok(infinite),
-                    _ => result.at(span),
+                match entry.value(std::slice::from_ref(&value)) {
+                    Err(fault) if self.host.overflows() => {
+                        infinite(entry, &value).ok_or_else(|| fault.at(span))
+                    }
+                    result => result.at(span),
                 }
             }
             [first, second] => {

@@ -56,7 +56,7 @@ impl Shape {
         }
     }
 
-    /// Whether a text in it is not known.
+    /// Whether a String in it is not known.
     pub fn holds_unknown_text(&self) -> bool {
         match self {
             Shape::Array(_) | Shape::Numbered => false,

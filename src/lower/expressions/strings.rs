@@ -27,9 +27,6 @@ const FIND_FILES: &[&str] = &[
     "Modelica.Utilities.Files.fullPathName",
 ];
 
-/// Statements of a call after which the functions in it are compiled.
-const LONG: u64 = 10_000;
-
 impl<T: Target> Lowering<'_, T> {
     /// The outputs of a function that takes or gives texts, if all its arguments are known and it
     /// can be run now; parameters that a text depends on are settled.
@@ -400,15 +397,9 @@ impl<T: Target> Host for Compiling<'_, T> {
     }
 
     fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
-        if self.compiler.is_none() {
-            if self.target.interpreted().get() - self.before < LONG {
-                return None;
-            }
-            let functions = self.target.functions();
-            let library = library_of(functions, &self.resources, true);
-            self.compiler = Some(OnDemand::new(library));
-        }
-        self.compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
+        let statements = self.target.interpreted().get() - self.before;
+        let library = || library_of(self.target.functions(), &self.resources, true);
+        OnDemand::of_long_call(&mut self.compiler, statements, library)
     }
 }
 

@@ -548,6 +548,16 @@ impl Instances {
         self.all_called(function, |function| self.finished[function as usize])
     }
 
+    /// Whether a function reads files, itself or by what it calls.
+    pub(super) fn reads_files(&self, function: u32) -> bool {
+        let reads = |call: &ExternalCall| {
+            call.entry.files().chain(call.entry.possible_files()).next().is_some()
+        };
+        !self.all_called(function, |function| {
+            !self.functions.codes[function as usize].externals.iter().any(reads)
+        })
+    }
+
     /// Whether all that a function writes, itself or by what it calls, are external objects in C: a
     /// package that is filled before it is sent. It is called where its value is used.
     fn changes_objects_alone(&self, function: u32) -> bool {

@@ -27,9 +27,6 @@ use crate::syntax::ast::ComponentReference;
 use crate::value::{ArrayValue, Elements, RecordValue, Value};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Statements of a call after which the functions in it are compiled.
-const LONG: u64 = 10_000;
-
 /// A function that the interpreter carries out.
 struct Interpreted {
     function: Arc<Function>,
@@ -43,7 +40,7 @@ struct Interpreted {
 
 /// How an input is made of arguments of the call.
 enum Layout {
-    /// One argument: a number, a text or an array of either.
+    /// One argument: a number, a String or an array of either.
     Argument(ValueType),
     /// The components of a record.
     Record(Name, Vec<(Ident, Layout)>),
@@ -287,9 +284,6 @@ impl Host for Interpreting<'_> {
     }
 
     fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
-        if self.compiler.is_none() && self.steps >= LONG {
-            self.compiler = Some(OnDemand::new(self.library.clone()));
-        }
-        self.compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
+        OnDemand::of_long_call(&mut self.compiler, self.steps, || self.library.clone())
     }
 }

@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// The call of a function with the same sizes that makes it worth compiling.
 const WORTH_COMPILING: u32 = 3;
+/// Statements of a call after which the functions in it are compiled.
+const LONG: u64 = 10_000;
 /// Most combinations of functions, sizes and Integers.
 const MAX_KEPT: usize = 2_000;
 
@@ -41,13 +43,25 @@ enum State {
 
 impl OnDemand {
     /// Compiles functions of a model that is used for nothing else.
-    pub(in crate::lower) fn new(library: Arc<FlatModel>) -> OnDemand {
+    fn new(library: Arc<FlatModel>) -> OnDemand {
         OnDemand {
             instances: Instances::new(true),
             machine: Machine::default(),
             kept: FxHashMap::default(),
             library,
         }
+    }
+
+    /// The compiler of a call that has taken so many statements, if these are enough.
+    pub(in crate::lower) fn of_long_call(
+        compiler: &mut Option<OnDemand>,
+        statements: u64,
+        library: impl FnOnce() -> Arc<FlatModel>,
+    ) -> Option<&mut dyn RunCompiled> {
+        if compiler.is_none() && statements >= LONG {
+            *compiler = Some(OnDemand::new(library()));
+        }
+        compiler.as_mut().map(|compiler| compiler as &mut dyn RunCompiled)
     }
 
     /// The compiled function, if it is worth it and possible.
@@ -116,13 +130,15 @@ impl OnDemand {
         }
         match self.instances.instance(&self.library, function, &known, Span::NONE) {
             Ok(instance) if instance.impure || instance.writes => State::Refused,
+            // A file may be written anew between two calls.
+            Ok(instance) if self.instances.reads_files(instance.code) => State::Refused,
             Ok(instance) => State::Compiled(instance),
             Err(e) if e.code == NO_CONSTANT_VALUE && !with_integers => State::NeedsIntegers,
             Err(_) => State::Refused,
         }
     }
 
-    /// The outputs of a compiled function; `None` if it fails, or gives what is no number.
+    /// The outputs of a compiled function; `None` if it fails, or gives NaN.
     fn run(
         &mut self,
         function: &Function,

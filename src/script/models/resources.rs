@@ -126,7 +126,7 @@ impl Provide for ModelFiles {
 
     fn is_folder(&self, name: &str) -> Option<bool> {
         let path = self.found(name).ok()?;
-        // That the folders above the working directory exist is no secret.
+        // The working directory and the folders above it exist, whether they may be read or not.
         let is_above = self.folders.first().is_some_and(|current| current.starts_with(&path));
         match self.files.is_file(&path) {
             true => Some(false),
