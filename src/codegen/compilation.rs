@@ -593,7 +593,8 @@ mod tests {
     use crate::syntax::parse_stored_definition;
 
     const MODEL: &str = "model M function f input Real x; output Real y[200]; \
-        protected Integer i = 0; algorithm while i < 200 loop i := i + 1; y[i] := x*i; end while; \
+        protected Integer i = 0; algorithm while i < 200 and x < 9 loop i := i + 1; y[i] := x*i; \
+        end while; \
         end f; parameter Real x = 2; final parameter Real k[200] = f(x); \
         Real s = sum(k)*time; end M;";
 
