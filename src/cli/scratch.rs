@@ -1,7 +1,7 @@
 //! The world of a test: it reads the disk, and keeps in memory what is written.
 
 use super::world::SystemWorld;
-use crate::script::access::policy::{Access, Grant, Policy};
+use crate::script::access::policy::{Access, Change, Grant, Policy};
 use crate::script::runs::view::Progress;
 use crate::script::world::{Environment, FileReader, Files, Screen, Stamp};
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,7 +66,9 @@ impl Files for ScratchWorld {
             Access::Read if self.policy.has_made(&path) => Ok(()),
             Access::Read => self.disk.permits(&path, access),
             // What is written stays in memory.
-            Access::Write => Ok(self.policy.may_write(&path, self.exists(&path))?),
+            Access::Write | Access::Folder => {
+                Ok(self.policy.may_write(&path, Change::by(access, self.exists(&path)))?)
+            }
         }
     }
 
@@ -151,7 +153,7 @@ impl Files for ScratchWorld {
         if self.is_dir(&path) {
             return Ok(());
         }
-        self.permits(&path, Access::Write)?;
+        self.permits(&path, Access::Folder)?;
         self.policy.note_made(path.clone());
         self.folders.extend(path.ancestors().map(Path::to_path_buf));
         Ok(())

@@ -170,6 +170,10 @@ impl Files for SystemWorld {
         self.disk.read(&self.at(path))
     }
 
+    fn read_start(&self, path: &Path, most: usize) -> io::Result<Vec<u8>> {
+        self.disk.read_start(&self.at(path), most)
+    }
+
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let path = self.at(path);
         self.claim(&path)?;

@@ -54,3 +54,47 @@ pub fn format_of_file(file_name: &str) -> Result<Box<dyn Format>, Fault> {
     let last = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
     format(last.rsplit_once('.').map_or(FORMATS[0].name, |(_, extension)| extension))
 }
+
+/// Bytes at the beginning of a file by which [`are_results`] recognizes it.
+pub const BEGINNING: usize = 64;
+
+/// Whether a file that begins so holds what a simulation or linearization writes, by this program or
+/// another Modelica tool: MAT version 4 or text whose first matrix is `Aclass`, CSV whose first
+/// header cell is a quoted time, as data of other origin hardly have it, or a linearized model.
+pub fn are_results(beginning: &[u8]) -> bool {
+    /// Length of the header of a matrix of MAT version 4, behind which its name stands.
+    const HEADER: usize = 20;
+    let is_binary = beginning.get(HEADER..).is_some_and(|rest| rest.starts_with(b"Aclass\0"));
+    let text = String::from_utf8_lossy(beginning);
+    let mut lines = text.lines();
+    let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
+    let is_text = first.trim_end() == "#1" && second.starts_with("char Aclass(");
+    let cell = first.split([',', ';', '\t']).next().unwrap_or_default();
+    let is_table = ["\"time\"", "\"Time\""].contains(&cell.trim_end());
+    is_binary || is_text || is_table || first.starts_with("model linearized_model ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_recognized_and_data_are_not() {
+        let mut table = ResultTable::new(vec![0.0, 1.0]);
+        table.series.push(Series::new("x".to_owned(), Values::Trajectory(vec![1.0, 2.0])));
+        for format in FORMATS {
+            let format = (format.make)(&mut Options::default()).expect("a format");
+            let bytes = format.write(&table).expect("written");
+            assert!(are_results(&bytes[..BEGINNING.min(bytes.len())]), "{}", format.extension());
+        }
+        assert!(are_results(b"#1\nchar Aclass(4,24)\nAtrajectory\n"));
+        assert!(are_results(b"model linearized_model \"M\"\n"));
+        let matrix = crate::mat::Matrix::from_rows(&[vec![1.0]]);
+        let data = crate::mat::write_v4([("data", &matrix)]).expect("written");
+        let others: [&[u8]; 6] =
+            [&data, b"", b"time,y\n0,1\n", b"#1\ndouble t(2,2)\n", b"\"time", b"model M Real x;"];
+        for other in others {
+            assert!(!are_results(other), "{}", String::from_utf8_lossy(other));
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! The session: the parts that last from one statement to the next.
 
+use super::access::files::Outdated;
 use super::access::policy::Grant;
 use super::access::process::Process;
 use super::builtins::extensions::Extensions;
@@ -39,6 +40,7 @@ pub struct Session {
     pub(super) parsed: ParsedScripts,
     pub(super) follow_ups: FollowUps,
     pub(super) process: Process,
+    pub(super) outdated: Outdated,
     pub(super) classes: Classes,
     pub(super) models: CompiledModels,
     /// The dialect that the outermost script shows, where none was asked for.
@@ -61,6 +63,7 @@ impl Session {
             parsed: ParsedScripts::default(),
             follow_ups: FollowUps::default(),
             process: Process::default(),
+            outdated: Outdated::default(),
             classes: Classes::default(),
             models: CompiledModels::default(),
             recognized: Dialect::default(),

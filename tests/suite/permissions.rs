@@ -67,6 +67,70 @@ fn a_script_replaces_its_own_files() {
     assert_eq!(text(&here, "made.txt"), "line\nline\n");
 }
 
+/// A model whose end value shows which script has simulated it.
+const DECAY: &str = "model D parameter Real k = 1; Real x(start = 1, fixed = true); equation \
+                     der(x) = -k*x; end D;";
+
+/// A script that simulates with `k` into `file` and prints the end value that it reads there.
+fn simulating(k: i32, file: &str) -> String {
+    format!(
+        "openModel(\"D.mo\");\nsimulateModel(\"D(k = {k})\", stopTime = 1, resultFile = \"{file}\");\n\
+         n = readTrajectorySize(\"{file}\"); x = readTrajectory(\"{file}\", {{\"x\"}}, n);\n\
+         print(\"x = \" + String(x[1, n], significantDigits = 4));\n"
+    )
+}
+
+/// Every Modelica tool replaces its result files, whoever has written them.
+#[test]
+fn results_of_another_script_are_replaced() {
+    for file in ["r.mat", "r.csv"] {
+        let here = folder(&[("D.mo", DECAY)]);
+        for (name, k, expected) in [("a", 1, "x = 0.3679"), ("b", 2, "x = 0.1353")] {
+            let script = format!("{name}.mos");
+            fs::write(here.path().join(&script), simulating(k, file)).unwrap();
+            for out in ["one", "two"] {
+                let (code, text, errors) = gapi(&here, &["run", &script, "--out", out, "--overwrite"]);
+                assert!(code == 0 && text.contains(expected), "{file} {name}: {text}{errors}");
+            }
+        }
+    }
+}
+
+/// What a simulation would have written is not read from a file that it did not write.
+#[test]
+fn a_refused_or_failed_simulation_is_not_followed_by_older_results() {
+    let data = "time,x\n0,7\n1,7\n";
+    let here = folder(&[("D.mo", DECAY), ("r.csv", data), ("a.mos", &simulating(1, "r.csv"))]);
+    let (code, out, errors) = gapi(&here, &["run", "a.mos"]);
+    assert!(code == 1 && errors.contains("this run did not create it"), "{out}{errors}");
+    assert!(errors.contains("older than this script expects") && !out.contains("x = "), "{out}{errors}");
+    assert_eq!(text(&here, "r.csv"), data);
+    let failing = simulating(1, "r.mat") + &simulating(2, "r.mat").replace("D(k = 2)", "D(no = 2)");
+    fs::write(here.path().join("b.mos"), failing).unwrap();
+    let (code, out, errors) = gapi(&here, &["run", "b.mos"]);
+    assert!(code == 1 && out.matches("x = ").count() == 1, "{out}{errors}");
+    assert!(errors.contains("the simulation that writes it failed"), "{out}{errors}");
+}
+
+/// Scripts generate scripts and models; build systems and interpreters execute other files by their
+/// names alone.
+#[test]
+fn scripts_create_the_kinds_of_files_that_scripts_write() {
+    let print = |name: &str| format!("Modelica.Utilities.Streams.print(\"x = 1;\", \"{name}\");\n");
+    let new = ["sweep.mos", "N.mo", "log.txt", "d.csv", "a.svg", "t.tex", "results/job/Makefile"];
+    let script: String = new.iter().map(|name| print(name)).collect();
+    let here = home(&(script + "RunScript(\"sweep.mos\");\n"));
+    let (code, _, errors) = gapi(&here, &["run", "job.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(new.iter().all(|name| text(&here, name) == "x = 1;\n"), "{errors}");
+    for name in ["Makefile", "conftest.py", "sitecustomize.py", "CMakeLists.txt", "a/package.mo"] {
+        let here = home(&print(name));
+        let (code, _, errors) = gapi(&here, &["run", "job.mos"]);
+        assert!(code == 1 && errors.contains("write it to the output folder"), "{name}: {errors}");
+        assert_eq!(text(&here, name), "(missing)");
+    }
+}
+
 #[test]
 fn secrets_outside_are_not_read() {
     let elsewhere = folder(&[("secret.txt", "a secret")]);
@@ -218,4 +282,18 @@ fn all_commands_write_whole_files() {
     assert_eq!(code, 0, "{errors}");
     let (code, _, errors) = gapi(&here, &["test", "job.mos", "--junit", "nowhere/report.xml"]);
     assert!(code == 1 && errors.contains("nowhere/report.xml"), "{errors}");
+}
+
+/// The guide lists the kinds of files and the exceptions that the program knows.
+#[test]
+fn the_guide_lists_the_files_that_scripts_create() {
+    use gapilib::script::access::policy::{EXCEPTIONS, KINDS};
+    let guide = include_str!("../../docs/src/permissions.md");
+    for (kind, endings) in KINDS {
+        let listed: Vec<String> = endings.iter().map(|ending| format!("`.{ending}`")).collect();
+        let row = format!("| {kind} | {} |", listed.join(", "));
+        assert!(guide.contains(&row), "{row}");
+    }
+    let listed: Vec<String> = EXCEPTIONS.iter().map(|name| format!("`{name}`")).collect();
+    assert!(guide.contains(&listed.join(", ")), "{listed:?}");
 }

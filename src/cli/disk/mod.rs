@@ -12,7 +12,7 @@ mod record;
 mod steps;
 
 use crate::models;
-use crate::script::access::policy::{Access, Grant, Policy, RECORD, Refusal};
+use crate::script::access::policy::{Access, Change, Grant, Policy, RECORD, Refusal};
 use crate::script::world::{Content, FileReader, normalized};
 use place::Place;
 use record::{Lines, Record};
@@ -71,7 +71,7 @@ impl Disk {
             Access::Read if self.is_named_device(access, path) => Ok(()),
             Access::Write if self.is_named_device(access, path) => Ok(()),
             Access::Read => self.to_read(path).map(|_| ()),
-            Access::Write => self.to_write(path, true).map(|_| ()),
+            Access::Write | Access::Folder => self.to_change(path, access, true).map(|_| ()),
         }
     }
 
@@ -92,14 +92,19 @@ impl Disk {
         Ok(read.map(|()| place)?)
     }
 
-    fn to_write(&self, path: &Path, follows: bool) -> io::Result<Place> {
+    fn to_write(&self, path: &Path) -> io::Result<Place> {
+        self.to_change(path, Access::Write, true)
+    }
+
+    /// Resolves a path that is going to be written; a link at its end is followed if `follows`.
+    fn to_change(&self, path: &Path, access: Access, follows: bool) -> io::Result<Place> {
         let place = Place::of(path, follows)?;
-        let mut written = self.state().policy.may_write(&place.real, place.exists());
-        if place.exists() && matches!(written, Err(Refusal::Existing | Refusal::Source)) {
+        let change = Change::by(access, place.exists());
+        let mut written = self.state().policy.may_write(&place.real, change);
+        if written == Err(Refusal::Existing) {
             self.know_record();
-            written = self.state().policy.may_write(&place.real, true);
+            written = self.state().policy.may_write(&place.real, change);
         }
-        // A folder that is there need not be made.
         Ok(written.map(|()| place)?)
     }
 
@@ -138,6 +143,11 @@ impl Disk {
             && fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
     }
 
+    /// The first bytes of a file.
+    pub(super) fn read_start(&self, path: &Path, most: usize) -> io::Result<Vec<u8>> {
+        self.to_read(path)?.read_start(most as u64)
+    }
+
     /// Writes a file anew, all of it or nothing.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_with(path, &mut |file| file.write_all(bytes))
@@ -148,7 +158,7 @@ impl Disk {
         if self.is_named_device(Access::Write, path) {
             return filled(&fs::OpenOptions::new().write(true).open(path)?, content);
         }
-        let place = self.to_write(path, true)?;
+        let place = self.to_write(path)?;
         place.write(content, |file| self.note_made(&place.real, file))
     }
 
@@ -157,7 +167,7 @@ impl Disk {
         if self.is_named_device(Access::Write, path) {
             return fs::OpenOptions::new().append(true).open(path)?.write_all(bytes);
         }
-        let place = self.to_write(path, true)?;
+        let place = self.to_write(path)?;
         let shared = self.state().policy.writes_all();
         let file = place.open_to_append(shared)?;
         if !place.exists() {
@@ -168,14 +178,14 @@ impl Disk {
 
     /// Makes what a file holds safe against a power cut.
     pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
-        let file = self.to_write(path, true)?.open_to_append(true)?;
+        let file = self.to_write(path)?.open_to_append(true)?;
         step(|| ())?;
         file.sync_data()
     }
 
     /// Removes a file, an empty folder, or a link itself.
     pub(super) fn remove(&self, path: &Path) -> io::Result<()> {
-        let place = self.to_write(path, false)?;
+        let place = self.to_change(path, Access::Write, false)?;
         place.remove()?;
         self.state().policy.note_removed(&place.real);
         Ok(())
@@ -186,7 +196,7 @@ impl Disk {
         if Place::of(path, true)?.is_folder() {
             return Ok(());
         }
-        let new = self.to_write(path, true)?.create_folders()?;
+        let new = self.to_change(path, Access::Folder, true)?.create_folders()?;
         let mut state = self.state();
         new.into_iter().for_each(|folder| state.policy.note_made(folder));
         Ok(())

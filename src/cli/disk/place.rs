@@ -143,9 +143,17 @@ impl Place {
 
     /// The bytes of the file; only of what the disk keeps, not of pipes and devices.
     pub(super) fn read(&self) -> io::Result<Vec<u8>> {
-        let mut file = self.open(OFlags::RDONLY | OFlags::NONBLOCK)?;
+        self.read_start(u64::MAX)
+    }
+
+    /// The first bytes of the file, at most this many.
+    pub(super) fn read_start(&self, most: u64) -> io::Result<Vec<u8>> {
+        let file = self.open(OFlags::RDONLY | OFlags::NONBLOCK)?;
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
+        // `Take` hides the size of the file, for which room is made at once.
+        let size = file.metadata()?.len().min(most);
+        bytes.try_reserve(usize::try_from(size).unwrap_or(usize::MAX))?;
+        file.take(most).read_to_end(&mut bytes)?;
         Ok(bytes)
     }
 

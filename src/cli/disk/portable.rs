@@ -6,7 +6,7 @@ use crate::script::world::Content;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 /// An entry of a folder, which may not exist yet.
@@ -57,6 +57,15 @@ impl Place {
             return Err(Refusal::System.into());
         }
         fs::read(&self.real)
+    }
+
+    pub fn read_start(&self, most: u64) -> io::Result<Vec<u8>> {
+        if self.is_device() {
+            return Err(Refusal::System.into());
+        }
+        let mut bytes = Vec::new();
+        File::open(&self.real)?.take(most).read_to_end(&mut bytes)?;
+        Ok(bytes)
     }
 
     pub fn list(&self) -> io::Result<Vec<String>> {

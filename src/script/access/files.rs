@@ -1,16 +1,23 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
 use super::faults::{cannot, plain};
-use super::policy::Access;
-use crate::diag::Fault;
-use crate::results::{Format, ResultTable};
+use super::policy::{Access, Grant, Refusal, refusal_of};
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::results::{self, Format, ResultTable};
 use crate::script::Session;
 use crate::script::errors::FILE_ERROR;
 use crate::script::world::normalized;
 use crate::syntax;
 use crate::value::Value;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// Files that commands of this run were to write and did not, with the reason: what is in them is
+/// older than the script believes.
+#[derive(Debug, Default)]
+pub struct Outdated(BTreeMap<PathBuf, String>);
 
 impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the
@@ -28,6 +35,7 @@ impl Session {
         let Some(found) = self.find_file(path) else {
             return Err(self.missing_file(path));
         };
+        self.check_current(&found)?;
         self.world.read(&found).map_err(|error| cannot("read", path, &error))
     }
 
@@ -36,14 +44,44 @@ impl Session {
         Ok(syntax::decode(&self.read_bytes(path)?).0)
     }
 
-    /// Writes a file anew, with the directories it lies in.
-    pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.may(Access::Write, path)?;
-        self.make_parents(path)?;
-        self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
+    /// A fault if a command was to write this file and did not.
+    pub fn check_current(&self, found: &Path) -> Result<(), Fault> {
+        let Some(reason) = self.outdated.0.get(&normalized(&self.world.absolute(found))) else {
+            return Ok(());
+        };
+        bail!(
+            FILE_ERROR,
+            "`{}` is older than this script expects: {reason}", found.display();
+            help: "correct the first error, or read a file that the script has written"
+        )
     }
 
-    /// Writes results into a file anew, with the directories it lies in.
+    /// What a simulation gives, noted if it failed: the result file was not written then.
+    pub(in crate::script) fn noting_outdated<T>(
+        &mut self,
+        file: &Path,
+        done: Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, Vec<Diagnostic>> {
+        if let Err(errors) = &done {
+            let cause = errors.first().map_or("", |error| error.message.as_str());
+            let reason = format!("the simulation that writes it failed: {cause}");
+            self.outdated.0.entry(self.world.absolute(file)).or_insert(reason);
+        }
+        done
+    }
+
+    /// Writes a file anew, with the directories it lies in.
+    pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.write_by(path, &mut |session| session.world.write(path, bytes))
+    }
+
+    /// Writes behind the end of a file.
+    pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.write_by(path, &mut |session| session.world.append(path, bytes))
+    }
+
+    /// Writes results into a file anew, with the directories it lies in. A file with former results
+    /// is replaced, whoever has written it.
     pub fn write_results(
         &mut self,
         path: &Path,
@@ -51,18 +89,48 @@ impl Session {
         table: &ResultTable,
     ) -> Result<(), Fault> {
         table.check()?;
-        self.may(Access::Write, path)?;
-        self.make_parents(path)?;
-        let mut content = |to: &mut dyn io::Write| format.write_to(table, to);
-        let written = self.world.write_with(path, &mut content);
-        written.map_err(|error| cannot("write", path, &error))
+        self.grant_replacement(path);
+        self.write_by(path, &mut |session| {
+            session.world.write_with(path, &mut |to| format.write_to(table, to))
+        })
     }
 
-    /// Writes behind the end of a file.
-    pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.may(Access::Write, path)?;
-        self.make_parents(path)?;
-        self.world.append(path, bytes).map_err(|error| cannot("write", path, &error))
+    /// The same for results that are written already.
+    pub(in crate::script) fn write_result_file(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+    ) -> Result<(), Fault> {
+        self.grant_replacement(path);
+        self.write_file(path, bytes)
+    }
+
+    /// Every Modelica tool replaces its result files: another script may have written this one.
+    fn grant_replacement(&mut self, path: &Path) {
+        let permitted = self.world.permits(path, Access::Write);
+        if permitted.err().and_then(|error| refusal_of(&error)) != Some(Refusal::Existing) {
+            return;
+        }
+        let start = self.world.read_start(path, results::BEGINNING);
+        if start.is_ok_and(|start| results::are_results(&start)) {
+            self.world.grant(Grant::Replace(path));
+        }
+    }
+
+    fn write_by(
+        &mut self,
+        path: &Path,
+        write: &mut dyn FnMut(&mut Session) -> io::Result<()>,
+    ) -> Result<(), Fault> {
+        let written = self.may(Access::Write, path).and_then(|()| self.make_parents(path));
+        let written = written
+            .and_then(|()| write(self).map_err(|error| cannot("write", path, &error)));
+        let path = self.world.absolute(path);
+        match &written {
+            Ok(()) => drop(self.outdated.0.remove(&path)),
+            Err(fault) => drop(self.outdated.0.insert(path, fault.message.clone())),
+        }
+        written
     }
 
     fn make_parents(&mut self, path: &Path) -> Result<(), Fault> {
@@ -117,13 +185,11 @@ impl Session {
 
     /// Removes a file or an empty directory.
     pub(in crate::script) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
-        self.may(Access::Write, path)?;
         self.world.remove(path).map_err(|error| cannot("remove", path, &error))
     }
 
     /// Makes a directory and the ones it lies in.
     pub(in crate::script) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
-        self.may(Access::Write, path)?;
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
     }
 

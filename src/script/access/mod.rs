@@ -1,7 +1,7 @@
 //! What scripts and models may read, write and remove: files, permissions, the policy.
 
 pub mod faults;
-mod files;
+pub mod files;
 mod grants;
 pub mod permissions;
 pub mod policy;

@@ -14,8 +14,32 @@ use std::path::{Path, PathBuf};
 pub enum Access {
     /// To read a file or the names in a folder.
     Read,
-    /// To make, change or remove a file or folder.
+    /// To create or change a file, or to remove a file or folder.
     Write,
+    /// To create a folder.
+    Folder,
+}
+
+/// What a write does to the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// It creates a file.
+    NewFile,
+    /// It creates a folder.
+    NewFolder,
+    /// It replaces, extends or removes what is there.
+    Existing,
+}
+
+impl Change {
+    /// The change that this access makes where something `exists` or not.
+    pub fn by(access: Access, exists: bool) -> Change {
+        match (exists, access) {
+            (true, _) => Change::Existing,
+            (false, Access::Folder) => Change::NewFolder,
+            (false, _) => Change::NewFile,
+        }
+    }
 }
 
 /// What the user allows. Folders include what is below them; paths may be relative.
@@ -27,6 +51,8 @@ pub enum Grant<'a> {
     Create(&'a Path),
     /// To make new files of results and data in this folder, not below it.
     Results(&'a Path),
+    /// To replace this file, which holds results of a simulation, where new files may be made.
+    Replace(&'a Path),
     /// To make, replace and remove files in this folder, which holds the results of the run.
     Own(&'a Path),
     /// To write this one file or device, whatever it is: the user has named it.
@@ -46,6 +72,7 @@ impl<'a> Grant<'a> {
             Grant::Read(path)
             | Grant::Create(path)
             | Grant::Results(path)
+            | Grant::Replace(path)
             | Grant::Own(path)
             | Grant::Named(path) => Some(path),
             Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => None,
@@ -59,6 +86,7 @@ impl<'a> Grant<'a> {
             Grant::Read(_) => Grant::Read(path),
             Grant::Create(_) => Grant::Create(path),
             Grant::Results(_) => Grant::Results(path),
+            Grant::Replace(_) => Grant::Replace(path),
             Grant::Own(_) => Grant::Own(path),
             Grant::Named(_) => Grant::Named(path),
             Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => self,
@@ -77,8 +105,8 @@ pub enum Refusal {
     System,
     /// A name that begins with a dot.
     Hidden,
-    /// A Modelica file or a script.
-    Source,
+    /// A new file of a kind that scripts do not create.
+    Kind,
     /// A file that the run has not made.
     Existing,
     /// A file that has further names (hard links).
@@ -95,7 +123,10 @@ impl Refusal {
             Refusal::Outside => "it is outside the directory where the run started",
             Refusal::System => "it belongs to the operating system",
             Refusal::Hidden => "its name starts with a dot",
-            Refusal::Source => "it is a Modelica file or a script",
+            Refusal::Kind => {
+                "scripts create data, figures, text, logs, models and scripts here, and no other \
+                 files"
+            }
             Refusal::Existing => "this run did not create it",
             Refusal::Shared => "it has a second name elsewhere (a hard link)",
             Refusal::Reserved => "the program keeps its own records in it",
@@ -107,6 +138,7 @@ impl Refusal {
         match self {
             Refusal::Reading => Some("allow it with `--allow-read`, or `--allow-read=DIR`"),
             Refusal::System | Refusal::Reserved => None,
+            Refusal::Kind => Some("write it to the output folder, or allow it with `--allow-write`"),
             _ => Some("allow it with `--allow-write`"),
         }
     }
@@ -142,6 +174,30 @@ const SYSTEM: &[&str] = &["/proc", "/sys", "/dev"];
 /// The file in an output folder that lists what runs have made outside of it.
 pub const RECORD: &str = "files_made.txt";
 
+/// The files that scripts create beside themselves and in the working folder, by the ends of their
+/// names. All other files are created in the output folder only: build systems, interpreters and
+/// shells execute files by their names alone.
+pub const KINDS: &[(&str, &[&str])] = &[
+    ("data", &["mat", "csv", "tsv", "txt", "dat"]),
+    ("figures", &["svg", "png", "pdf", "eps"]),
+    ("text and logs", &["txt", "md", "tex", "log"]),
+    ("models and scripts", &["mo", "mos"]),
+];
+
+/// Names of these kinds that other programs execute, or that stand for a library in later runs.
+pub const EXCEPTIONS: &[&str] = &[
+    "CMakeLists.txt",
+    "conanfile.txt",
+    "requirements.txt",
+    "package.mo",
+    "Modelica.mo",
+    "ModelicaServices.mo",
+    "Complex.mo",
+    "GAPILib.mo",
+    "startup.mos",
+    "dymola.mos",
+];
+
 /// What the user allows, all in real paths.
 #[derive(Debug, Clone, Default)]
 pub struct Policy {
@@ -163,6 +219,7 @@ impl Policy {
             Grant::Read(_) => drop(self.readable.insert(real)),
             Grant::Create(_) => drop(self.creatable.insert(real)),
             Grant::Results(_) => drop(self.results.insert(real)),
+            Grant::Replace(_) => self.note_made(real),
             Grant::Own(_) => drop(self.own.insert(real)),
             Grant::Named(_) => drop(self.named.insert(real)),
             Grant::ReadAll => self.reads_all = true,
@@ -229,8 +286,8 @@ impl Policy {
     }
 
     /// # Errors
-    /// The file or folder, which exists or not, may not be made, changed or removed.
-    pub fn may_write(&self, real: &Path, exists: bool) -> Result<(), Refusal> {
+    /// The file or folder may not be made, changed or removed.
+    pub fn may_write(&self, real: &Path, change: Change) -> Result<(), Refusal> {
         if self.named.contains(real) {
             return Ok(());
         }
@@ -252,13 +309,12 @@ impl Policy {
         if below.iter().any(|name| name.as_encoded_bytes().starts_with(b".")) {
             return Err(Refusal::Hidden);
         }
-        // Calibrated models are results.
-        match own {
-            Some(_) => Ok(()),
-            None if exists && self.made.contains(real) => Ok(()),
-            None if is_source(real) => Err(Refusal::Source),
-            None if exists => Err(Refusal::Existing),
-            None => Ok(()),
+        match change {
+            _ if own.is_some() => Ok(()),
+            Change::Existing if self.made.contains(real) => Ok(()),
+            Change::Existing => Err(Refusal::Existing),
+            Change::NewFile if !is_created(real) => Err(Refusal::Kind),
+            Change::NewFile | Change::NewFolder => Ok(()),
         }
     }
 }
@@ -278,9 +334,13 @@ fn is_result(real: &Path) -> bool {
     real.extension().is_some_and(|e| e == "mat" || e == "csv" || e == "txt")
 }
 
-/// Whether other runs would carry out what is in the file.
-fn is_source(real: &Path) -> bool {
-    real.extension().is_some_and(|e| e.eq_ignore_ascii_case("mo") || e.eq_ignore_ascii_case("mos"))
+/// Whether scripts create files of this name outside of the output folder.
+fn is_created(real: &Path) -> bool {
+    let Some(name) = real.file_name().and_then(|name| name.to_str()) else { return false };
+    let Some((_, ending)) = name.rsplit_once('.') else { return false };
+    let is_kind = |known: &&str| known.eq_ignore_ascii_case(ending);
+    KINDS.iter().any(|(_, endings)| endings.iter().any(|known| is_kind(&known)))
+        && !EXCEPTIONS.iter().any(|known| known.eq_ignore_ascii_case(name))
 }
 
 #[cfg(test)]
@@ -318,29 +378,60 @@ mod tests {
         assert_eq!(policy.may_read("/etc/hostname".as_ref()), Ok(()));
         for path in ["/proc/self/environ", "/sys/power/state", "/dev/sda"] {
             assert_eq!(policy.may_read(path.as_ref()), Err(Refusal::System));
-            assert_eq!(policy.may_write(path.as_ref(), true), Err(Refusal::System));
+            let written = policy.may_write(path.as_ref(), Change::Existing);
+            assert_eq!(written, Err(Refusal::System));
         }
     }
 
     #[test]
     fn writing_makes_new_files_and_replaces_results() {
+        use Change::{Existing, NewFile, NewFolder};
         let mut policy = policy();
-        let write = |policy: &Policy, path: &str, exists| policy.may_write(path.as_ref(), exists);
-        assert_eq!(write(&policy, "/home/me/new.csv", false), Ok(()));
-        assert_eq!(write(&policy, "/home/me/thesis.tex", true), Err(Refusal::Existing));
-        assert_eq!(write(&policy, "/home/me/.profile", false), Err(Refusal::Hidden));
-        assert_eq!(write(&policy, "/home/me/.config/a", false), Err(Refusal::Hidden));
-        assert_eq!(write(&policy, "/home/me/M.mo", false), Err(Refusal::Source));
-        assert_eq!(write(&policy, "/home/me/results/fit/a.csv", true), Ok(()));
-        assert_eq!(write(&policy, "/home/me/results/fit/.a", true), Err(Refusal::Hidden));
-        assert_eq!(write(&policy, "/home/me/results/other/a.csv", true), Err(Refusal::Existing));
-        assert_eq!(
-            write(&policy, "/home/me/results/fit/files_made.txt", false),
-            Err(Refusal::Reserved)
-        );
-        assert_eq!(write(&policy, "/libraries/a.txt", false), Err(Refusal::Outside));
-        assert_eq!(write(&policy, "/data/.curve.mo", true), Ok(()));
+        let cases = [
+            ("/home/me/new.csv", NewFile, Ok(())),
+            ("/home/me/NEW.MOS", NewFile, Ok(())),
+            ("/home/me/sweep", NewFolder, Ok(())),
+            ("/home/me/thesis.tex", Existing, Err(Refusal::Existing)),
+            ("/home/me/M.mo", Existing, Err(Refusal::Existing)),
+            ("/home/me/.profile", NewFile, Err(Refusal::Hidden)),
+            ("/home/me/.config/a.txt", NewFile, Err(Refusal::Hidden)),
+            ("/home/me/results/fit/a.csv", Existing, Ok(())),
+            ("/home/me/results/fit/Makefile", NewFile, Ok(())),
+            ("/home/me/results/fit/.a", Existing, Err(Refusal::Hidden)),
+            ("/home/me/results/other/a.csv", Existing, Err(Refusal::Existing)),
+            ("/home/me/results/fit/files_made.txt", NewFile, Err(Refusal::Reserved)),
+            ("/libraries/a.txt", NewFile, Err(Refusal::Outside)),
+            ("/data/.curve.mo", Existing, Ok(())),
+        ];
+        for (path, change, expected) in cases {
+            assert_eq!(policy.may_write(path.as_ref(), change), expected, "{path} {change:?}");
+        }
         policy.note_made("/home/me/new.csv".into());
-        assert_eq!(write(&policy, "/home/me/new.csv", true), Ok(()));
+        assert_eq!(policy.may_write("/home/me/new.csv".as_ref(), Existing), Ok(()));
+        policy.grant(Grant::Replace("".as_ref()), "/libraries/r.mat".into());
+        let outside = policy.may_write("/libraries/r.mat".as_ref(), Existing);
+        assert_eq!(outside, Err(Refusal::Outside));
+    }
+
+    #[test]
+    fn what_other_programs_execute_is_not_created() {
+        let policy = policy();
+        for name in [
+            "Makefile",
+            "conftest.py",
+            "sitecustomize.py",
+            "CMakeLists.txt",
+            "cmakelists.TXT",
+            "package.json",
+            "package.mo",
+            "modelica.mo",
+            "run.bat",
+            "a.csv.sh",
+            "setup.cfg",
+            "csv",
+        ] {
+            let refused = policy.may_write(&Path::new("/home/me").join(name), Change::NewFile);
+            assert_eq!(refused, Err(Refusal::Kind), "{name}");
+        }
     }
 }

@@ -49,8 +49,10 @@ fn run(
     let mut flags = parsed.map_err(|error| vec![error])?;
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
+    let written = flags.result.clone().unwrap_or_else(|| file.clone());
     let wanted = (file.as_str(), &program.filter);
-    openmodelica::run(session, &program.model, &program.options, flags, wanted).map(|_| ())
+    let done = openmodelica::run(session, &program.model, &program.options, flags, wanted);
+    session.noting_outdated(written.as_ref(), done).map(|_| ())
 }
 
 /// The words of a command line and the file that its output goes to; `None` if it is more than one

@@ -1,7 +1,7 @@
 //! Simulations with given values that return values: once, or once for each row of values.
 
 use super::linearization::write_dslin;
-use super::simulation::{Request, run_model, translated_model};
+use super::simulation::{Request, result_path, run_model, translated_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -187,6 +187,7 @@ fn simulated(
         session.set_parameter(name, *value)?;
     }
     let done = run_model(session, model, &request.options, &request.file);
+    let done = session.noting_outdated(&result_path(&request.file), done);
     Ok(session.or_report_all(done))
 }
 

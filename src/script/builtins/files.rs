@@ -5,6 +5,7 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::access::faults::cannot;
+use crate::script::access::policy::Access;
 use crate::script::errors::FILE_ERROR;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
@@ -121,6 +122,8 @@ fn move_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let old = path_of(session, &mut args, "oldName")?;
     let new = PathBuf::from(args.take::<String>("newName")?);
     let replace: bool = args.take("replace")?;
+    // Refused before anything is done.
+    session.may(Access::Write, &old)?;
     copy_file(session, &old, &new, replace)?;
     session.remove_file(&old)?;
     Ok(Value::nothing())

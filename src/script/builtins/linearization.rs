@@ -9,7 +9,6 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::flatten::Experiment;
 use crate::mat::{self, Matrix};
 use crate::name::Name;
-use crate::script::access::policy::Grant;
 use crate::script::models::linearization::{Linear, linearized};
 use crate::script::models::simulation;
 use crate::script::models::simulation::SimulationOptions;
@@ -84,7 +83,7 @@ pub(super) fn write_dslin(session: &mut Session, file: &str, linear: &Linear) ->
         ("xuyName", Matrix::from_text(&names)),
     ];
     let bytes = mat::write_v4(matrices.iter().map(|(name, matrix)| (*name, matrix)))?;
-    session.write_file(Path::new(file), &bytes)
+    session.write_result_file(Path::new(file), &bytes)
 }
 
 const LINEARIZE: &str = r#"
@@ -153,12 +152,9 @@ fn translated_and_linearized(
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options));
     session.restore_values(before);
     let linear = linear?;
-    if !session.world.exists(Path::new(FILE)) {
-        // Scripts do not make Modelica files, but this one is the command's.
-        session.world.grant(Grant::Named(Path::new(FILE)));
-    }
+    let text = as_model(&linear, class);
     let written = write_results(session, &linear.results, file)
-        .and_then(|()| session.write_file(Path::new(FILE), as_model(&linear, class).as_bytes()));
+        .and_then(|()| session.write_result_file(Path::new(FILE), text.as_bytes()));
     written.at(at).map_err(|error| vec![error])?;
     Ok(options)
 }

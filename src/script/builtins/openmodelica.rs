@@ -75,8 +75,10 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
-        let model = simulation::translate(session, &class.to_string())?;
-        run(session, &model, &options, flags, (&file, &filter))
+        let written = flags.result.clone().unwrap_or_else(|| file.clone());
+        let done = simulation::translate(session, &class.to_string())
+            .and_then(|model| run(session, &model, &options, flags, (&file, &filter)));
+        session.noting_outdated(written.as_ref(), done)
     });
     let messages = match &done {
         Ok(_) => String::new(),
@@ -227,8 +229,8 @@ pub(super) fn write_results(
     if file.ends_with(NO_FILE) {
         return Ok(());
     }
-    let bytes = crate::results::format_of_file(file)?.write(table)?;
-    session.write_file(file.as_ref(), &bytes)?;
+    let format = crate::results::format_of_file(file)?;
+    session.write_results(file.as_ref(), format.as_ref(), table)?;
     session.extension::<LastResults>().0 = Some(file.to_owned());
     super::plotting::note_results(session, file);
     Ok(())

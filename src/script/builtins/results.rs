@@ -48,6 +48,7 @@ pub(super) fn table(session: &mut Session, name: &str) -> Result<Arc<ResultTable
         .find_file(Path::new(name))
         .or_else(|| session.find_file(Path::new(&with_ending)))
         .ok_or_else(|| session.missing_file(Path::new(name)))?;
+    session.check_current(&found)?;
     let stamp = session.world.stamp(&found);
     if let Some((path, known, table)) = &session.extension::<LastRead>().0
         && *path == found

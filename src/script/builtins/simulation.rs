@@ -223,8 +223,9 @@ fn run(
     options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let model = model(session, problem)?;
-    run_model(session, &model, options, file)
+    let done =
+        model(session, problem).and_then(|model| run_model(session, &model, options, file));
+    session.noting_outdated(&result_path(file), done)
 }
 
 /// Simulates and writes the result file.
@@ -242,12 +243,17 @@ pub(super) fn run_model(
     Ok(simulated)
 }
 
-/// Writes a result file; without an ending that names a format, `.mat` is added.
-fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<(), Fault> {
-    let path = match results::format_of_file(file) {
+/// The path of a result file; without an ending that names a format, `.mat` is added.
+pub(super) fn result_path(file: &str) -> PathBuf {
+    match results::format_of_file(file) {
         Ok(_) if file.contains('.') => PathBuf::from(file),
         _ => PathBuf::from(format!("{file}.mat")),
-    };
+    }
+}
+
+/// Writes a result file.
+fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<(), Fault> {
+    let path = result_path(file);
     let format = results::format_of_file(&path.to_string_lossy())?;
     // The name that Dymola's result files have.
     table.time_name = "Time".to_owned();

@@ -36,6 +36,12 @@ pub trait Files {
     fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
     /// The bytes of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+    /// The first bytes of a file, at most this many.
+    fn read_start(&self, path: &Path, most: usize) -> io::Result<Vec<u8>> {
+        let mut bytes = self.read(path)?;
+        bytes.truncate(most);
+        Ok(bytes)
+    }
     /// Writes a file anew.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
     /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory.

@@ -1,7 +1,7 @@
 //! A world in memory: what tests and documentation run scripts in.
 
 use super::{Environment, FileReader, Files, Screen, Stamp};
-use crate::script::access::policy::{Access, Grant, Policy};
+use crate::script::access::policy::{Access, Change, Grant, Policy};
 use crate::script::runs::view::{Progress, View};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -176,7 +176,9 @@ impl Files for MemoryWorld {
         match access {
             // Nothing else is in memory than what belongs to the run.
             Access::Read => Ok(()),
-            Access::Write => Ok(self.policy.may_write(&path, self.exists(&path))?),
+            Access::Write | Access::Folder => {
+                Ok(self.policy.may_write(&path, Change::by(access, self.exists(&path)))?)
+            }
         }
     }
 
@@ -251,7 +253,7 @@ impl Files for MemoryWorld {
         if self.dirs.contains(&path) {
             return Ok(());
         }
-        self.permits(&path, Access::Write)?;
+        self.permits(&path, Access::Folder)?;
         self.policy.note_made(path.clone());
         self.dirs.extend(path.ancestors().map(Path::to_path_buf));
         Ok(())
