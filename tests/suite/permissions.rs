@@ -89,7 +89,8 @@ fn results_of_another_script_are_replaced() {
             let script = format!("{name}.mos");
             fs::write(here.path().join(&script), simulating(k, file)).unwrap();
             for out in ["one", "two"] {
-                let (code, text, errors) = gapi(&here, &["run", &script, "--out", out, "--overwrite"]);
+                let (code, text, errors) =
+                    gapi(&here, &["run", &script, "--out", out, "--overwrite"]);
                 assert!(code == 0 && text.contains(expected), "{file} {name}: {text}{errors}");
             }
         }
@@ -103,7 +104,10 @@ fn a_refused_or_failed_simulation_is_not_followed_by_older_results() {
     let here = folder(&[("D.mo", DECAY), ("r.csv", data), ("a.mos", &simulating(1, "r.csv"))]);
     let (code, out, errors) = gapi(&here, &["run", "a.mos"]);
     assert!(code == 1 && errors.contains("this run did not create it"), "{out}{errors}");
-    assert!(errors.contains("older than this script expects") && !out.contains("x = "), "{out}{errors}");
+    assert!(
+        errors.contains("older than this script expects") && !out.contains("x = "),
+        "{out}{errors}"
+    );
     assert_eq!(text(&here, "r.csv"), data);
     let failing = simulating(1, "r.mat") + &simulating(2, "r.mat").replace("D(k = 2)", "D(no = 2)");
     fs::write(here.path().join("b.mos"), failing).unwrap();

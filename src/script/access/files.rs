@@ -123,8 +123,8 @@ impl Session {
         write: &mut dyn FnMut(&mut Session) -> io::Result<()>,
     ) -> Result<(), Fault> {
         let written = self.may(Access::Write, path).and_then(|()| self.make_parents(path));
-        let written = written
-            .and_then(|()| write(self).map_err(|error| cannot("write", path, &error)));
+        let written =
+            written.and_then(|()| write(self).map_err(|error| cannot("write", path, &error)));
         let path = self.world.absolute(path);
         match &written {
             Ok(()) => drop(self.outdated.0.remove(&path)),

@@ -138,7 +138,9 @@ impl Refusal {
         match self {
             Refusal::Reading => Some("allow it with `--allow-read`, or `--allow-read=DIR`"),
             Refusal::System | Refusal::Reserved => None,
-            Refusal::Kind => Some("write it to the output folder, or allow it with `--allow-write`"),
+            Refusal::Kind => {
+                Some("write it to the output folder, or allow it with `--allow-write`")
+            }
             _ => Some("allow it with `--allow-write`"),
         }
     }

@@ -223,8 +223,7 @@ fn run(
     options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let done =
-        model(session, problem).and_then(|model| run_model(session, &model, options, file));
+    let done = model(session, problem).and_then(|model| run_model(session, &model, options, file));
     session.noting_outdated(&result_path(file), done)
 }
 
