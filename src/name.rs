@@ -32,6 +32,15 @@ impl Ident {
     pub fn as_str(self) -> &'static str {
         self.0
     }
+
+    /// The array and the subscripts of a part of a flat name, such as `c` and 2 of `c[2]`. No
+    /// identifier that is read from a text has them.
+    pub fn subscripted(self) -> Option<(Ident, Vec<usize>)> {
+        let (array, subscripts) = self.0.strip_suffix(']')?.rsplit_once('[')?;
+        let subscripts: Result<Vec<usize>, _> =
+            subscripts.split(',').map(|subscript| subscript.trim().parse()).collect();
+        Some((Ident::new(array.trim_end()), subscripts.ok()?))
+    }
 }
 
 impl serde::Serialize for Ident {

@@ -3,7 +3,7 @@
 
 use super::FlatModel;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::flat_expression::literal;
+use super::flat_expression::{indices_of, literal};
 use super::instantiate::instance::Leaf;
 use super::instantiate::instance::MemberState;
 use super::instantiate::instance::NodeKind;
@@ -20,6 +20,7 @@ use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::ATTRIBUTES;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Attributes that must be known when the equations are sorted.
@@ -108,17 +109,60 @@ impl Instantiation<'_> {
             let binding = self.checked_value(binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }
+        variable.binding = self.with_elements(leaf, None, variable.binding.take(), &variable)?;
         for name in ATTRIBUTES {
             let modifier = leaf.modifier.elements.iter().find(|(known, _)| **known == name);
-            let Some((_, modifier)) = modifier else { continue };
-            let Some(bound) = &modifier.binding else { continue };
-            if let Some(value) = self.bound(bound, false)? {
+            let bound = modifier.and_then(|(_, modifier)| modifier.binding.as_ref());
+            let whole = bound.map_or(Ok(None), |bound| self.bound(bound, false))?;
+            if let Some(value) = self.with_elements(leaf, Some(name), whole, &variable)? {
                 let value = if DECIDED.contains(&name) { self.decided(value)? } else { value };
-                let attribute = Attribute { value, is_final: modifier.is_final };
-                variable.attributes.insert(name, attribute);
+                let is_final = modifier.is_some_and(|(_, modifier)| modifier.is_final);
+                variable.attributes.insert(name, Attribute { value, is_final });
             }
         }
         Ok(variable)
+    }
+
+    /// The value of a variable, or of an attribute of it, in which single elements have values of
+    /// their own.
+    fn with_elements(
+        &mut self,
+        leaf: &Leaf,
+        attribute: Option<&'static str>,
+        whole: Option<Expression>,
+        variable: &Variable,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let mut own: FxHashMap<&[usize], Expression> = FxHashMap::default();
+        for (indices, modifier) in &leaf.modifier.of_elements {
+            let Some(bound) = modifier.value_of(attribute) else { continue };
+            let Some(value) = self.bound(bound, false)? else { continue };
+            if attribute.is_none() {
+                let element = Variable { dims: Vec::new(), ..variable.clone() };
+                check_literal(&value, &element.base, &element)?;
+                own.insert(indices, self.checked_value(value, &element, false)?);
+            } else {
+                own.insert(indices, value);
+            }
+        }
+        let Some(span) = own.values().next().map(|value| value.span) else { return Ok(whole) };
+        let is_array =
+            whole.as_ref().is_some_and(|whole| self.types().rank_of(whole).is_none_or(|n| n > 0));
+        let mut elements = Vec::new();
+        for at in 0..variable.len() {
+            let indices = indices_of(at, &variable.dims);
+            let value = match (own.remove(indices.as_slice()), &whole, attribute) {
+                (Some(own), _, _) => own,
+                (None, Some(whole), _) if is_array => element_of(whole, &indices),
+                (None, Some(whole), _) => whole.clone(),
+                (None, None, Some("fixed")) => {
+                    Expression::new(ExpressionKind::Boolean(false), span)
+                }
+                (None, None, Some("start")) => start_of(&variable.base, span),
+                (None, None, _) => return Err(incomplete(variable, &indices, span)),
+            };
+            elements.push(value);
+        }
+        Ok(Some(nested(elements, &variable.dims, span)))
     }
 
     /// Refuses a value that does not fit. An Integer as the ordinal of an enumeration, which old
@@ -234,6 +278,50 @@ impl Instantiation<'_> {
             self.warnings.push(error.warning());
         }
     }
+}
+
+/// An element of a resolved value that is an array.
+fn element_of(whole: &Expression, indices: &[usize]) -> Expression {
+    match (&whole.kind, indices) {
+        (_, []) => whole.clone(),
+        (ExpressionKind::Array(elements), [first, rest @ ..]) => match elements.get(first - 1) {
+            Some(element) => element_of(element, rest),
+            None => picked(whole.clone(), indices),
+        },
+        _ => picked(whole.clone(), indices),
+    }
+}
+
+/// The start value of a variable that has none (MLS §4.9).
+fn start_of(base: &BaseType, span: Span) -> Expression {
+    let kind = match base {
+        BaseType::Boolean => ExpressionKind::Boolean(false),
+        BaseType::Integer => ExpressionKind::Integer(0),
+        _ => ExpressionKind::Real(0.0),
+    };
+    Expression::new(kind, span)
+}
+
+fn incomplete(variable: &Variable, indices: &[usize], span: Span) -> Diagnostic {
+    let numbers: Vec<String> = indices.iter().map(usize::to_string).collect();
+    let name = &variable.name;
+    fault!(
+        SIZE_MISMATCH,
+        "only some elements of `{name}` have a value: `{name}[{}]` has none", numbers.join(",");
+        help: "give every element of the array a value")
+    .at(span)
+}
+
+/// An array of these sizes from its elements, the last index fastest.
+fn nested(elements: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
+    let mut level = elements;
+    for size in dims.iter().rev() {
+        let rows = level.chunks((*size).max(1));
+        level =
+            rows.map(|row| Expression::new(ExpressionKind::Array(row.to_vec()), span)).collect();
+    }
+    let empty = || Expression::new(ExpressionKind::Array(Vec::new()), span);
+    level.into_iter().next().unwrap_or_else(empty)
 }
 
 /// A value of one element for every element: `fill(value, 2, 3)`.

@@ -318,7 +318,8 @@ impl Classes<'_> {
 
     /// The instance in whose class the binding of a variable is written.
     fn binder(&self, leaf: &Leaf) -> Option<NodeId> {
-        let bound = leaf.modifier.binding.as_ref()?;
+        let mut own = leaf.modifier.of_elements.values().filter_map(|one| one.binding.as_ref());
+        let bound = leaf.modifier.binding.as_ref().or_else(|| own.next())?;
         Some(self.node_of(bound.context))
     }
 

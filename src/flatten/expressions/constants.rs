@@ -110,6 +110,9 @@ impl Instantiation<'_> {
         let NodeKind::Variable(leaf) = &self.classes.tree.nodes[node.0].kind else {
             return Err(fault!(NOT_CONSTANT, "`{name}` has no value").at(span));
         };
+        let of_elements = leaf.modifier.of_elements.iter();
+        let own: Vec<(Vec<usize>, Bound)> =
+            of_elements.filter_map(|(at, one)| Some((at.clone(), one.binding.clone()?))).collect();
         let given = |bound: Option<Bound>| bound.and_then(|b| Some((b.value.clone()?, b)));
         let start = leaf.modifier.elements.iter().find(|(name, _)| **name == "start");
         let start = given(start.and_then(|(_, modifier)| modifier.binding.clone()));
@@ -132,12 +135,31 @@ impl Instantiation<'_> {
                 .at(span));
             }
         };
-        let value = self.part_of(&value, &bound)?;
+        let mut whole = self.bound_constant(&value, &bound, &base, &dims)?;
+        for (indices, bound) in own {
+            let (Some(value), Value::Array(array)) = (&bound.value, &mut whole) else { continue };
+            let element = self.bound_constant(value, &bound, &base, &[])?;
+            let offset =
+                indices.iter().zip(&dims).fold(0, |at, (index, size)| at * size + index - 1);
+            array.elements.set(offset, element).map_err(|fault| fault.at(value.span))?;
+        }
+        Ok(whole)
+    }
+
+    /// The value that a modifier gives to a constant or parameter of this type and these sizes.
+    fn bound_constant(
+        &mut self,
+        value: &Expression,
+        bound: &Bound,
+        base: &BaseType,
+        dims: &[usize],
+    ) -> Result<Value, Diagnostic> {
+        let value = self.part_of(value, bound)?;
         // Parameters may be read from files (MLS §12.3).
         let local = Local { values: true, impure: true, ..Local::default() };
         let resolved = self.resolve(&value, bound.context, &local)?;
         let found = evaluate(&resolved, &mut Scope::script(), &mut Functions(self))?;
-        fitting(found, &base, &dims, bound.each).map_err(|fault| fault.at(value.span))
+        fitting(found, base, dims, bound.each).map_err(|fault| fault.at(value.span))
     }
 
     /// A constant of a package, or a literal of an enumeration, as its value.

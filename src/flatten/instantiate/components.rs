@@ -224,8 +224,9 @@ impl Classes<'_> {
         self.check_complete(class, declared.span)?;
         let inherited = self.tree.inherited_by(node, declared, &expanded);
         let path = self.tree.path_of(node, declared.name);
+        expanded.modifier.check_elements(declared.name, &dims)?;
         if dims.is_empty() {
-            let modifier = expanded.modifier.at_element(&[]);
+            let modifier = expanded.modifier.at_element(&[], declared.name)?;
             let built = self.composite(class, path, Some(node), modifier, inherited)?;
             self.tree.mark_connector(built, expanded.connector);
             return Ok(MemberState::Single(built));
@@ -237,7 +238,7 @@ impl Classes<'_> {
             let indices = indices_of(at, &dims);
             let numbers: Vec<String> = indices.iter().map(usize::to_string).collect();
             let element = format!("{path}[{}]", numbers.join(","));
-            let modifier = expanded.modifier.at_element(&indices);
+            let modifier = expanded.modifier.at_element(&indices, declared.name)?;
             let built = self.composite(class, element, Some(node), modifier, inherited)?;
             self.tree.mark_connector(built, expanded.connector);
             nodes.push(built);

@@ -209,6 +209,7 @@ impl Tree {
         dims: Vec<usize>,
     ) -> Result<NodeId, Diagnostic> {
         check_attributes(declared, &expanded.modifier)?;
+        expanded.modifier.check_elements(declared.name, &dims)?;
         let scalars = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);

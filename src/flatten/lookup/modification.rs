@@ -3,7 +3,7 @@
 
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
+use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE, UNKNOWN_ELEMENT};
 use crate::flatten::ids::ScopeId;
 use crate::flatten::library::ClassId;
 use crate::name::Ident;
@@ -23,6 +23,9 @@ pub struct Modifier {
     pub binding: Option<Bound>,
     /// Modifiers of the element's own elements or attributes.
     pub elements: IndexMap<Ident, Modifier>,
+    /// Modifiers of single elements of an array, by their subscripts. Modelica has no text for them:
+    /// they come from names with subscripts in modifications that are built as trees.
+    pub of_elements: IndexMap<Vec<usize>, Modifier>,
     /// Where the name of the element is written; unknown if several modifiers were merged.
     pub span: Option<Span>,
     /// Whether a `final` forbids outer modifiers.
@@ -116,11 +119,11 @@ impl Modifier {
             inner.span = Some(element.name.span);
             let mut parts = element.name.node.parts.iter().rev();
             let Some(last) = parts.next() else { continue };
-            let mut entry = (*last, inner);
+            let mut entry = inner.named(*last);
             for part in parts {
                 let span = entry.1.span;
                 let elements = [entry].into_iter().collect();
-                entry = (*part, Modifier { elements, span, ..Modifier::default() });
+                entry = Modifier { elements, span, ..Modifier::default() }.named(*part);
             }
             let known = merged.elements.shift_remove(&entry.0).unwrap_or_default();
             if let Some(name) = known.conflict(&entry.1, entry.0) {
@@ -131,6 +134,15 @@ impl Modifier {
             merged.elements.insert(entry.0, known.overridden_by(entry.1, entry.0)?);
         }
         Ok(merged)
+    }
+
+    /// The modifier with the name of the element that it belongs to: that of the array, where the
+    /// name has subscripts.
+    fn named(self, name: Ident) -> (Ident, Modifier) {
+        let Some((array, indices)) = name.subscripted() else { return (name, self) };
+        let span = self.span;
+        let of_elements = [(indices, self)].into_iter().collect();
+        (array, Modifier { of_elements, span, ..Modifier::default() })
     }
 
     fn add_redeclaration(
@@ -196,7 +208,9 @@ impl Modifier {
                 other.elements.get(name).is_some_and(|other| modifier.is_same(other))
             })
         };
-        self.has_same_binding(other) && self.elements.len() == other.elements.len() && elements()
+        let of_elements = self.of_elements.is_empty() && other.of_elements.is_empty();
+        let is_as_long = self.elements.len() == other.elements.len();
+        self.has_same_binding(other) && is_as_long && of_elements && elements()
     }
 
     /// Whether both give the same value, and neither another declaration.
@@ -210,12 +224,14 @@ impl Modifier {
 
     /// Where it is written, or the first of the modifiers in it.
     fn place(&self) -> Option<Span> {
-        self.span.or_else(|| self.elements.values().find_map(Modifier::place))
+        let mut inner = self.elements.values().chain(self.of_elements.values());
+        self.span.or_else(|| inner.find_map(Modifier::place))
     }
 
     /// Whether it changes nothing.
     pub fn is_empty(&self) -> bool {
-        self.binding.is_none() && self.elements.is_empty() && self.redeclaration.is_none()
+        let has_parts = !self.elements.is_empty() || !self.of_elements.is_empty();
+        self.binding.is_none() && !has_parts && self.redeclaration.is_none()
     }
 
     /// The element to which both modifiers give a value (MLS §7.2.4).
@@ -226,7 +242,11 @@ impl Modifier {
         let inner = |(name, modifier): (&Ident, &Modifier)| {
             self.elements.get(name)?.conflict(modifier, *name)
         };
-        other.elements.iter().find_map(inner)
+        let of_element = |(indices, modifier): (&Vec<usize>, &Modifier)| {
+            self.of_elements.get(indices)?.conflict(modifier, name)
+        };
+        let found = other.elements.iter().find_map(inner);
+        found.or_else(|| other.of_elements.iter().find_map(of_element))
     }
 
     /// This modifier with an outer one over it; `name` is the element's, for messages.
@@ -260,6 +280,10 @@ impl Modifier {
             let inner = self.elements.shift_remove(&element).unwrap_or_default();
             self.elements.insert(element, inner.overridden_by(modifier, element)?);
         }
+        for (indices, modifier) in outer.of_elements {
+            let inner = self.of_elements.shift_remove(&indices).unwrap_or_default();
+            self.of_elements.insert(indices, inner.overridden_by(modifier, name)?);
+        }
         self.is_final |= outer.is_final;
         self.span = outer.span.or(self.span);
         Ok(self)
@@ -279,9 +303,31 @@ impl Modifier {
         self.elements.values_mut().for_each(Modifier::mark_of_class);
     }
 
-    /// The modifier of one element of an array of components: values written without `each` are
-    /// arrays, and the element is picked from them.
-    pub fn at_element(&self, indices: &[usize]) -> Modifier {
+    /// The modifier of one element of an array of components, whose name is that of the array: values
+    /// written without `each` are arrays, and the element is picked from them. What modifies this
+    /// element alone stands over what modifies all.
+    pub fn at_element(&self, indices: &[usize], name: Ident) -> Result<Modifier, Diagnostic> {
+        let mut picked = self.picked(indices);
+        let own = picked.of_elements.shift_remove(indices);
+        picked.of_elements.clear();
+        match own {
+            Some(own) => picked.overridden_by(own, name),
+            None => Ok(picked),
+        }
+    }
+
+    /// The value that it gives to its element, or to an attribute of it.
+    pub fn value_of(&self, attribute: Option<&str>) -> Option<&Bound> {
+        match attribute {
+            None => self.binding.as_ref(),
+            Some(attribute) => {
+                let (_, modifier) = self.elements.iter().find(|(name, _)| **name == attribute)?;
+                modifier.binding.as_ref()
+            }
+        }
+    }
+
+    fn picked(&self, indices: &[usize]) -> Modifier {
         let picked = |bound: &Bound| {
             let mut bound = bound.clone();
             if !bound.each && !std::mem::take(&mut bound.of_class) {
@@ -294,12 +340,32 @@ impl Modifier {
             elements: self
                 .elements
                 .iter()
-                .map(|(name, modifier)| (*name, modifier.at_element(indices)))
+                .map(|(name, modifier)| (*name, modifier.picked(indices)))
                 .collect(),
+            of_elements: self.of_elements.clone(),
             span: self.span,
             is_final: self.is_final,
             redeclaration: self.redeclaration.clone(),
         }
+    }
+
+    /// The modifiers of single elements; a fault where an array of these sizes has no such element.
+    pub fn check_elements(&self, name: Ident, dims: &[usize]) -> Result<(), Diagnostic> {
+        let fits = |indices: &[usize]| {
+            indices.len() == dims.len()
+                && indices.iter().zip(dims).all(|(at, size)| (1..=*size).contains(at))
+        };
+        let Some((indices, modifier)) = self.of_elements.iter().find(|(at, _)| !fits(at)) else {
+            return Ok(());
+        };
+        let numbers =
+            |list: &[usize]| list.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+        let sizes = match dims {
+            [] => "it is not an array".to_owned(),
+            dims => format!("it is `{name}[{}]`", numbers(dims)),
+        };
+        Err(fault!(UNKNOWN_ELEMENT, "`{name}` has no element `[{}]`: {sizes}", numbers(indices))
+            .at(modifier.place().unwrap_or(Span::NONE)))
     }
 }
 
