@@ -21,6 +21,8 @@ pub enum Version {
     Spreadsheet,
     /// MAT version 7.3, which is HDF5.
     V73,
+    /// Results of a simulation.
+    Results,
 }
 
 /// What the values of a matrix stand for.
@@ -99,6 +101,21 @@ impl Matrix {
     /// The values of a matrix with one row or one column.
     pub fn as_vector(&self) -> Option<&[f64]> {
         (self.rows == 1 || self.columns == 1).then_some(&*self.values)
+    }
+
+    /// A row or column; `name` is that of the matrix.
+    fn part(&self, name: &str, part: Part) -> Result<Vec<f64>, Fault> {
+        let (what, at, count) = match part {
+            Part::Column(at) => ("column", at, self.columns),
+            Part::Row(at) => ("row", at, self.rows),
+        };
+        if !(1..=count).contains(&at) {
+            bail!(UNKNOWN_MATRIX, "`{name}` has no {what} {at}; it has {count}");
+        }
+        Ok(match part {
+            Part::Column(at) => self.column(at - 1).to_vec(),
+            Part::Row(at) => (0..self.columns).map(|j| self.get(at - 1, j)).collect(),
+        })
     }
 
     /// Rows and columns exchanged.
@@ -225,25 +242,39 @@ impl MatFile {
             .help(self.inventory()))
     }
 
-    /// Measured values: the elements of a matrix row after row, or one of its columns, as in
+    /// Measured values: a matrix with one row or one column, or a row or column of a larger one, as in
     /// `data[:,2]`.
     pub fn column(&self, name: &str) -> Result<Column, Fault> {
         let (values, about) = match part(name).filter(|_| self.own_name(name) == Ok(name)) {
-            Some((matrix, j)) if !self.arrays.contains_key(name) => {
-                let (found, columns) = (self.matrix(matrix)?, self.matrix(matrix)?.columns);
-                if !(1..=columns).contains(&j) {
-                    bail!(UNKNOWN_MATRIX, "`{matrix}` has no column {j}; it has {columns}");
-                }
-                (found.column(j - 1).to_vec(), About::default())
+            Some((matrix, part)) if !self.arrays.contains_key(name) => {
+                (self.numbers(matrix)?.part(matrix, part)?, About::default())
             }
             _ => {
-                let values = self.matrix(name)?.row_major();
+                let matrix = self.numbers(name)?;
+                let Some(values) = matrix.as_vector() else {
+                    let Matrix { rows, columns, .. } = matrix;
+                    bail!(
+                        UNKNOWN_MATRIX,
+                        "`{name}` is a matrix of {rows} rows and {columns} columns";
+                        help: "write a column, `{name}[:,1]`, or a row, `{name}[1,:]`"
+                    );
+                };
                 let own = self.own_name(name)?;
-                (values, self.about.get(own).cloned().unwrap_or_default())
+                (values.to_vec(), self.about.get(own).cloned().unwrap_or_default())
             }
         };
         let missing = missing(name, &values);
         Ok(Column { values, about, missing })
+    }
+
+    /// A matrix whose values are measured ones.
+    fn numbers(&self, name: &str) -> Result<&Matrix, Fault> {
+        let matrix = self.matrix(name)?;
+        if matrix.kind == Kind::Char {
+            return Err(fault!(UNKNOWN_MATRIX, "`{name}` contains text, not numbers")
+                .help(self.inventory()));
+        }
+        Ok(matrix)
     }
 
     /// The name of a column without its unit, if that means no other one.
@@ -263,9 +294,9 @@ impl MatFile {
         self.failed.iter().map(|(name, fault)| (name.as_str(), fault))
     }
 
-    /// Whether it was read from text in columns or a spreadsheet.
+    /// Whether it has columns with names: text in columns, a spreadsheet, or results.
     pub fn is_table(&self) -> bool {
-        matches!(self.version, Version::Csv | Version::Spreadsheet)
+        matches!(self.version, Version::Csv | Version::Spreadsheet | Version::Results)
     }
 
     fn file(&self) -> String {
@@ -290,7 +321,7 @@ impl MatFile {
             return Ok(name);
         }
         match self.aliases.get(name).map(Vec::as_slice) {
-            None | Some([]) => Ok(name),
+            None | Some([]) => Ok(self.name_in_parentheses(name).unwrap_or(name)),
             Some([own]) => Ok(own),
             Some(several) => bail!(
                 UNKNOWN_MATRIX,
@@ -298,6 +329,13 @@ impl MatFile {
                 help: "write the name with its unit, as in the header"
             ),
         }
+    }
+
+    /// The name of a variable whose indices are written in brackets, as `run[1].t` for `run(1).t`.
+    fn name_in_parentheses(&self, name: &str) -> Option<&str> {
+        let other = name.replace('[', "(").replace(']', ")");
+        let known = self.arrays.keys().chain(self.failed.keys());
+        known.map(String::as_str).find(|own| *own == other && other != name)
     }
 
     fn inventory(&self) -> String {
@@ -311,6 +349,19 @@ impl MatFile {
             more => format!(" and {more} more"),
         };
         format!("the file contains {}{more}", listed(&names))
+    }
+
+    /// Columns with their names and units; the last of several with one name counts.
+    pub fn of_columns(
+        version: Version,
+        columns: impl IntoIterator<Item = (String, Option<String>, Vec<f64>)>,
+    ) -> MatFile {
+        let mut file = MatFile::new(version);
+        for (name, unit, values) in columns {
+            let about = About { unit, ..About::default() };
+            file.insert_column(name, Matrix::column_vector(values), about);
+        }
+        file
     }
 
     pub(super) fn insert(&mut self, name: String, matrix: Matrix) {
@@ -397,12 +448,24 @@ fn listed(names: &[String]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// `data` and 2 of `data[:,2]` or `data(:,2)`.
-fn part(name: &str) -> Option<(&str, usize)> {
+/// A row or column of a matrix, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Column(usize),
+    Row(usize),
+}
+
+/// `data` and the second column of `data[:,2]` or `data(:,2)`; of `data[2,:]` the second row.
+fn part(name: &str) -> Option<(&str, Part)> {
     let inner = name.strip_suffix([']', ')'])?;
-    let (matrix, index) = inner.split_once(['[', '('])?;
-    let column = index.trim_start().strip_prefix(':')?.trim_start().strip_prefix(',')?;
-    Some((matrix, column.trim().parse().ok()?))
+    let (matrix, index) = inner.rsplit_once(['[', '('])?;
+    let (row, column) = index.split_once(',')?;
+    let part = match (row.trim(), column.trim()) {
+        (":", column) => Part::Column(column.parse().ok()?),
+        (row, ":") => Part::Row(row.parse().ok()?),
+        _ => return None,
+    };
+    Some((matrix.trim_end(), part))
 }
 
 /// The sentence about values that are missing.

@@ -1,11 +1,12 @@
 //! MAT version 5 (which programs call 6, and 7 when compressed): a header of 128 bytes, then
 //! elements of type, size and data, padded to 8 bytes; a matrix is an element of elements.
 //!
-//! Read: the numeric classes, characters, logical values, and the fields of 1×1 structures.
-//! Skipped with a warning: cells, objects, sparse matrices, functions and other opaque values,
-//! arrays of structures, complex values, arrays of more than two dimensions.
+//! Read: the numeric classes, characters, logical values, the fields of structures, which in arrays
+//! are named `run(2).t`, and the elements of cells, `signals{2}`.
+//! Skipped with a warning: objects, sparse matrices, functions and other opaque values, complex
+//! values, arrays of more than two dimensions.
 
-use super::errors::BAD_MAT_FILE;
+use super::errors::{BAD_MAT_FILE, UNREADABLE_MATRIX};
 use super::matrix::{self, Kind, MatFile, Matrix, Version};
 use super::number::{ByteOrder, Storage};
 use super::reader::Reader;
@@ -130,26 +131,66 @@ impl File {
             return Ok(());
         }
         match flags.class {
-            Class::Structure => self.read_fields(&mut reader, &name, depth),
+            Class::Structure => self.read_structures(&mut reader, &name, &sizes, depth),
+            Class::Cell => {
+                let names = elements(&name, &sizes, ['{', '}'])?;
+                let fault = whole(&name, "a cell array", names.first());
+                self.found.fail(name, fault);
+                self.read_elements(&mut reader, &names, depth)
+            }
             _ => self.read_values(&mut reader, name, &flags, [sizes[0], sizes[1]]),
         }
     }
 
-    fn read_fields(&mut self, reader: &mut Reader, name: &str, depth: usize) -> Result<(), Fault> {
+    fn read_structures(
+        &mut self,
+        reader: &mut Reader,
+        name: &str,
+        sizes: &[usize],
+        depth: usize,
+    ) -> Result<(), Fault> {
         let length = read_element(reader)?;
         let length = match &*integers(&length, reader.order)? {
             [length] if *length > 0 => *length as usize,
             _ => bail!(BAD_MAT_FILE, "structure `{name}` has a malformed field name length"),
         };
-        let names = read_element(reader)?.data;
-        for field in names.chunks(length) {
-            let end = field.iter().position(|byte| *byte == 0).unwrap_or(field.len());
-            let field = String::from_utf8_lossy(&field[..end]);
+        let fields: Vec<String> = read_element(reader)?
+            .data
+            .chunks(length)
+            .map(|field| {
+                let end = field.iter().position(|byte| *byte == 0).unwrap_or(field.len());
+                String::from_utf8_lossy(&field[..end]).into_owned()
+            })
+            .collect();
+        let owners = match sizes {
+            [1, 1] => vec![name.to_owned()],
+            _ => elements(name, sizes, ['(', ')'])?,
+        };
+        if owners.first().is_none_or(|owner| owner != name) {
+            let fault = whole(name, "an array of structures", owners.first());
+            self.found.fail(name.to_owned(), fault);
+        }
+        for owner in owners {
+            let paths: Vec<String> =
+                fields.iter().map(|field| format!("{owner}.{field}")).collect();
+            self.read_elements(reader, &paths, depth)?;
+        }
+        Ok(())
+    }
+
+    /// Reads matrices that follow each other, one for each of these names.
+    fn read_elements(
+        &mut self,
+        reader: &mut Reader,
+        names: &[String],
+        depth: usize,
+    ) -> Result<(), Fault> {
+        for name in names {
             let element = read_element(reader)?;
             if element.kind != MI_MATRIX {
-                bail!(BAD_MAT_FILE, "field `{name}.{field}` is not a matrix");
+                bail!(BAD_MAT_FILE, "`{name}` is not a matrix");
             }
-            self.read_matrix(element.data, reader.order, &format!("{name}.{field}"), depth + 1)?;
+            self.read_matrix(element.data, reader.order, name, depth + 1)?;
         }
         Ok(())
     }
@@ -231,15 +272,11 @@ impl Flags {
     /// Why it cannot be read as real matrices, if so.
     fn unreadable(&self, sizes: &[usize]) -> Option<&'static str> {
         Some(match self.class {
-            Class::Cell => "it is a cell array; save its elements as matrices",
             Class::Object => "it is an object; save its data as matrices",
             Class::Sparse => "it is a sparse matrix; convert it with `full` before saving",
             Class::Function => "it is a function handle",
             Class::Opaque => {
                 "it is an object of a class (such as a table or a string array); save its data as matrices"
-            }
-            Class::Structure if sizes != [1, 1] => {
-                "it is an array of structures; save a single structure"
             }
             _ if self.is_complex => "it is complex; save only its real part",
             _ if sizes.len() != 2 => {
@@ -248,6 +285,30 @@ impl Flags {
             _ => return None,
         })
     }
+}
+
+/// The names of the elements of an array of structures or cells: by one index where it has one row
+/// or one column.
+fn elements(name: &str, sizes: &[usize], [open, close]: [char; 2]) -> Result<Vec<String>, Fault> {
+    /// More elements than this are not columns of measured data.
+    const MOST: usize = 100_000;
+    let [rows, columns] = [sizes[0], sizes[1]];
+    let size = matrix::size(name, rows, columns)?;
+    if size > MOST {
+        bail!(BAD_MAT_FILE, "`{name}` has {size} elements; at most {MOST} are read");
+    }
+    let is_vector = rows == 1 || columns == 1;
+    let one = |at: usize| match is_vector {
+        true => format!("{name}{open}{}{close}", at + 1),
+        false => format!("{name}{open}{},{}{close}", at % rows + 1, at / rows + 1),
+    };
+    Ok((0..size).map(one).collect())
+}
+
+/// Why a variable with elements is not a matrix itself.
+fn whole(name: &str, what: &str, first: Option<&String>) -> Fault {
+    let fault = fault!(UNREADABLE_MATRIX, "`{name}` cannot be read: it is {what}");
+    fault.help_if(first.map(|first| format!("name one of its elements, such as `{first}`")))
 }
 
 fn read_flags(reader: &mut Reader) -> Result<Flags, Fault> {

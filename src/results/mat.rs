@@ -73,6 +73,11 @@ impl Format for Mat {
     }
 }
 
+/// Whether a file holds the results of a simulation.
+pub fn holds_results(file: &MatFile) -> bool {
+    file.arrays.contains_key("Aclass") && is_transposed(file).is_ok()
+}
+
 /// Where each series with values goes.
 struct Layout {
     /// Places of the constants, in the order of `data_1` after time.

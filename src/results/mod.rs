@@ -20,8 +20,38 @@ pub use table::{ResultTable, Series, Values};
 pub use tube::{Deviation, TUBE_TOLERANCE, Tube};
 
 use crate::diag::Fault;
+use crate::mat::{MatFile, Version};
 use crate::registry::{self, Entry, Options};
 use std::io;
+
+/// Values of results with constants repeated at every point: half a gigabyte.
+const MOST_VALUES: usize = 1 << 26;
+
+/// Measured data in a file: a table, matrices, or the results of a simulation, which have a column for
+/// each variable.
+///
+/// # Errors
+///
+/// Those of [`mat::read_named`](crate::mat::read_named), and of damaged results.
+pub fn read_data(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
+    let file = crate::mat::read_named(file_name, bytes)?;
+    if !mat::holds_results(&file) {
+        return Ok(file);
+    }
+    let table = (mat::ENTRY.make)(&mut Options::default())?.read(bytes)?;
+    let time = [(table.time_name.clone(), Some("s".to_owned()), table.time.clone())];
+    // Constants are worth a column each where that takes little memory.
+    let is_small = table.time.len().saturating_mul(table.series.len()) <= MOST_VALUES;
+    let series = table.series.iter().enumerate();
+    let series = series.filter(|(_, one)| is_small || !matches!(one.values, Values::Constant(_)));
+    let columns = series.map(|(at, series)| {
+        let unit = Some(series.unit.clone()).filter(|unit| !unit.is_empty());
+        (series.name.clone(), unit, table.expand(at))
+    });
+    let mut data = MatFile::of_columns(Version::Results, time.into_iter().chain(columns));
+    data.file_name = file.file_name;
+    Ok(data)
+}
 
 /// A way to write results into a file and to read them.
 pub trait Format {

@@ -125,6 +125,31 @@ impl ResultTable {
         }
     }
 
+    /// Removes the variables whose names are not to be kept; others that are aliases of them hold the
+    /// values themselves.
+    pub fn retain(&mut self, keep: impl Fn(&str) -> bool) {
+        if self.series.iter().all(|series| keep(&series.name)) {
+            return;
+        }
+        let all = std::mem::take(&mut self.series);
+        // Where the values of each series stand among those that are kept, and with which sign.
+        let mut homes: Vec<Option<(usize, bool)>> = vec![None; all.len()];
+        for (at, series) in all.iter().enumerate().filter(|(_, series)| keep(&series.name)) {
+            let (of, negated) = match series.values {
+                Values::Alias { of, negated } => (of, negated),
+                _ => (at, false),
+            };
+            let values = match homes[of] {
+                Some((home, sign)) => Values::Alias { of: home, negated: sign != negated },
+                None => {
+                    homes[of] = Some((self.series.len(), negated));
+                    all[of].values.clone().with_sign(negated)
+                }
+            };
+            self.series.push(Series { values, ..series.clone() });
+        }
+    }
+
     /// The series that holds the values, and the sign they take; the index itself unless an alias.
     /// Panics if an alias leads to an alias, which [`ResultTable::check`] refuses.
     pub(super) fn resolve(&self, index: usize) -> (usize, f64) {
@@ -226,5 +251,30 @@ impl ResultTable {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn aliases_of_removed_variables_hold_their_values() {
+        let mut table = ResultTable::new(vec![0.0, 1.0]);
+        let alias = |negated| Values::Alias { of: 0, negated };
+        for (name, values) in [
+            ("own", Values::Trajectory(vec![2.0, 4.0])),
+            ("minus", alias(true)),
+            ("plus", alias(false)),
+            ("constant", Values::Constant(7.0)),
+        ] {
+            table.series.push(Series::new(name, values));
+        }
+        table.retain(|name| name != "own");
+        assert_eq!(table.names().collect::<Vec<_>>(), ["time", "minus", "plus", "constant"]);
+        assert_eq!(table.column("minus").unwrap(), [-2.0, -4.0]);
+        assert_eq!(table.column("plus").unwrap(), [2.0, 4.0]);
+        assert_eq!(table.column("constant").unwrap(), [7.0, 7.0]);
+        table.check().unwrap();
     }
 }

@@ -51,9 +51,13 @@ impl<'r> Cells<'r, '_> {
             return fault!(BAD_TABLE, "{place}: the formula in `{name}` has no stored value")
                 .help("open the file in a spreadsheet program, calculate and save it");
         }
+        let is_truth = truth(cell).is_some();
         let cell: String = cell.chars().take(40).collect();
-        fault!(BAD_TABLE, "{place}: `{cell}` in `{name}` is not a number")
-            .help("correct the cell, or leave it empty if the value is missing")
+        let fault = fault!(BAD_TABLE, "{place}: `{cell}` in `{name}` is not a number");
+        if is_truth {
+            return fault.help("write 1 for true and 0 for false");
+        }
+        fault.help("correct the cell, or leave it empty if the value is missing")
     }
 
     /// Whether all cells are empty.
@@ -66,8 +70,42 @@ impl<'r> Cells<'r, '_> {
         let first = self.all().find(|(_, cell)| missing(cell).is_none());
         match first {
             Some((_, cell)) if form(cell).is_none() && moment(cell).is_some() => self.moments(),
+            Some((_, cell)) if truth(cell).is_some() => self.truths(),
             _ => self.numbers(usual),
         }
+    }
+
+    /// A column of truth values: 1 and 0.
+    fn truths(self) -> Result<Parsed, Fault> {
+        let mut values = Vec::with_capacity(self.rows.len());
+        let mut words: Vec<&str> = Vec::new();
+        for (line, cell) in self.all() {
+            let read = match cell {
+                "0" => Some(0.0),
+                "1" => Some(1.0),
+                _ if missing(cell).is_some() => Some(f64::NAN),
+                _ => {
+                    if !words.contains(&cell) {
+                        words.push(cell);
+                    }
+                    truth(cell).map(f64::from)
+                }
+            };
+            let wrong = || {
+                let (place, name) = (self.place(line), self.name);
+                fault!(BAD_TABLE, "{place}: `{}` in `{name}` is not a truth value as in the cells above", short(cell))
+                    .help("write 1 for true and 0 for false, or leave the cell empty if the value is missing")
+            };
+            values.push(read.ok_or_else(wrong)?);
+        }
+        words.sort_by_key(|word| truth(word) != Some(true));
+        let meanings: Vec<String> = words
+            .iter()
+            .map(|word| format!("`{word}` as {}", u8::from(truth(word) == Some(true))))
+            .collect();
+        let note = format!("in `{}` {} is read", self.name, meanings.join(" and "));
+        let note = if words.len() > 1 { note.replace(" is read", " are read") } else { note };
+        Ok(Parsed { content: Content::Numbers(values), notes: vec![note] })
     }
 
     fn moments(self) -> Result<Parsed, Fault> {
@@ -235,6 +273,16 @@ pub fn in_seconds(
     })?;
     let with = dates.map_or(String::new(), |(name, _)| format!(" with the dates of `{name}`"));
     Ok((found.values, format!("`{name}` holds {}{with}", found.meaning)))
+}
+
+/// What a word says about a switch: spreadsheets and programs write truth values so.
+fn truth(cell: &str) -> Option<bool> {
+    let is = |word: &str| cell.eq_ignore_ascii_case(word);
+    match () {
+        () if is("true") || is("on") => Some(true),
+        () if is("false") || is("off") => Some(false),
+        () => None,
+    }
 }
 
 fn short(cell: &str) -> String {
