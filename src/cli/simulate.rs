@@ -14,6 +14,7 @@ use crate::script::access::policy::Grant;
 use crate::script::errors::FILE_ERROR;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
+use crate::script::runs::problem;
 use crate::script::runs::view::Progress;
 use crate::script::world::Screen as _;
 use crate::sim::Statistics;
@@ -34,6 +35,7 @@ Examples:
   gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
   gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
   gapi simulate Decay.mo --model Decay --stats --plot x --figure x.svg
+  gapi simulate Tank.mo --input measured.csv --output tank.csv
   gapi simulate Decay.mo --model Decay --from first.mat --stop-time 10 --output second.mat
   gapi simulate Decay.mo --model Decay --dump eliminate_aliases
 
@@ -64,6 +66,10 @@ pub(super) struct SimulateArgs {
     /// Set a parameter (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub set: Vec<(String, f64)>,
+    /// Let the inputs of the model follow the columns of this file that have their names; it has a
+    /// column `time` or `t`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub input: Option<PathBuf>,
     /// Start from the states and parameters at the end of these results, or at --start-time
     #[arg(long, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
@@ -135,7 +141,7 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
     for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
         session.world.grant(Grant::Named(file));
     }
-    if let Some(file) = &arguments.from {
+    for file in [&arguments.from, &arguments.input].into_iter().flatten() {
         session.world.grant(Grant::Read(file));
     }
     match run(&mut session, &class, arguments, global) {
@@ -162,8 +168,14 @@ fn run(
         return Ok(());
     }
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
-    let model = simulation::translate(session, class)?;
     let mut options = SimulationOptions { only: filter, ..options(arguments) };
+    let input = arguments.input.as_deref();
+    let driven = input.map(|path| problem::driven(session, class, path)).transpose()?;
+    let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
+    let model = simulation::translate(session, translated)?;
+    if let Some(driven) = driven.filter(|_| model.program.experiment().stop_time.is_none()) {
+        options.stop.get_or_insert(driven.last);
+    }
     if let Some(path) = &arguments.from {
         let begin = begin_with(session, &model, path, options.start).map_err(one)?;
         options.start = Some(begin);
@@ -173,9 +185,11 @@ fn run(
     }
     let settings = simulation::settings(&model.program.experiment(), &options).map_err(one)?;
     let span = (settings.start, settings.stop);
-    let simulated = with_progress(span, options, global, |options| {
+    let mut simulated = with_progress(span, options, global, |options| {
         simulation::simulate(session, &model, &options).map_err(|error| vec![error])
     })?;
+    // The tables of inputs are not part of the model.
+    simulated.table.retain(|name| !name.starts_with("'data of "));
     session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));

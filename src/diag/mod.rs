@@ -157,6 +157,16 @@ impl Diagnostic {
         self
     }
 
+    /// The same in other words: its message, the words at its places, and its actions.
+    #[must_use]
+    pub fn with_words(mut self, change: impl Fn(&str) -> String) -> Diagnostic {
+        let Report { message, labels, helps, .. } = &mut *self.0;
+        *message = change(message);
+        labels.iter_mut().for_each(|label| label.text = change(&label.text));
+        helps.iter_mut().for_each(|help| *help = change(help));
+        self
+    }
+
     /// The same with this place where it has none.
     #[must_use]
     pub fn or_at(self, span: Span) -> Diagnostic {

@@ -1,6 +1,6 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::sim::{DaeSystem, Settings, SimError};
 use serde::{Deserialize, Serialize};
 
@@ -96,4 +96,8 @@ pub trait Instance: Send {
     }
     /// Why a simulation failed, in one sentence without the time.
     fn explain(&self, error: &SimError) -> String;
+    /// The same with the time and the place in the model, where it has one.
+    fn diagnostic(&self, _: &SimError) -> Option<Diagnostic> {
+        None
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::{Instance, Model, Parameter, PortableModel};
 use crate::codegen::{Program, SensitivityCode, VariableInfo};
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::runtime::System;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
 use crate::source::noting_sources;
@@ -232,6 +232,10 @@ impl Instance for CompiledInstance {
 
     fn sensitivity_refusal(&self) -> Option<String> {
         self.system.sensitivity_refusal().map(str::to_owned)
+    }
+
+    fn diagnostic(&self, error: &SimError) -> Option<Diagnostic> {
+        Some(self.system.program().explain(error))
     }
 
     fn explain(&self, error: &SimError) -> String {

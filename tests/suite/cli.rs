@@ -160,6 +160,35 @@ fn simulations_go_to_files() {
 }
 
 #[test]
+fn inputs_follow_the_columns_of_a_file() {
+    let model = "model Tank
+  input Real u;
+  input Boolean open;
+  Real y(start = 0, fixed = true);
+equation
+  der(y) = (if open then u else 0) - y;
+end Tank;";
+    let data = "t,u,open,other\n0,2,TRUE,1\n1,2,TRUE,1\n2,2,FALSE,1\n3,2,FALSE,1\n";
+    let here = folder(&[("Tank.mo", model), ("d.csv", data), ("e.csv", "t,v\n0,1\n1,1\n")]);
+    let run = |file: &str| {
+        let arguments = ["simulate", "Tank.mo", "--input", file, "--tolerance", "1e-8"];
+        gapi(&here, &[&arguments[..], &["--output", "y.csv"]].concat())
+    };
+    let (code, out, errors) = run("d.csv");
+    assert!(code == 0 && out.starts_with("Tank: 0 s to 3 s"), "{out}{errors}");
+    assert!(errors.contains("`TRUE` as 1 and `FALSE` as 0"), "{errors}");
+    let csv = fs::read_to_string(here.path().join("y.csv")).unwrap();
+    assert_eq!(csv.lines().next(), Some("\"time\",\"u\",\"open\",\"y\",\"der(y)\""));
+    let last: Vec<f64> =
+        csv.lines().last().unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+    let exact = 2.0 * (1.0 - (-2f64).exp()) * (-1f64).exp();
+    assert!((last[3] - exact).abs() < 1e-6, "{} {exact}", last[3]);
+    let (code, _, errors) = run("e.csv");
+    let is_named = errors.contains("`e.csv` has no column") && errors.contains("`u`, `open`");
+    assert!(code == 1 && is_named, "{errors}");
+}
+
+#[test]
 fn wrong_names_get_a_suggestion() {
     let here = folder(&[("Decay.mo", DECAY)]);
     let cases: [(&[&str], &str); 4] = [

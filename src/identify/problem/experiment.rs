@@ -2,7 +2,7 @@
 //! runs all of them for one set of parameters.
 
 use super::{Failed, FailureKind, Portable, PortableExperiment, PortableSettings, Simulate};
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::identify::plan::{Plan, plan, with_driver};
 use crate::identify::pointwise::Pointwise;
 use crate::identify::{Instance, Model, Path};
@@ -202,6 +202,20 @@ impl Simulate for ModelSimulator {
             }
         }
     }
+}
+
+/// Why these values cannot be simulated, with the place in the model, and when it failed; `None`
+/// where they can, or nothing more is known than the cause.
+pub fn diagnosed(experiments: &[Experiment], values: &[f64]) -> Option<(Diagnostic, f64)> {
+    experiments.iter().find_map(|experiment| {
+        let mut stage = Stage::new(experiment).ok()?;
+        let own: Vec<f64> = stage.places.iter().map(|&place| values[place]).collect();
+        stage.instance.set(&own).ok()?;
+        let system = stage.instance.system();
+        let run = Simulator::new().run(system, &stage.settings, &mut Trajectory::default());
+        let error = run.err()?;
+        Some((stage.instance.diagnostic(&error)?, error.time))
+    })
 }
 
 /// A failure of one experiment among several.

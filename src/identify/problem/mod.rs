@@ -55,7 +55,7 @@ pub use curve::draw_curves;
 pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
-pub use experiment::{Experiment, ModelSimulator, Observation};
+pub use experiment::{Experiment, ModelSimulator, Observation, diagnosed};
 pub use failure::{Failed, FailureKind};
 pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
@@ -73,9 +73,12 @@ pub use profile::{Profile, Profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
 pub use searches::best_of;
-pub use solution::{ChiSquare, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict};
+pub use solution::{
+    CalibratedModel, ChiSquare, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict,
+};
 pub use space::Free;
 pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
+pub use text::modelica_number;
 pub use unpacked::unpacked;
 
 use super::fitness::Fitness;

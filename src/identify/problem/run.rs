@@ -1,7 +1,7 @@
 //! A run: the method asks, the simulator answers, until a stop condition holds.
 
 use super::evaluation::{Answered, Evaluation};
-use super::{FailureKind, Fingerprint, Problem, Record, Stop};
+use super::{Failed, FailureKind, Fingerprint, Problem, Record, Stop};
 use crate::diag::Fault;
 use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
@@ -20,6 +20,12 @@ const EVALUATIONS: u64 = 20_000;
 const KEPT: usize = 4000;
 /// Different causes of failure kept apart.
 const CAUSES: usize = 50;
+/// Individuals that fail alike, at the same time for the same cause, before the search ends: the cause
+/// is the model, whatever the parameters are.
+const ALIKE: u64 = 20;
+/// Individuals that fail, none of them being simulated, before the search ends. Where a hundredth of
+/// the search space can be simulated, these many find it with a probability of 0.99.
+const HOPELESS: u64 = 500;
 
 /// The best individual.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,6 +71,10 @@ pub struct Run {
     pub failed: [u64; FailureKind::ALL.len()],
     /// Failures by cause.
     pub causes: IndexMap<String, u64>,
+    /// Values with which each cause came first.
+    pub examples: IndexMap<String, Vec<f64>>,
+    /// The first failure, as long as all others are like it.
+    alike: Option<Failed>,
     /// Evenly chosen individuals: values and fitness.
     pub kept: Vec<(Vec<f64>, f64)>,
     keep_every: u64,
@@ -128,6 +138,8 @@ impl Run {
             seconds: 0.0,
             failed: [0; FailureKind::ALL.len()],
             causes: IndexMap::new(),
+            examples: IndexMap::new(),
+            alike: None,
             kept: Vec::new(),
             keep_every: 1,
             front: Vec::new(),
@@ -170,6 +182,9 @@ impl Run {
 
     /// The stop condition that holds, in words.
     fn condition(&self) -> Option<String> {
+        if self.is_hopeless() {
+            return Some("no individual could be simulated".to_owned());
+        }
         let stop = self.problem.stop;
         let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
         if let Some(target) = stop.target.filter(|target| best <= *target) {
@@ -189,6 +204,12 @@ impl Run {
         let idle = self.generations() - self.last_gain;
         let limit = stop.stagnation.filter(|limit| idle >= *limit)?;
         Some(format!("{limit} generations without improvement"))
+    }
+
+    /// Whether nothing was simulated and nothing will be.
+    fn is_hopeless(&self) -> bool {
+        let enough = if self.alike.is_some() { ALIKE } else { HOPELESS };
+        self.best.is_none() && self.evaluations >= enough
     }
 
     /// Ends the run because the time of its stop conditions is used up while a question is under way;
@@ -399,12 +420,8 @@ impl Run {
         self.seconds = record.seconds;
         self.simulations += simulations;
         self.history.record(&fitness);
-        for (_, failed) in failures {
-            self.failed
-                [FailureKind::ALL.iter().position(|kind| *kind == failed.kind).unwrap_or(0)] += 1;
-            let room = self.causes.len() < CAUSES || self.causes.contains_key(&failed.cause);
-            let cause = if room { failed.cause.as_str() } else { "other causes" };
-            *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        for (row, failed) in failures {
+            self.note_failure(*row, failed);
         }
         self.keep(&fitness);
         self.keep_best(&fitness);
@@ -414,6 +431,26 @@ impl Run {
         let answers = Answers { objectives, n_objectives: m, residuals, jacobians };
         self.optimizer.tell(&self.batch, &answers);
         self.asked = false;
+    }
+
+    fn note_failure(&mut self, row: usize, failed: &Failed) {
+        let kind = FailureKind::ALL.iter().position(|kind| *kind == failed.kind).unwrap_or(0);
+        let is_first = self.failed.iter().all(|count| *count == 0);
+        let is_alike = |first: &Failed| {
+            first.cause == failed.cause && first.progress.to_bits() == failed.progress.to_bits()
+        };
+        self.alike = match self.alike.take() {
+            None if is_first => Some(failed.clone()),
+            known => known.filter(is_alike),
+        };
+        self.failed[kind] += 1;
+        let room = self.causes.len() < CAUSES || self.causes.contains_key(&failed.cause);
+        let cause = if room { failed.cause.as_str() } else { "other causes" };
+        *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        if row < self.batch.len() && !self.examples.contains_key(cause) {
+            let values = self.problem.values(self.batch.row(row));
+            self.examples.insert(cause.to_owned(), values);
+        }
     }
 
     fn keep_best(&mut self, fitness: &[f64]) {

@@ -113,6 +113,9 @@ pub struct Solution {
     pub version: String,
     /// The problem as it was written; empty where it was put in Rust.
     pub problem: String,
+    /// The calibrated model, where the problem says more than its free parameters.
+    #[serde(skip)]
+    pub calibrated: Option<CalibratedModel>,
     /// Every generation: best, mean, worst, failures.
     #[serde(skip)]
     pub history: Vec<Generation>,
@@ -122,6 +125,15 @@ pub struct Solution {
     /// Evenly chosen individuals.
     #[serde(skip)]
     pub individuals: Vec<(Vec<f64>, f64)>,
+}
+
+/// What modifies the model of a problem to be the calibrated one.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CalibratedModel {
+    /// Modifications as Modelica writes them.
+    pub modifications: Vec<String>,
+    /// What cannot be written so.
+    pub remarks: Vec<String>,
 }
 
 /// A finished search.

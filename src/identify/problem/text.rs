@@ -237,14 +237,19 @@ impl Solution {
             None => (self.model.as_str(), ""),
         };
         let shared = self.parameters.iter().filter(|p| !p.name.contains('@'));
-        let values: Vec<String> =
-            shared.map(|p| format!("{} = {}", p.name, modelica_number(p.value))).collect();
+        let found =
+            || shared.map(|p| format!("{} = {}", p.name, modelica_number(p.value))).collect();
+        let (values, remarks) = match &self.calibrated {
+            Some(model) => (model.modifications.clone(), model.remarks.as_slice()),
+            None => (found(), &[][..]),
+        };
+        let remarks: String = remarks.iter().map(|remark| format!("  // {remark}\n")).collect();
         let all: Vec<String> = std::iter::once(inner.to_owned())
             .filter(|inner| !inner.is_empty())
             .chain(values)
             .collect();
         format!(
-            "model Calibrated \"{}\"\n  extends {class}(\n    {});\nend Calibrated;\n",
+            "model Calibrated \"{}\"\n  extends {class}(\n    {});\n{remarks}end Calibrated;\n",
             self.title.replace(['"', '\\'], "'"),
             all.join(",\n    ")
         )
@@ -279,7 +284,7 @@ impl SolvedSeries {
 }
 
 /// A number that reads back to the same bits.
-fn modelica_number(value: f64) -> String {
+pub fn modelica_number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         value.to_string()
     } else {

@@ -9,7 +9,7 @@ use crate::fault;
 use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
-use crate::source::SourceId;
+use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -29,6 +29,8 @@ pub struct Classes {
     copies: HashMap<Name, Arc<Function>>,
     /// Types and constants that scripts asked for.
     pub constants: ConstantCache,
+    /// Classes that runs build around models.
+    pub(in crate::script) enclosing: Vec<Enclosing>,
     /// Counts what changes what a name can stand for.
     revision: u64,
     /// Folders whose packages are loaded when somebody names them.
@@ -49,7 +51,52 @@ pub struct Classes {
     pub reads: Reads,
 }
 
+/// A class that a run builds around a model of the user, who has written neither its name nor its
+/// text: messages speak of the model, at the place that the class was built for.
+#[derive(Debug, Clone)]
+pub(in crate::script) struct Enclosing {
+    /// Its name.
+    pub name: Ident,
+    /// The model around which it was built.
+    pub model: String,
+    /// Names of its own elements, with what they are called instead.
+    pub elements: Vec<(String, String)>,
+    /// The source of the text that was generated for it.
+    pub source: SourceId,
+    /// The place that it was built for.
+    pub place: Span,
+}
+
+impl Enclosing {
+    fn in_users_terms(&self, text: &str) -> String {
+        let own = self.elements.iter().map(|(name, words)| (name.as_str(), words.as_str()));
+        let quoted = format!("`{}`", self.name);
+        let model = format!("`{}`", self.model);
+        own.chain([(quoted.as_str(), model.as_str())])
+            .filter(|(name, _)| text.contains(*name))
+            .fold(text.to_owned(), |text, (name, words)| text.replace(name, words))
+    }
+}
+
 impl Classes {
+    /// The diagnostic without names and places of classes that the user has not written.
+    pub(super) fn in_users_terms(&self, diagnostic: Diagnostic) -> Diagnostic {
+        self.enclosing.iter().fold(diagnostic, |diagnostic, enclosing| {
+            let place = |span: Span| match span.source == enclosing.source {
+                true => enclosing.place,
+                false => span,
+            };
+            diagnostic.with_spans(place).with_words(|text| enclosing.in_users_terms(text))
+        })
+    }
+
+    /// What messages call the class of this name.
+    pub(super) fn shown_name(&self, name: &Name) -> Option<&str> {
+        let is_it =
+            |enclosing: &&Enclosing| name.is_simple() && name.first() == Some(enclosing.name);
+        self.enclosing.iter().find(is_it).map(|enclosing| enclosing.model.as_str())
+    }
+
     /// A number that changes with the classes.
     pub fn revision(&self) -> u64 {
         self.revision
@@ -116,6 +163,7 @@ impl Classes {
         self.files.clear();
         self.misnamed.clear();
         self.versions.clear();
+        self.enclosing.clear();
     }
 
     /// Whether classes of this file or package folder are loaded.

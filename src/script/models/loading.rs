@@ -1,5 +1,6 @@
 //! Loading classes: from files, folders and libraries, when somebody names them.
 
+use super::classes::Enclosing;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::Function;
 use crate::flatten::Library;
@@ -224,6 +225,19 @@ impl Session {
         let text = self.sources.text(class.span).to_owned();
         self.classes.history.note("class", &text);
         self.classes.library.define(class).map(|_| ())
+    }
+
+    /// A class that a run builds around a model; it replaces the one of the same name.
+    pub(in crate::script) fn define_enclosing(
+        &mut self,
+        class: ClassDefinition,
+        enclosing: Enclosing,
+    ) -> Result<(), Diagnostic> {
+        self.classes.invalidate();
+        self.classes.history.note("enclosing", &syntax::print::class(&class));
+        self.classes.enclosing.retain(|known| known.name != enclosing.name);
+        self.classes.enclosing.push(enclosing);
+        self.classes.library.define(&Arc::new(class)).map(|_| ())
     }
 
     /// Whether a class comes from a folder, so that its parts are read when they are needed.

@@ -153,10 +153,11 @@ pub(super) fn compiled(
     problem: &str,
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
-    let sorted = causalize::causalize(&flat).map_err(|error| vec![error])?;
+    let one = |error: Diagnostic| vec![session.classes.in_users_terms(error)];
+    let sorted = causalize::causalize(&flat).map_err(one)?;
     let (declarations, flat) = (declarations(&flat), Some(flat));
     let flat = flat.filter(|flat| flat.equations.len() <= MOST_KEPT);
-    let program = Program::compile(sorted).map_err(|error| vec![error])?;
+    let program = Program::compile(sorted).map_err(one)?;
     warn(session, program.warnings());
     Ok(match flat {
         Some(flat) => Translated::new(problem, flat, program),
@@ -202,13 +203,19 @@ pub(in crate::script) fn flattened(
         if session.load_wanted()? {
             continue;
         }
-        let (flattened, imbalance) = found.map_err(|errors| {
-            let errors =
-                errors.into_iter().map(|error| session.classes.with_misnamed_file(error, &name));
+        let (mut flattened, imbalance) = found.map_err(|errors| {
+            let errors = errors.into_iter().map(|error| {
+                let error = session.classes.with_misnamed_file(error, &name);
+                session.classes.in_users_terms(error)
+            });
             errors.map(|error| placed(error, session.call_site())).collect::<Vec<_>>()
         })?;
+        if let Some(shown) = session.classes.shown_name(&name) {
+            shown.clone_into(&mut flattened.model.name);
+        }
         if let Some(imbalance) = imbalance {
-            return Err(vec![causalize::explain_imbalance(&flattened.model, imbalance)]);
+            let explained = causalize::explain_imbalance(&flattened.model, imbalance);
+            return Err(vec![session.classes.in_users_terms(explained)]);
         }
         warn(session, &flattened.warnings);
         return Ok(flattened);

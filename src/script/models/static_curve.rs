@@ -8,6 +8,7 @@
 use super::simulation;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
+use crate::flatten::FlatModel;
 use crate::identify::CompiledModel;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
@@ -29,11 +30,15 @@ pub(in crate::script) fn is_driven(
     if x_name.is_empty() || x_name == "time" {
         return Ok(false);
     }
-    let flat = simulation::flattened(session, problem)?.model;
-    let input = flat.variables.get(x_name).filter(|variable| variable.binding.is_none());
-    Ok(input.is_some_and(|variable| {
+    Ok(is_open_input(&simulation::flattened(session, problem)?.model, x_name))
+}
+
+/// Whether a variable of a model is a scalar input that nothing drives.
+pub(in crate::script) fn is_open_input(flat: &FlatModel, name: &str) -> bool {
+    let input = flat.variables.get(name).filter(|variable| variable.binding.is_none());
+    input.is_some_and(|variable| {
         variable.causality == Some(CausalityPrefix::Input) && variable.dims.is_empty()
-    }))
+    })
 }
 
 /// A class around `problem`, `Class` or `Class(modification)`, in which X has the value of

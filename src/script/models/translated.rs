@@ -38,6 +38,8 @@ pub struct Declaration {
     pub is_final: bool,
     /// Whether its value is used when the model is translated.
     pub is_evaluated: bool,
+    /// Whether its binding depends on other variables.
+    pub is_computed: bool,
     /// Whether it stands directly in the class.
     pub top_level: bool,
     /// Whether it has the attribute `fixed`.
@@ -96,6 +98,7 @@ impl Declaration {
             causality: variable.causality,
             is_final: variable.is_final,
             is_evaluated: variable.structural || variable.evaluate,
+            is_computed: variable.is_computed(),
             top_level: variable.top_level,
             says_fixed: variable.attributes.contains_key("fixed"),
             final_start: variable.attributes.get("start").map(|start| start.is_final),

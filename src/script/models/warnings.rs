@@ -6,6 +6,7 @@ use crate::script::Session;
 /// Reports the warnings about a model that were not reported yet, whatever it was asked before.
 pub(super) fn warn(session: &mut Session, warnings: &[Diagnostic]) {
     for warning in warnings {
+        let warning = &session.classes.in_users_terms(warning.clone());
         if session.models.is_new_warning(warning.span(), &warning.message) {
             session.report(warning.clone());
         } else if let Some(overheard) = &mut session.output.overheard {

@@ -15,7 +15,7 @@ use crate::script::errors::INTERRUPTED;
 use crate::script::models::{simulation, static_curve};
 use crate::script::{Reporting, Session};
 use crate::source::Span;
-use crate::{bail, mat};
+use crate::{bail, results};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ impl Session {
         file: &str,
         names: &[String; 2],
     ) -> Result<Measurement, Fault> {
-        let content = mat::read_named(file, &self.read_bytes(Path::new(file))?)?;
+        let content = results::read_data(file, &self.read_bytes(Path::new(file))?)?;
         let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
         let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
         let notes: Vec<String> = notes.collect();

@@ -3,11 +3,14 @@
 //! What an experiment sets beyond values of parameters (ties, initial values, inputs that follow
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
+use super::calibration::Calibration;
 use super::data::Notes;
+use super::enclosing_class::Base;
 use super::file::{OneOrMany, ProblemFile, Role};
 use super::operators::{self, Named};
 use super::{experiment, own_fitness};
 use crate::diag::{Diagnostic, Fault, visible_line};
+use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
@@ -18,7 +21,7 @@ use crate::identify::problem::{
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::script::Session;
 use crate::source::Span;
-use crate::{bail, fault, mat};
+use crate::{bail, fault, results};
 use indexmap::IndexMap;
 use std::path::Path;
 
@@ -35,6 +38,8 @@ pub(super) struct Built {
     pub origins: Origins,
     /// What should be known of the data.
     pub notes: Vec<String>,
+    /// What the file says about the parameters of the model.
+    pub calibration: Option<Calibration>,
 }
 
 /// The experiments of a problem.
@@ -45,6 +50,7 @@ struct Experiments {
     validation: Vec<(Experiment, Vec<Series>)>,
     /// The relative error of simulated values.
     noise: f64,
+    calibration: Option<Calibration>,
 }
 
 /// Builds the problem.
@@ -61,6 +67,7 @@ pub(super) fn build(
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_models(session, file, &folder)?;
     let file = &*file;
+    check_class(session, file)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
     let free = free_parameters(file).map_err(one)?;
     origins.add("the problem", text.as_bytes());
@@ -68,7 +75,7 @@ pub(super) fn build(
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
-    let Experiments { fitted, series, validation, noise } = read;
+    let Experiments { fitted, series, validation, noise, calibration } = read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
     // Made once here, so that what is wrong shows before the run.
@@ -85,7 +92,8 @@ pub(super) fn build(
     adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
     session.add_models_read(&mut origins, &mut 0);
-    Ok(Built { problem, experiments, validation, origins, notes: notes.into_sentences() })
+    let notes = notes.into_sentences();
+    Ok(Built { problem, experiments, validation, origins, notes, calibration })
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -108,6 +116,22 @@ fn load_models(
     Ok(())
 }
 
+/// Refuses a model whose class is not loaded, at its place.
+fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diagnostic>> {
+    let base = Base::of(&file.model, file.places.model).map_err(|error| vec![error])?;
+    if session.find_class(&base.class)? {
+        return Ok(());
+    }
+    let place = file.places.model.unwrap_or(Span::NONE);
+    let name = base.class.to_string();
+    let fault = match name.strip_suffix(".mo") {
+        Some(class) => fault!(UNKNOWN_CLASS, "there is no class `{name}`")
+            .help(format!("write the name of the class, `{class}`, and the file in `files`")),
+        None => session.classes.unknown_class(&base.class),
+    };
+    Err(vec![fault.at(place)])
+}
+
 fn experiments(
     session: &mut Session,
     file: &ProblemFile,
@@ -121,12 +145,13 @@ fn experiments(
         let there = |fault: Fault| vec![fault.at(entry.places.data)];
         let bytes = session.read_bytes(&data).map_err(there)?;
         origins.add(format!("`{}`", entry.data.display()), &bytes);
-        let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(there)?;
+        let table = results::read_data(&data.to_string_lossy(), &bytes).map_err(there)?;
         let source = experiment::Source { file, entry, number, table: &table, free };
         let built = source.build(session, notes)?;
         if built.has_states {
             all.noise = all.noise.max(built.experiment.settings.tolerance);
         }
+        all.calibration.get_or_insert_with(|| Calibration::of(file, &built.program));
         if entry.validation {
             all.validation.push((built.experiment, built.series));
         } else {

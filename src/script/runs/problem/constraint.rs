@@ -8,7 +8,7 @@ use crate::source::SourceId;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
 };
-use crate::syntax::parse_expression;
+use crate::syntax::{parse_expression, print};
 use crate::{bail, fault};
 
 /// Reads an inequality of these parameters.
@@ -106,9 +106,10 @@ fn parameter(
     reference: &ComponentReference,
     parameters: &[String],
 ) -> Result<Term, Fault> {
-    let name = written(reference);
-    let plain = reference.parts.iter().all(|part| part.subscripts.is_empty());
-    match parameters.iter().position(|own| *own == name).filter(|_| plain) {
+    let name = print::reference(reference);
+    let without_blanks = |name: &str| name.replace(' ', "");
+    let is_it = |own: &String| without_blanks(own) == without_blanks(&name);
+    match parameters.iter().position(is_it) {
         Some(place) => Ok(Term::Parameter(place)),
         None => Err(fault!(
             BAD_OPTION,
@@ -123,7 +124,7 @@ mod tests {
     use super::*;
 
     fn names() -> Vec<String> {
-        ["a", "b.c"].map(str::to_owned).to_vec()
+        ["a", "b.c", "r[1].k", "p[2,1]"].map(str::to_owned).to_vec()
     }
 
     #[test]
@@ -131,6 +132,9 @@ mod tests {
         let read = |text| constraint(text, &names()).unwrap();
         assert_eq!(read("a < b.c").violation(&[1.0, 2.0]), 0.0);
         assert!((read("a < b.c").violation(&[3.0, 1.0]) - 0.5).abs() < 1e-15);
+        let of_elements = read("r[1].k < p[2, 1]");
+        assert_eq!(of_elements.violation(&[9.0, 9.0, 1.0, 2.0]), 0.0);
+        assert!((of_elements.violation(&[0.0, 0.0, 3.0, 1.0]) - 0.5).abs() < 1e-15);
         assert_eq!(read("2*(a + sqrt(b.c)) >= -1").violation(&[1.0, 4.0]), 0.0);
         assert!(read("log(a) <= b.c^2").violation(&[1e9, 1.0]) > 0.8);
         assert!(read("log(a) <= 1").violation(&[-1.0, 0.0]).is_infinite(), "no logarithm");

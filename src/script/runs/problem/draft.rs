@@ -3,10 +3,12 @@
 
 use super::{build, file};
 use crate::bail;
+use crate::codegen::ParameterInfo;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
 use crate::mat::{self, MatFile};
 use crate::registry::BAD_OPTION;
+use crate::results;
 use crate::script::Session;
 use crate::script::models::simulation;
 use crate::script::models::simulation::Translated;
@@ -60,7 +62,7 @@ struct Roles<'c> {
 pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let bytes = session.read_bytes(Path::new(&options.data)).map_err(one)?;
-    let table = mat::read_named(&options.data, &bytes).map_err(one)?;
+    let table = results::read_data(&options.data, &bytes).map_err(one)?;
     let columns = columns(&table).map_err(one)?;
     let loaded = match options.models.as_str() {
         "" => Vec::new(),
@@ -74,7 +76,7 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
     let flat = simulation::flat_model_of(session, &translated)?;
     let roles = roles(&columns, &translated, flat).map_err(one)?;
     let mut text = head(options, &class);
-    parameters(&mut text, &translated, &roles);
+    parameters(&mut text, &translated, flat, &roles);
     experiment(&mut text, options, flat, &roles);
     text.push_str(
         "\n[stop]                       # the first condition met ends the run\n\
@@ -113,8 +115,10 @@ fn roles<'c>(
         let variable = flat.variables.get(name.as_str())?;
         let is_input =
             variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none();
-        let known = variable.variability < crate::flatten::Variability::Discrete;
-        (!known).then_some((name, is_input))
+        // A column is one number per row, not an array.
+        let is_measured = variable.variability >= crate::flatten::Variability::Discrete
+            && variable.dims.is_empty();
+        is_measured.then_some((name, is_input))
     };
     let is_time = |column: &&DataColumn| {
         let lower = column.name.to_lowercase();
@@ -190,7 +194,7 @@ fn key(name: &str) -> String {
 }
 
 /// The parameters at the top of the model, each with a range.
-fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
+fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &Roles<'_>) {
     text.push_str(
         "\n# The parameters to estimate. Fix known values, `NAME = { fixed = 1.5 }`, or delete \
          the line: then the\n\
@@ -207,38 +211,38 @@ fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
             continue;
         }
         count += 1;
-        let mut about = Vec::new();
-        if !parameter.unit.is_empty() {
-            about.push(parameter.unit.to_string());
-        }
-        if !parameter.description.is_empty() {
-            about.push(parameter.description.to_string());
-        }
-        let name = key(&parameter.name);
-        match range(parameter.min, parameter.max, parameter.default) {
-            Some(([min, max], why)) => {
-                about.push(why);
-                _ = writeln!(
-                    text,
-                    "{name} = {{ min = {min:?}, max = {max:?} }}          # {}",
-                    about.join("; ")
-                );
-            }
-            None => {
-                about.push(
-                    "the model has no value: write a range and remove the first `#`".to_owned(),
-                );
-                _ = writeln!(
-                    text,
-                    "# {name} = {{ min = 0.1, max = 10.0 }}          # {}",
-                    about.join("; ")
-                );
-            }
-        }
+        let computed = super::flat::computed(flat, &parameter.name);
+        text.push_str(&parameter_line(parameter, computed));
     }
     if count == 0 {
         text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
     }
+}
+
+/// The line of a parameter, with what is known of it; a comment where there is nothing to estimate.
+fn parameter_line(parameter: &ParameterInfo, computed: Option<String>) -> String {
+    let mut about = Vec::new();
+    if !parameter.unit.is_empty() {
+        about.push(parameter.unit.to_string());
+    }
+    if !parameter.description.is_empty() {
+        about.push(parameter.description.to_string());
+    }
+    let name = key(&parameter.name);
+    let range = range(parameter.min, parameter.max, parameter.default);
+    let (mark, [min, max], why) = match (computed, range) {
+        (Some(binding), range) => {
+            let range = range.map_or([0.1, 10.0], |(range, _)| range);
+            ("# ", range, format!("the model computes it: {binding}"))
+        }
+        (None, Some((range, why))) => ("", range, why),
+        (None, None) => {
+            let why = "the model has no value: write a range and remove the first `#`".to_owned();
+            ("# ", [0.1, 10.0], why)
+        }
+    };
+    about.push(why);
+    format!("{mark}{name} = {{ min = {min:?}, max = {max:?} }}          # {}\n", about.join("; "))
 }
 
 /// A range and where it comes from: the model's own, else a decade to both sides of its value.
@@ -349,7 +353,7 @@ fn span(column: &DataColumn) -> String {
 fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
     let unit = match name {
         "time" => "s".to_owned(),
-        name => super::experiment::unit_in(flat, name),
+        name => super::flat::unit_in(flat, name),
     };
     match (&column.unit, unit.as_str()) {
         (Some(given), unit) if !unit.is_empty() && given != unit => {

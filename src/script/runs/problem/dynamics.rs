@@ -1,7 +1,7 @@
 //! What happens before and behind an experiment: a steady state before it, and delays of its
 //! measurements. Both become part of the class around the model.
 
-use super::enclosing_class::EnclosingClass;
+use super::enclosing_class::{EnclosingClass, own_name};
 use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
 use crate::bail;
 use crate::causalize::CausalizedDae;
@@ -17,8 +17,8 @@ pub(super) fn is_delay(file: &ProblemFile, name: &str) -> bool {
 }
 
 /// The name in the class around the model of a delay that is a parameter.
-pub(super) fn delay_name(number: usize) -> String {
-    format!("gapi_delay_{number}")
+pub(super) fn delay_name(name: &str) -> String {
+    own_name("delay", name)
 }
 
 /// Declares the delayed variable of an output; its name, or that of the output itself where it is
@@ -50,26 +50,29 @@ pub(super) fn delayed(
         }
         DelayEntry::Seconds(seconds) => return Err(negative(*seconds)),
         DelayEntry::Parameter(name) => {
-            let Some(number) = file.parameters.get_index_of(name) else {
+            let Some(parameter) = file.parameters.get(name) else {
                 bail!(BAD_OPTION, "the delay of `{y_name}` is `{name}`, which is not in \
                                    `[parameters]`"; help: "add `{name} = {{ min = 0, max = 10 }}` to `[parameters]`")
             };
-            match file.parameters[number].role(name)? {
+            match parameter.role(name)? {
                 Role::Free { range: [min, max], .. } if min >= 0.0 => {
-                    format!("{}, {max:e}", delay_name(number))
+                    format!("{}, {max:e}", delay_name(name))
                 }
                 Role::Free { range: [min, _], .. } => return Err(negative(min)),
-                Role::Fixed(value) if value >= 0.0 => format!("{value:e}"),
-                Role::Fixed(value) => return Err(negative(value)),
+                Role::Fixed(value) => match value.number(name)? {
+                    value if value >= 0.0 => format!("{value:e}"),
+                    value => return Err(negative(value)),
+                },
                 Role::Tied(_) => {
                     bail!(BAD_OPTION, "the delay `{name}` is tied"; help: "use `min` and `max`, or `fixed`")
                 }
             }
         }
     };
-    let name = format!("gapi_delayed_{place}");
+    let name = own_name(&format!("delayed output {}", place + 1), y_name);
     // Writing into a String cannot fail.
     _ = writeln!(enclosing.declarations, "  Real {name} = delay({y_name}, {arguments});");
+    enclosing.elements.push((name.clone(), format!("the delayed {y_name}")));
     Ok(name)
 }
 
@@ -91,24 +94,11 @@ pub(super) fn steady(
     if model.states.is_empty() {
         bail!(BAD_OPTION, "`{}` has no states, so `steady_state` has no meaning", file.model; help: "remove `steady_state`");
     }
-    let mut released: Vec<String> = Vec::new();
     enclosing.equations.push_str("initial equation\n");
     for state in &model.states {
         let name = model.dae.variables[state.0 as usize].name.to_string();
         _ = writeln!(enclosing.equations, "  der({name}) = 0;");
-        let released_name = match name.split_once('[') {
-            None => format!("{name}(fixed = false)"),
-            Some((array, rest)) if rest.find(']') == Some(rest.len() - 1) => {
-                format!("{array}(each fixed = false)")
-            }
-            Some(_) => {
-                bail!(BAD_OPTION, "the state `{name}` belongs to an array of components, which `steady_state` does not support"; help: "write an `initial equation` in the model")
-            }
-        };
-        if !released.contains(&released_name) {
-            released.push(released_name);
-        }
+        enclosing.release(&name, entry.places.data);
     }
-    enclosing.modifications.append(&mut released);
     Ok(())
 }

@@ -1,53 +1,201 @@
 //! The class around the model of an experiment: what the experiment sets beyond values of
-//! parameters, as Modelica.
+//! parameters. Modifications are built as trees at their places in the problem's file, so that names
+//! with subscripts, Integers and Booleans are as good as others, and what is wrong with them shows
+//! there.
 
-use crate::diag::Diagnostic;
+use super::file::ValueEntry;
+use crate::diag::{Diagnostic, Fault};
+use crate::name::{Ident, Name};
 use crate::script::Session;
+use crate::script::models::classes::Enclosing;
+use crate::source::{SourceId, Span, Spanned};
+use crate::syntax::ast::{
+    Argument, Binding, ClassDefinition, ClassSpecifier, ComponentReference, Element,
+    ElementModification, Expression, ExpressionKind, Extends, Modification, Section, TypeSpecifier,
+};
+use crate::syntax::{parse_all_of_stored_definition, parse_class_with_modification};
+use std::sync::Arc;
+
+/// Integers that are written as such; larger numbers are Reals.
+const MOST: f64 = 2_147_483_647.0;
+
+/// The model of a problem: its class and what modifies it.
+#[derive(Debug, Clone)]
+pub(super) struct Base {
+    /// As it is written: `Class` or `Class(modification)`.
+    text: String,
+    pub class: Name,
+    modification: Vec<Argument>,
+    span: Span,
+}
+
+impl Base {
+    /// Reads a model at its place in a problem's file.
+    ///
+    /// # Errors
+    ///
+    /// Text that is not a class, with or without a modification.
+    pub(super) fn of(model: &str, place: Option<Span>) -> Result<Base, Diagnostic> {
+        let (source, text, span) = at_place(model, place);
+        let (class, modification) = parse_class_with_modification(source, &text)?;
+        Ok(Base { text: model.to_owned(), class, modification, span })
+    }
+}
+
+/// A text of a problem's file such that what is read from it has its places in the file.
+fn at_place(text: &str, place: Option<Span>) -> (SourceId, String, Span) {
+    match place {
+        Some(place) => (place.source, format!("{}{text}", " ".repeat(place.start as usize)), place),
+        None => (SourceId::NONE, text.to_owned(), Span::NONE),
+    }
+}
+
+/// An expression of a problem's file.
+///
+/// # Errors
+///
+/// Text that is not an expression.
+pub(super) fn expression(text: &str, place: Option<Span>) -> Result<Expression, Diagnostic> {
+    let (source, text, _) = at_place(text, place);
+    crate::syntax::parse_expression(source, &text)
+}
+
+/// A value of a problem's file. Whole numbers fit Integers and Reals.
+///
+/// # Errors
+///
+/// Infinite numbers and NaN.
+pub(super) fn literal(value: ValueEntry, name: &str, place: Span) -> Result<Expression, Fault> {
+    let kind = match value {
+        ValueEntry::Truth(value) => ExpressionKind::Boolean(value),
+        ValueEntry::Number(_) => match value.number(name)? {
+            whole if whole.fract() == 0.0 && whole.abs() <= MOST => {
+                ExpressionKind::Integer(whole as i64)
+            }
+            number => ExpressionKind::Real(number),
+        },
+    };
+    Ok(Expression::new(kind, place))
+}
+
+/// A name of the class as an expression.
+pub(super) fn reference(name: &str, place: Span) -> Expression {
+    let reference = ComponentReference::from_name(&Name::parse(name), place);
+    Expression::new(ExpressionKind::Reference(reference), place)
+}
+
+/// The name of an element that the class has besides those of the model, such as
+/// `'initial value of x'`.
+pub(super) fn own_name(purpose: &str, name: &str) -> String {
+    let plain: String =
+        name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { ' ' }).collect();
+    format!("'{purpose} {}'", plain.trim())
+}
 
 /// Modifications, declarations and equations that a class around the model has.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct EnclosingClass {
-    pub modifications: Vec<String>,
+    modifications: Vec<Argument>,
+    /// Declarations of its own elements.
     pub declarations: String,
     /// A section of initial equations, or nothing.
     pub equations: String,
+    /// Its own elements, with what they are called in messages.
+    pub elements: Vec<(String, String)>,
 }
 
 impl EnclosingClass {
-    /// Loads the class around `model` of the experiment with this number, and returns its name; the
-    /// model itself where nothing is around it.
+    /// Gives an element of the model a value.
+    pub(super) fn bind(&mut self, name: &str, value: Expression, place: Span) {
+        self.modify(name, Vec::new(), Some(value), place);
+    }
+
+    /// Gives a state of the model an initial value.
+    pub(super) fn start(&mut self, name: &str, value: Expression, place: Span) {
+        let fixed = Expression::new(ExpressionKind::Boolean(true), place);
+        self.modify(name, vec![("start", value), ("fixed", fixed)], None, place);
+    }
+
+    /// Lets a state of the model begin at the value that the equations give it.
+    pub(super) fn release(&mut self, name: &str, place: Span) {
+        let fixed = Expression::new(ExpressionKind::Boolean(false), place);
+        self.modify(name, vec![("fixed", fixed)], None, place);
+    }
+
+    fn modify(
+        &mut self,
+        name: &str,
+        attributes: Vec<(&str, Expression)>,
+        binding: Option<Expression>,
+        place: Span,
+    ) {
+        let arguments = attributes.into_iter().map(|(attribute, value)| {
+            argument(Name::from(Ident::new(attribute)), Vec::new(), Some(value), place)
+        });
+        let arguments = arguments.collect();
+        self.modifications.push(argument(Name::parse(name), arguments, binding, place));
+    }
+
+    /// Loads the class around the model of the experiment with this number, built for a place of the
+    /// problem's file, and returns its name; the model itself where nothing is around it.
     pub(super) fn load(
         &self,
         session: &mut Session,
-        model: &str,
-        number: usize,
+        base: &Base,
+        (number, place): (usize, Span),
     ) -> Result<String, Vec<Diagnostic>> {
         if self.modifications.is_empty() && self.declarations.is_empty() {
-            return Ok(model.to_owned());
+            return Ok(base.text.clone());
         }
-        let (class, inner) = match model.split_once('(') {
-            Some((class, inner)) => {
-                (class.trim(), inner.trim_end().strip_suffix(')').unwrap_or(inner))
-            }
-            None => (model.trim(), ""),
-        };
-        let own = std::iter::once(inner.trim()).filter(|inner| !inner.is_empty());
-        let all: Vec<&str> = own.chain(self.modifications.iter().map(String::as_str)).collect();
         let name = format!("GAPILibExperiment{}", number + 1);
-        let text = format!(
-            "model {name}
-  extends {class}(
-    {});
-{}{}end {name};
-",
-            all.join(
-                ",
-    "
-            ),
-            self.declarations,
-            self.equations
-        );
-        session.load_text(&format!("experiment {} of the problem", number + 1), &text)?;
+        let text = format!("model {name}\n{}{}end {name};\n", self.declarations, self.equations);
+        let source =
+            session.sources.add(format!("experiment {} of the problem", number + 1), text.as_str());
+        let mut parsed = parse_all_of_stored_definition(source, &text)?;
+        let Some(class) = parsed.classes.pop() else { return Ok(base.text.clone()) };
+        let class = self.around(Arc::unwrap_or_clone(class), base, place);
+        let enclosing = Enclosing {
+            name: Ident::new(&name),
+            model: base.class.to_string(),
+            elements: self.elements.clone(),
+            source,
+            place,
+        };
+        session.define_enclosing(class, enclosing).map_err(|error| vec![error])?;
         Ok(name)
     }
+
+    /// The class of these declarations and equations, which extends the model.
+    fn around(&self, mut class: ClassDefinition, base: &Base, place: Span) -> ClassDefinition {
+        let modification = base.modification.iter().chain(&self.modifications).cloned().collect();
+        let extends = Element::Extends(Extends {
+            base: TypeSpecifier { name: base.class.clone(), span: base.span },
+            modification,
+            deselected: Vec::new(),
+            annotation: None,
+            span: place,
+        });
+        if let ClassSpecifier::Long(long) = &mut class.specifier {
+            let first = Section::Elements { visibility: None, elements: vec![extends] };
+            long.sections.insert(0, first);
+        }
+        class
+    }
+}
+
+fn argument(
+    name: Name,
+    arguments: Vec<Argument>,
+    binding: Option<Expression>,
+    place: Span,
+) -> Argument {
+    let binding = binding.map(Binding::Expression);
+    Argument::Element(ElementModification {
+        each: false,
+        is_final: false,
+        name: Spanned { node: name, span: place },
+        modification: Some(Modification { arguments, binding, span: place }),
+        description: None,
+        span: place,
+    })
 }

@@ -2,10 +2,10 @@
 //! settings of its simulation.
 
 use super::data::{self, Notes};
-use super::enclosing_class::EnclosingClass;
-use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile, Role};
+use super::enclosing_class::{Base, EnclosingClass};
+use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile};
 use super::series::Comparison;
-use super::{dynamics, inputs};
+use super::{dynamics, enclosing_class, inputs, parameters};
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
@@ -18,7 +18,6 @@ use crate::script::models::simulation::{self, SimulationOptions};
 use crate::script::models::static_curve;
 use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
-use crate::syntax::ast::ExpressionKind;
 use crate::{bail, fault};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -34,6 +33,8 @@ pub(super) struct Built {
     pub series: Vec<Series>,
     /// Whether its model has states, so that its results have the error of an integrator.
     pub has_states: bool,
+    /// Its compiled model.
+    pub program: Arc<Program>,
 }
 
 /// What an experiment is read from.
@@ -92,6 +93,8 @@ impl Source<'_> {
         let class = self.class(session, &name, &abscissa, notes)?;
         let translated = simulation::translated(session, &class.name)?;
         let program = translated.program.clone();
+        self.check(session, &abscissa.name, &class, &translated)?;
+        parameters::note_computed(&class.parameters, &translated, notes);
         let compiled = match class.is_driven {
             true => {
                 static_curve::model(&self.file.model, &translated, &abscissa.name).map_err(one)?
@@ -129,7 +132,23 @@ impl Source<'_> {
             observations,
             parameters: class.parameters,
         };
-        Ok(Built { experiment, series, has_states })
+        Ok(Built { experiment, series, has_states, program })
+    }
+
+    /// Refuses names that the model does not have, and values that it cannot be given.
+    fn check(
+        &self,
+        session: &mut Session,
+        x_name: &str,
+        class: &Class,
+        model: &simulation::Translated,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let (file, places) = (self.file, &self.entry.places);
+        let outputs = self.entry.outputs.keys().map(|name| (name.as_str(), places.column(name)));
+        let names: Vec<(&str, Span)> = [(x_name, places.x)].into_iter().chain(outputs).collect();
+        parameters::check_variables(&names, model).map_err(|error| vec![error])?;
+        parameters::check_free(file, &class.parameters, model).map_err(|error| vec![error])?;
+        parameters::check_initial(session, file, self.entry, model)
     }
 
     fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
@@ -157,24 +176,35 @@ impl Source<'_> {
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
         let (file, entry) = (self.file, self.entry);
+        let base = Base::of(&file.model, file.places.model).map_err(|error| vec![error])?;
+        let here = (self.number, entry.places.data);
         let mut enclosing = EnclosingClass::default();
-        let parameters =
-            set_parameters(file, entry, name, self.free, &mut enclosing).map_err(one)?;
-        let is_driven = drive(session, file, entry, (&x.name, &x.column.values), &mut enclosing)?;
-        let parts = (entry, self.table, (x.name.as_str(), x.time.as_slice()));
-        follow(session, file, parts, &mut enclosing, notes)?;
+        let setting = parameters::Setting { file, entry, experiment: name, free: self.free };
+        let parameters = setting.parameters(&mut enclosing).map_err(|error| vec![error])?;
+        note_used_twice(entry, notes);
+        let mut is_driven = false;
+        if x.name != "time" || !entry.inputs.is_empty() {
+            // What the experiment sets may shape the model: sizes, conditions.
+            let class = enclosing.load(session, &base, here)?;
+            let flat = simulation::flattened(session, &class)?.model;
+            is_driven = drive(entry, &flat, (&x.name, &x.column.values), &mut enclosing);
+            let times = (x.name.as_str(), x.time.as_slice());
+            inputs::inputs(entry, self.table, times, &flat, &mut enclosing, notes)
+                .map_err(|error| vec![error])?;
+        }
         let mut observed = Vec::new();
-        for (place, (y_name, wanted)) in entry.outputs.iter().enumerate() {
-            let wanted = wanted.entry();
+        for (y_name, wanted) in entry.all_outputs() {
+            let place = observed.len();
             let delayed = dynamics::delayed(file, y_name, place, &wanted, &x.name, &mut enclosing);
-            observed.push(delayed.map_err(one)?);
+            let delayed = delayed.map_err(|fault| vec![fault.at(entry.places.column(y_name))])?;
+            observed.push(delayed);
         }
         if entry.steady_state {
-            let class = enclosing.load(session, &file.model, self.number)?;
+            let class = enclosing.load(session, &base, here)?;
             let plain = simulation::translated(session, &class)?.program.clone();
             dynamics::steady(file, entry, plain.sorted(), &mut enclosing).map_err(one)?;
         }
-        let name = enclosing.load(session, &file.model, self.number)?;
+        let name = enclosing.load(session, &base, here)?;
         Ok(Class { name, parameters, observed, is_driven })
     }
 
@@ -227,110 +257,37 @@ fn stop_time(
     }
 }
 
-/// What the parameters of the file mean in one experiment: modifications, and the free ones with
-/// their names in the class.
-fn set_parameters(
-    file: &ProblemFile,
-    entry: &ExperimentEntry,
-    experiment: &str,
-    free: &[Free],
-    enclosing: &mut EnclosingClass,
-) -> Result<Vec<(usize, String)>, Fault> {
-    let mut places = Vec::new();
-    for (number, (name, parameter)) in file.parameters.iter().enumerate() {
-        let initial = parameter.initial;
-        let delay = dynamics::is_delay(file, name);
-        let value = match parameter.role(name)? {
-            Role::Free { .. } => {
-                let full = if parameter.per_experiment {
-                    format!("{name}@{experiment}")
-                } else {
-                    name.clone()
-                };
-                let Some(place) = free.iter().position(|free| free.name == full) else {
-                    bail!(BAD_OPTION, "`{name}` is estimated separately for each experiment, but \
-                                       {experiment} has no value for \
-                                       it"; help: "fix it there with `set`")
-                };
-                if !initial && !delay {
-                    places.push((place, name.clone()));
-                    continue;
-                }
-                let own = match delay {
-                    true => dynamics::delay_name(number),
-                    false => format!("gapi_initial_{number}"),
-                };
-                let middle = free[place].value(0.5);
-                _ = writeln!(enclosing.declarations, "  parameter Real {own} = {middle:e};");
-                places.push((place, own.clone()));
-                if delay {
-                    continue;
-                }
-                own
-            }
-            Role::Fixed(_) | Role::Tied(_) if delay => continue,
-            Role::Fixed(value) => format!("{value:e}"),
-            Role::Tied(expression) => expression,
+/// Columns that are both an input and an output: the one follows from the other.
+fn note_used_twice(entry: &ExperimentEntry, notes: &mut Notes) {
+    for (input, column) in &entry.inputs {
+        let column = column.entry().column.unwrap_or_else(|| input.clone());
+        let same = |(name, own): &(&String, ColumnEntry)| {
+            own.column.as_ref().unwrap_or(name).as_str() == column
         };
-        enclosing.modifications.push(match initial {
-            true => format!("{name}(start = {value}, fixed = true)"),
-            false => format!("{name} = {value}"),
-        });
-    }
-    for (name, value) in &entry.set {
-        if file.parameters.contains_key(name) {
-            bail!(BAD_OPTION, "`{name}` is set both in {experiment} and in \
-                               `[parameters]`"; help: "remove one of the two");
+        if let Some((output, _)) = entry.all_outputs().find(same) {
+            notes.add(format!(
+                "the column `{column}` is both the input `{input}` and the output `{output}`"
+            ));
         }
-        enclosing.modifications.push(format!("{name} = {value:e}"));
     }
-    let start = |(name, value): (&String, &f64)| format!("{name}(start = {value:e}, fixed = true)");
-    enclosing.modifications.extend(entry.start.iter().map(start));
-    Ok(places)
 }
 
 /// Ties X to a parameter of the class where it is an input of the model that nothing else drives.
 fn drive(
-    session: &mut Session,
-    file: &ProblemFile,
     entry: &ExperimentEntry,
+    flat: &FlatModel,
     (x_name, x): (&str, &[f64]),
     enclosing: &mut EnclosingClass,
-) -> Result<bool, Vec<Diagnostic>> {
+) -> bool {
     let is_bound = entry.inputs.contains_key(x_name) || entry.set.contains_key(x_name);
-    if is_bound || !static_curve::is_driven(session, &file.model, x_name)? {
-        return Ok(false);
+    if is_bound || !static_curve::is_open_input(flat, x_name) {
+        return false;
     }
     let typical = static_curve::typical(x);
     let driver = static_curve::DRIVER;
-    enclosing.modifications.push(format!("{x_name} = {driver}"));
+    let place = entry.places.x;
+    enclosing.bind(x_name, enclosing_class::reference(driver, place), place);
     _ = writeln!(enclosing.declarations, "  parameter Real {driver} = {typical:e};");
-    Ok(true)
-}
-
-/// Lets inputs follow their columns. Where one of these has a unit, that of the model is looked up in
-/// the flat model.
-fn follow(
-    session: &mut Session,
-    file: &ProblemFile,
-    (entry, table, x): (&ExperimentEntry, &MatFile, (&str, &[f64])),
-    enclosing: &mut EnclosingClass,
-    notes: &mut Notes,
-) -> Result<(), Vec<Diagnostic>> {
-    let flat = match inputs::have_units(entry, table) {
-        true => Some(simulation::flattened(session, &file.model)?.model),
-        false => None,
-    };
-    let unit = |name: &str| flat.as_ref().map_or_else(String::new, |flat| unit_in(flat, name));
-    let followed = inputs::inputs(entry, table, x, &unit, enclosing, notes);
-    followed.map_err(|wrong| vec![wrong])
-}
-
-/// The unit of a variable; empty where it has none.
-pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
-    let unit = flat.variables.get(name).and_then(|variable| variable.attributes.get("unit"));
-    match unit.map(|unit| &unit.value.kind) {
-        Some(ExpressionKind::String(unit)) => unit.to_string(),
-        _ => String::new(),
-    }
+    enclosing.elements.push((driver.to_owned(), x_name.to_owned()));
+    true
 }

@@ -1,14 +1,14 @@
 //! The file that a problem is written in: TOML.
 
 use super::places::{self, ExperimentPlaces, Places};
+use super::{forms, refusal};
 use crate::bail;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::Diagnostic;
 use crate::registry::BAD_OPTION;
-use crate::source::{SourceId, Span};
+use crate::source::SourceId;
 use indexmap::IndexMap;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
+use std::ops::Deref;
 use std::path::PathBuf;
 
 /// A problem as the file says it.
@@ -51,16 +51,35 @@ pub(super) struct ProblemFile {
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
+#[derive(Debug)]
+pub(super) struct ParameterEntry(pub ParameterTable);
+
+impl Deref for ParameterEntry {
+    type Target = ParameterTable;
+
+    fn deref(&self) -> &ParameterTable {
+        &self.0
+    }
+}
+
+/// A number, `true` or `false`: the value of a parameter or the initial value of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ValueEntry {
+    Number(f64),
+    Truth(bool),
+}
+
+/// What the table of a parameter holds.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct ParameterEntry {
+pub(super) struct ParameterTable {
     pub min: Option<f64>,
     pub max: Option<f64>,
     /// `linear` or `log`.
     pub scale: Option<String>,
     pub start: Option<f64>,
     pub unit: Option<String>,
-    pub fixed: Option<f64>,
+    pub fixed: Option<ValueEntry>,
     /// An expression of other parameters.
     pub tied: Option<String>,
     /// The name is that of a state, whose initial value is meant.
@@ -74,7 +93,7 @@ pub(super) struct ParameterEntry {
 }
 
 /// An experiment.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ExperimentEntry {
     pub name: Option<String>,
@@ -90,10 +109,10 @@ pub(super) struct ExperimentEntry {
     pub input_time: Option<String>,
     /// Values of parameters in this experiment.
     #[serde(default)]
-    pub set: IndexMap<String, f64>,
+    pub set: IndexMap<String, ValueEntry>,
     /// Initial values of states in this experiment.
     #[serde(default)]
-    pub start: IndexMap<String, f64>,
+    pub start: IndexMap<String, ValueEntry>,
     pub weight: Option<f64>,
     /// Not used for the fit, compared at the end.
     #[serde(default)]
@@ -113,12 +132,12 @@ pub(super) struct ExperimentEntry {
     pub places: ExperimentPlaces,
 }
 
-/// A column of the data: its name, or its name with more.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
+/// A column of the data: its name, several names of replicate measurements, or names with more.
+#[derive(Debug, Clone)]
 pub(super) enum Column {
     Name(String),
-    More(ColumnEntry),
+    Replicates(Vec<String>),
+    More(Box<ColumnEntry>),
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -127,12 +146,16 @@ pub(super) struct ColumnEntry {
     /// For `x`: the variable of the model.
     pub variable: Option<String>,
     pub column: Option<String>,
+    /// Columns of replicate measurements of an output.
+    #[serde(default)]
+    pub columns: Vec<String>,
     /// The unit of the column; must be that of the variable after `factor`.
     pub unit: Option<String>,
     /// The column's values times this are in the variable's unit.
     pub factor: Option<f64>,
     /// For an input: `hold` or `linear` between its samples.
     pub interpolation: Option<String>,
+    #[serde(default, deserialize_with = "forms::weight")]
     pub weight: Option<f64>,
     /// Standard deviation of the measurement.
     pub sigma: Option<SigmaEntry>,
@@ -143,23 +166,20 @@ pub(super) struct ColumnEntry {
 }
 
 /// A number, or the name of a parameter of the problem that is not one of the model.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone)]
 pub(super) enum DelayEntry {
     Seconds(f64),
     Parameter(String),
 }
 
 /// A standard deviation: a number, or words for a column, a formula or `estimate`.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone)]
 pub(super) enum SigmaEntry {
     Number(f64),
     Words(String),
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug)]
 pub(super) enum OneOrMany {
     One(String),
     Many(Vec<String>),
@@ -201,39 +221,6 @@ pub(super) enum OperatorEntry {
     Set(FitnessEntry),
 }
 
-impl<'de> Deserialize<'de> for OperatorEntry {
-    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<OperatorEntry, D::Error> {
-        reader.deserialize_any(OperatorVisitor)
-    }
-}
-
-struct OperatorVisitor;
-
-impl<'de> Visitor<'de> for OperatorVisitor {
-    type Value = OperatorEntry;
-
-    fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .write_str("an operator, such as \"sbx\" or { name = \"sbx\", eta = 5 }, or a number")
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<OperatorEntry, E> {
-        Ok(OperatorEntry::Frequency(value))
-    }
-
-    fn visit_i64<E>(self, value: i64) -> Result<OperatorEntry, E> {
-        Ok(OperatorEntry::Frequency(value as f64))
-    }
-
-    fn visit_str<E>(self, name: &str) -> Result<OperatorEntry, E> {
-        Ok(OperatorEntry::Name(name.to_owned()))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OperatorEntry, A::Error> {
-        FitnessEntry::deserialize(MapAccessDeserializer::new(map)).map(OperatorEntry::Set)
-    }
-}
-
 impl MethodEntry {
     /// The operators that were chosen, with their kinds, in the order of a generation.
     pub(super) fn operators(&self) -> impl Iterator<Item = (&'static str, &OperatorEntry)> {
@@ -266,8 +253,7 @@ pub(super) struct CheckpointEntry {
 }
 
 /// `true`, `false`, or names of variables.
-#[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug)]
 pub(super) enum BandsEntry {
     Wanted(bool),
     Variables(Vec<String>),
@@ -286,8 +272,7 @@ pub(super) struct DesignEntry {
 }
 
 /// `"uniform"`, `{ mean, sd }` or `{ median, factor }`.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone)]
 pub(super) enum PriorEntry {
     Name(String),
     Numbers(PriorNumbers),
@@ -325,11 +310,8 @@ pub(super) struct PosteriorEntry {
 ///
 /// What is wrong with the text, at its place.
 pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnostic> {
-    let mut file: ProblemFile = toml::from_str(text).map_err(|error| {
-        let range = error.span().unwrap_or(0..0);
-        let span = Span { source, start: range.start as u32, end: range.end as u32 };
-        refusal(error.message()).at(span)
-    })?;
+    let mut file: ProblemFile =
+        toml::from_str(text).map_err(|error| refusal::refusal(source, text, &error))?;
     file.places = places::places(source, text);
     for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
         entry.places = places.clone();
@@ -337,25 +319,12 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
     Ok(file)
 }
 
-/// What the parser says, in the words of TOML and in one line.
-fn refusal(message: &str) -> Fault {
-    let message = message.lines().collect::<Vec<_>>().join("; ");
-    let message = message.replace("expected a map", "expected a table");
-    let message = message.replace("expected a sequence", "expected an array");
-    let message = message.replace("invalid type: map", "invalid type: table");
-    let message = message.replace("invalid type: sequence", "invalid type: array");
-    let fault = crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.'));
-    match message.contains("expected a table") {
-        true => fault.help("a table begins with its name in brackets, once; below it there are lines `name = value`"),
-        false => fault,
-    }
-}
-
 impl ColumnEntry {
     pub(super) fn named(column: Option<String>) -> ColumnEntry {
         ColumnEntry {
             variable: None,
             column,
+            columns: Vec::new(),
             unit: None,
             factor: None,
             interpolation: None,
@@ -367,12 +336,39 @@ impl ColumnEntry {
     }
 }
 
+impl ExperimentEntry {
+    /// The outputs with their columns, one for each replicate.
+    pub(super) fn all_outputs(&self) -> impl Iterator<Item = (&String, ColumnEntry)> {
+        self.outputs.iter().flat_map(|(name, column)| {
+            column.replicates().into_iter().map(move |entry| (name, entry))
+        })
+    }
+}
+
 impl Column {
-    /// With the variable's name for what is not said.
+    /// With the variable's name for what is not said; of replicates the first one.
     pub(super) fn entry(&self) -> ColumnEntry {
         match self {
             Column::Name(column) => ColumnEntry::named(Some(column.clone())),
-            Column::More(entry) => entry.clone(),
+            Column::Replicates(columns) => ColumnEntry::named(columns.first().cloned()),
+            Column::More(entry) => {
+                let column = entry.column.clone().or_else(|| entry.columns.first().cloned());
+                ColumnEntry { column, ..(**entry).clone() }
+            }
+        }
+    }
+
+    /// One entry for each column of an output: of replicate measurements there are several.
+    pub(super) fn replicates(&self) -> Vec<ColumnEntry> {
+        let columns = match self {
+            Column::Replicates(columns) => columns.as_slice(),
+            Column::More(entry) => entry.columns.as_slice(),
+            Column::Name(_) => &[],
+        };
+        let one = |column: &String| ColumnEntry { column: Some(column.clone()), ..self.entry() };
+        match columns {
+            [] => vec![self.entry()],
+            columns => columns.iter().map(one).collect(),
         }
     }
 }
@@ -380,7 +376,7 @@ impl Column {
 /// The kinds of parameter that an entry may be.
 pub(super) enum Role {
     Free { range: [f64; 2], logarithmic: Option<bool> },
-    Fixed(f64),
+    Fixed(ValueEntry),
     Tied(String),
 }
 
@@ -399,6 +395,12 @@ impl ParameterEntry {
                 bail!(BAD_OPTION, "the scale of `{name}` is `{other}`"; help: "write \"linear\" or \"log\"")
             }
         };
+        let limits = [("min", self.min), ("max", self.max), ("start", self.start)];
+        let infinite =
+            limits.iter().find(|(_, limit)| limit.is_some_and(|limit| !limit.is_finite()));
+        if let Some((which, Some(limit))) = infinite {
+            bail!(BAD_OPTION, "`{which}` of `{name}` is {limit}"; help: "write a finite number");
+        }
         match (self.min, self.max, self.fixed, &self.tied) {
             (Some(min), Some(max), None, None) => Ok(Role::Free { range: [min, max], logarithmic }),
             (None, None, Some(value), None) => Ok(Role::Fixed(value)),
@@ -412,16 +414,21 @@ impl ParameterEntry {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_of_another_type_are_refused_in_the_words_of_toml() {
-        let refused = |text: &str| read(SourceId::NONE, text).expect_err("a refusal");
-        let twice = refused("[[parameters]]\nname = \"k\"\n");
-        assert_eq!(twice.message, "invalid type: array, expected a table");
-        assert!(twice.helps.iter().any(|help| help.contains("brackets")));
-        assert!(refused("searches = \"five\"\n").helps.is_empty());
+impl ValueEntry {
+    /// The number.
+    ///
+    /// # Errors
+    ///
+    /// `true` and `false`, infinite numbers and NaN.
+    pub(super) fn number(self, name: &str) -> Result<f64, crate::diag::Fault> {
+        match self {
+            ValueEntry::Number(value) if value.is_finite() => Ok(value),
+            ValueEntry::Number(value) => {
+                bail!(BAD_OPTION, "the value of `{name}` is {value}"; help: "write a finite number")
+            }
+            ValueEntry::Truth(value) => {
+                bail!(BAD_OPTION, "the value of `{name}` is {value}"; help: "write a number")
+            }
+        }
     }
 }

@@ -6,12 +6,17 @@
 //! lines, and a note says so.
 
 use super::data::{self, Notes};
-use super::enclosing_class::EnclosingClass;
+use super::enclosing_class::{self, EnclosingClass};
 use super::file::{ColumnEntry, ExperimentEntry};
+use super::flat::{unit_in, variable_of};
 use crate::bail;
-use crate::diag::{At as _, Diagnostic, Fault};
-use crate::mat::MatFile;
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::flatten::{BaseType, FlatModel, Variability};
+use crate::mat::{Column, MatFile};
 use crate::registry::BAD_OPTION;
+use crate::source::Span;
+use crate::syntax::ast::CausalityPrefix;
 use std::fmt::Write;
 
 /// How an input goes on between its samples.
@@ -21,41 +26,60 @@ enum Between {
     Linear,
 }
 
-/// Units of inputs by name; empty where the model gives none.
-pub(super) type UnitOf<'u> = &'u dyn Fn(&str) -> String;
-
-/// Whether a column of an input has a unit, so that the model's is needed.
-pub(super) fn have_units(entry: &ExperimentEntry, table: &MatFile) -> bool {
-    entry.inputs.iter().any(|(name, wanted)| {
-        let wanted = wanted.entry();
-        let column = table.column(wanted.column.as_deref().unwrap_or(name));
-        wanted.unit.is_some() || column.is_ok_and(|column| column.about.unit.is_some())
-    })
-}
-
 /// Tables for the inputs that follow columns; `x` are the times unless the entry names other ones.
 pub(super) fn inputs(
     entry: &ExperimentEntry,
     table: &MatFile,
     x: (&str, &[f64]),
-    unit: UnitOf<'_>,
+    flat: &FlatModel,
     enclosing: &mut EnclosingClass,
     notes: &mut Notes,
 ) -> Result<(), Diagnostic> {
-    if entry.inputs.is_empty() {
-        return Ok(());
-    }
     let times = match &entry.input_time {
         Some(name) => own_times(name, table, notes).at(entry.places.data)?,
         None => (x.0, x.1.to_vec()),
     };
-    for (number, (name, wanted)) in entry.inputs.iter().enumerate() {
+    for (name, wanted) in &entry.inputs {
+        let place = entry.places.column(name);
         let input = (name.as_str(), &wanted.entry());
-        let (pairs, between) = followed(input, table, (times.0, &times.1), unit, notes)
-            .at(entry.places.column(name))?;
-        declare(number, name, &pairs, between, enclosing);
+        let base = type_of_input(name, flat).at(place)?;
+        let (pairs, between) =
+            followed(input, table, (times.0, &times.1), (flat, &base), notes).at(place)?;
+        declare((name, &base, place), &pairs, between, enclosing).at(place)?;
     }
     Ok(())
+}
+
+/// The type of an input of the model.
+fn type_of_input(name: &str, flat: &FlatModel) -> Result<BaseType, Fault> {
+    let inputs = || {
+        let is_input = |v: &&crate::flatten::Variable| {
+            v.causality == Some(CausalityPrefix::Input) && v.binding.is_none()
+        };
+        let names: Vec<String> = flat
+            .variables
+            .values()
+            .filter(is_input)
+            .map(|variable| format!("`{}`", variable.name))
+            .collect();
+        match names.is_empty() {
+            true => format!("`{}` has no inputs", flat.name),
+            false => format!("the inputs of `{}` are {}", flat.name, names.join(", ")),
+        }
+    };
+    let Some(variable) = variable_of(flat, name) else {
+        let names = flat.variables.keys().map(|name| &**name);
+        return Err(fault!(BAD_OPTION, "`{}` has no input `{name}`", flat.name)
+            .help_if(suggest::did_you_mean(name, names))
+            .help(inputs()));
+    };
+    if variable.variability <= Variability::Parameter {
+        bail!(BAD_OPTION, "`{name}` is a parameter, not an input"; help: "{}", inputs());
+    }
+    match &variable.base {
+        base @ (BaseType::Real | BaseType::Integer | BaseType::Boolean) => Ok(base.clone()),
+        _ => bail!(BAD_OPTION, "`{name}` is not a number; it cannot follow a column of the data"),
+    }
 }
 
 /// The column of time of the inputs, in seconds.
@@ -75,13 +99,15 @@ fn followed(
     (name, wanted): (&str, &ColumnEntry),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
-    unit: UnitOf<'_>,
+    (flat, base): (&FlatModel, &BaseType),
     notes: &mut Notes,
 ) -> Result<(Vec<(f64, f64)>, Between), Fault> {
     let column = data::column(table, wanted, name, notes)?;
     notes.about(table, column.missing.clone());
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
-    let values = data::in_unit(&column, name, &unit(name), wanted, (table, notes))?.values;
+    check_type(name, base, &column)?;
+    let unit = unit_in(flat, name);
+    let values = data::in_unit(&column, name, &unit, wanted, (table, notes))?.values;
     let pairs: Vec<(f64, f64)> = time
         .iter()
         .copied()
@@ -99,19 +125,45 @@ fn followed(
             help: "sort the rows, or write consecutive runs to separate files"
         );
     }
-    let between = between(name, wanted, &pairs, notes)?;
+    let between = match base {
+        BaseType::Real => between(name, wanted, &pairs, notes)?,
+        _ if wanted.interpolation.as_deref() == Some("linear") => bail!(
+            BAD_OPTION,
+            "the input `{name}` is not Real and cannot be interpolated linearly";
+            help: "remove `interpolation`: each value is held until the next sample"
+        ),
+        _ => Between::Constant,
+    };
     Ok((pairs, between))
 }
 
+/// Refuses values that an input of this type cannot have.
+fn check_type(name: &str, base: &BaseType, column: &Column) -> Result<(), Fault> {
+    let (kind, fits): (&str, fn(f64) -> bool) = match base {
+        BaseType::Boolean => ("Boolean", |value| value == 0.0 || value == 1.0),
+        BaseType::Integer => ("Integer", |value| value.fract() == 0.0),
+        _ => return Ok(()),
+    };
+    let wrong = column.values.iter().position(|value| value.is_finite() && !fits(*value));
+    let Some(row) = wrong else { return Ok(()) };
+    let allowed = if kind == "Boolean" { "0 or 1" } else { "whole numbers" };
+    bail!(
+        BAD_OPTION,
+        "the input `{name}` is {kind}, but its column has the value {} in {}",
+        column.values[row],
+        column.place(row);
+        help: "use a column of {allowed}"
+    )
+}
+
 fn declare(
-    number: usize,
-    name: &str,
+    (name, base, place): (&str, &BaseType, Span),
     pairs: &[(f64, f64)],
     between: Between,
     enclosing: &mut EnclosingClass,
-) {
+) -> Result<(), Fault> {
     let rows: Vec<String> = pairs.iter().map(|(t, v)| format!("{t:e},{v:e}")).collect();
-    let table = format!("gapi_input_{number}");
+    let table = enclosing_class::own_name("data of", name);
     let smoothness = match between {
         Between::Constant => "ConstantSegments",
         Between::Linear => "LinearSegments",
@@ -121,7 +173,16 @@ fn declare(
         "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], smoothness = Modelica.Blocks.Types.Smoothness.{smoothness}, extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
         rows.join(";")
     );
-    enclosing.modifications.push(format!("{name} = {table}.y[1]"));
+    enclosing.elements.push((table.clone(), format!("the data of {name}")));
+    let value = match base {
+        BaseType::Boolean => format!("{table}.y[1] > 0.5"),
+        BaseType::Integer => format!("integer({table}.y[1] + 0.5)"),
+        _ => format!("{table}.y[1]"),
+    };
+    let value = enclosing_class::expression(&value, None);
+    let value = value.map_err(|error| fault!(BAD_OPTION, "{}", error.message))?;
+    enclosing.bind(name, value, place);
+    Ok(())
 }
 
 /// What an entry says of the values between samples, or what the values look like.

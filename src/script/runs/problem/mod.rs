@@ -6,22 +6,29 @@
 //! never interrupted. It is removed when the results have been written.
 
 mod build;
+mod calibration;
 mod constraint;
 mod control;
 mod data;
 mod draft;
+mod driven;
 mod dynamics;
 mod enclosing_class;
 mod experiment;
+mod failing;
 mod file;
+mod flat;
+mod forms;
 mod inference;
 mod inputs;
 mod live;
 pub(in crate::script) mod operators;
 mod own_fitness;
 pub(in crate::script) mod own_function;
+mod parameters;
 mod places;
 mod record;
+mod refusal;
 mod search;
 mod searches;
 mod series;
@@ -42,6 +49,7 @@ use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, draft};
+pub use driven::{Driven, driven};
 pub use shards::{Division, read_shards};
 
 use build::Built;
@@ -177,7 +185,9 @@ fn solve_text(
             fault!(BAD_OPTION, "the problem cannot be read again: {first}")
         })
     };
-    solve_built(session, (path, built), (&options, every), &mut again).map_err(one)
+    let mut why = None;
+    let solved = solve_built(session, (path, built), (&options, every), &mut again, &mut why);
+    solved.map_err(|fault| why.map_or_else(|| one(fault), |why| vec![why]))
 }
 
 /// The problem, with what the options ask beyond its file.
@@ -208,8 +218,9 @@ fn solve_built(
     (path, built): (&Path, Built),
     (options, every): (&RunOptions, (Option<u64>, f64)),
     again: &mut searches::Again<'_>,
+    why: &mut Option<Diagnostic>,
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, origins, notes } = built;
+    let Built { problem, experiments, validation, origins, notes, calibration } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::on(problem, &session.world.processors())?;
     run.evaluation.parts = options.division.parts();
@@ -233,6 +244,7 @@ fn solve_built(
         let files = (path, checkpoint.path(), folder.as_path());
         shards::keep(session, run, files, (&origins, options))
     };
+    *why = failing::none_simulated(&run, &experiments);
     let mut solution = match solved(&run) {
         // The searches of this shard count, whatever became of the first one.
         Err(fault) if !ending.is_interrupted && options.searches > Some(1) => {
@@ -247,6 +259,7 @@ fn solve_built(
         solution = solution.with_profiles(&mut run, solved)?;
     }
     solution.add_searches(all, searched);
+    solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
     let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;

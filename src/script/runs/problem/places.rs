@@ -10,6 +10,11 @@ use toml::Spanned;
 /// The places of a file.
 #[derive(Debug, Default)]
 pub(super) struct Places {
+    /// The class of the model, without its quotation marks.
+    pub model: Option<Span>,
+    /// Expressions of tied parameters, without their quotation marks, by the names of these.
+    pub tied: IndexMap<String, Span>,
+    parameters: IndexMap<String, Span>,
     /// The operators of the method by their kinds.
     pub operators: IndexMap<&'static str, Span>,
     /// The experiments, in their order.
@@ -24,11 +29,13 @@ pub(super) struct ExperimentPlaces {
     /// Its X.
     pub x: Span,
     columns: IndexMap<String, Span>,
+    values: IndexMap<String, Span>,
 }
 
 impl Default for ExperimentPlaces {
     fn default() -> ExperimentPlaces {
-        ExperimentPlaces { data: Span::NONE, x: Span::NONE, columns: IndexMap::new() }
+        let (columns, values) = (IndexMap::new(), IndexMap::new());
+        ExperimentPlaces { data: Span::NONE, x: Span::NONE, columns, values }
     }
 }
 
@@ -37,16 +44,37 @@ impl ExperimentPlaces {
     pub(super) fn column(&self, name: &str) -> Span {
         self.columns.get(name).copied().unwrap_or(Span::NONE)
     }
+
+    /// The parameter or initial value of this name that the experiment sets.
+    pub(super) fn value(&self, name: &str) -> Span {
+        self.values.get(name).copied().unwrap_or(Span::NONE)
+    }
+}
+
+impl Places {
+    /// The parameter of this name.
+    pub(super) fn parameter(&self, name: &str) -> Span {
+        self.parameters.get(name).copied().unwrap_or(Span::NONE)
+    }
 }
 
 type Place = Option<Spanned<IgnoredAny>>;
+type Named = IndexMap<String, Spanned<IgnoredAny>>;
 
 #[derive(Debug, Default, Deserialize)]
 struct File {
+    model: Place,
+    #[serde(default)]
+    parameters: IndexMap<String, Spanned<Parameter>>,
     #[serde(default)]
     method: Method,
     #[serde(default)]
     experiment: Vec<Experiment>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+struct Parameter {
+    tied: Place,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -63,19 +91,28 @@ struct Experiment {
     data: Place,
     x: Place,
     #[serde(default)]
-    outputs: IndexMap<String, Spanned<IgnoredAny>>,
+    outputs: Named,
     #[serde(default)]
-    inputs: IndexMap<String, Spanned<IgnoredAny>>,
+    inputs: Named,
+    #[serde(default)]
+    set: Named,
+    #[serde(default)]
+    start: Named,
 }
 
 /// The places in a text that has been read as a problem: what could be read once can be read again.
 pub(super) fn places(source: SourceId, text: &str) -> Places {
-    let File { method, experiment } = toml::from_str(text).unwrap_or_default();
-    let span = |place: &Spanned<IgnoredAny>| {
-        let range = place.span();
-        Span::new(source, range.start, range.end)
-    };
+    let File { model, parameters, method, experiment } = toml::from_str(text).unwrap_or_default();
+    let of_range = |range: std::ops::Range<usize>| Span::new(source, range.start, range.end);
+    let span = |place: &Spanned<IgnoredAny>| of_range(place.span());
     let of = |place: &Place| place.as_ref().map_or(Span::NONE, span);
+    // Text in escapes would have other places than what it stands for.
+    let quoted = |place: &Place| {
+        let range = place.as_ref()?.span();
+        let inner = text.get(range.start + 1..range.end.checked_sub(1)?)?;
+        let is_plain = !inner.contains(['\\', '\n', '"', '\'']);
+        is_plain.then(|| of_range(range.start + 1..range.end - 1))
+    };
     let kinds = [
         ("sampling", &method.sampling),
         ("selection", &method.selection),
@@ -85,13 +122,27 @@ pub(super) fn places(source: SourceId, text: &str) -> Places {
     ];
     let operators =
         kinds.into_iter().filter_map(|(kind, place)| Some((kind, span(place.as_ref()?))));
-    let experiments = experiment.iter().map(|experiment| {
-        let columns = experiment.outputs.iter().chain(&experiment.inputs);
-        ExperimentPlaces {
-            data: of(&experiment.data),
-            x: of(&experiment.x),
-            columns: columns.map(|(name, place)| (name.clone(), span(place))).collect(),
-        }
+    let all = |first: &Named, second: &Named| {
+        let both = first.iter().chain(second);
+        both.map(|(name, place)| (name.clone(), span(place))).collect()
+    };
+    let experiments = experiment.iter().map(|experiment| ExperimentPlaces {
+        data: of(&experiment.data),
+        x: of(&experiment.x),
+        columns: all(&experiment.outputs, &experiment.inputs),
+        values: all(&experiment.set, &experiment.start),
     });
-    Places { operators: operators.collect(), experiments: experiments.collect() }
+    let tied = parameters
+        .iter()
+        .filter_map(|(name, one)| Some((name.clone(), quoted(&one.get_ref().tied)?)));
+    Places {
+        model: quoted(&model),
+        tied: tied.collect(),
+        parameters: parameters
+            .iter()
+            .map(|(name, one)| (name.clone(), of_range(one.span())))
+            .collect(),
+        operators: operators.collect(),
+        experiments: experiments.collect(),
+    }
 }

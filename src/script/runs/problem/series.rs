@@ -8,7 +8,7 @@ use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
 use crate::identify::problem::{Observation, Series, Sigma};
-use crate::mat::MatFile;
+use crate::mat::{Column, MatFile};
 use crate::registry::BAD_OPTION;
 use crate::units::in_words;
 
@@ -44,8 +44,8 @@ impl Comparison<'_> {
         notes: &mut Notes,
     ) -> Result<(Vec<Observation>, Vec<Series>), Diagnostic> {
         let (mut observations, mut series) = (Vec::new(), Vec::new());
-        for ((y_name, wanted), observed) in self.entry.outputs.iter().zip(observed) {
-            let one = self.output(y_name, &wanted.entry(), notes);
+        for ((y_name, wanted), observed) in self.entry.all_outputs().zip(observed) {
+            let one = self.output(y_name, &wanted, notes);
             let one = one.at(self.entry.places.column(y_name))?;
             observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
             series.push(one);
@@ -67,14 +67,22 @@ impl Comparison<'_> {
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
         let factor = data::sigma_factor(table, wanted.sigma.as_ref(), &unit, measured.factor);
         let sigma = sigma::sigma(wanted.sigma.as_ref(), y_name, table, factor, count)?;
-        let complete = |row: &usize| {
+        let measured_in = |row: &usize| {
             self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
         };
+        let has_sigma = |row: &usize| match &sigma {
+            Sigma::Given(values) => values.get(*row).is_none_or(|sigma| sigma.is_finite()),
+            _ => true,
+        };
+        let complete = |row: &usize| measured_in(row) && has_sigma(row);
         let (rows, missing): (Vec<usize>, Vec<usize>) = (0..count).partition(complete);
+        let without_sigma = missing.iter().copied().filter(measured_in);
+        note_missing_sigma(y_name, without_sigma.collect(), &column, notes);
         let sigma = self.of_rows(sigma, y_name, &rows, count)?;
         if rows.is_empty() {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
+        note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
         let weight = self.weight(y_name, wanted)?;
         Ok(Series {
             experiment: self.experiment.to_owned(),
@@ -123,6 +131,31 @@ impl Comparison<'_> {
         }
         Ok(weight)
     }
+}
+
+/// Values that are all equal, as those of a sensor that is not connected.
+fn note_constant(y_name: &str, mut values: impl ExactSizeIterator<Item = f64>, notes: &mut Notes) {
+    let count = values.len();
+    let Some(first) = values.next().filter(|_| count > 3) else { return };
+    if values.all(|value| value == first) {
+        notes.add(format!("all {count} values of `{y_name}` are {first}"));
+    }
+}
+
+/// Points that are omitted because only their sigma is missing.
+fn note_missing_sigma(y_name: &str, rows: Vec<usize>, column: &Column, notes: &mut Notes) {
+    const SHOWN: usize = 10;
+    if rows.is_empty() {
+        return;
+    }
+    let places: Vec<String> = rows.iter().take(SHOWN).map(|row| column.place(*row)).collect();
+    let more = if rows.len() > SHOWN { ", …" } else { "" };
+    let points = if rows.len() == 1 { "point" } else { "points" };
+    notes.add(format!(
+        "{} {points} of `{y_name}` without a sigma omitted: {}{more}",
+        rows.len(),
+        places.join(", ")
+    ));
 }
 
 /// Where values were converted, a number for sigma is taken in the unit of the model.

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// What is written for deviations that are estimated.
 const ESTIMATE: &str = "estimate";
 
-/// Sigma of the output `name`: all rows of a column, or what needs none. `factor` turns values of
-/// columns into the output's unit.
+/// Sigma of the output `name`: all rows of a column, NaN where it has no value, or what needs none.
+/// `factor` turns values of columns into the output's unit.
 ///
 /// # Errors
 ///
@@ -34,9 +34,14 @@ pub(super) fn sigma(
             Ok(Sigma::Given(vec![*value; rows]))
         }
         Some(SigmaEntry::Words(words)) if words == ESTIMATE => Ok(Sigma::Estimated),
-        Some(SigmaEntry::Words(words)) => match table.matrix(words) {
+        Some(SigmaEntry::Words(words)) => match table.column(words) {
             Ok(column) => {
-                Ok(Sigma::Given(column.row_major().iter().map(|v| v * factor.abs()).collect()))
+                let wrong = column.values.iter().position(|value| *value <= 0.0);
+                if let Some(row) = wrong {
+                    let (value, place) = (column.values[row], column.place(row));
+                    bail!(BAD_OPTION, "the sigma of `{name}` is {value} in {place} of `{words}`"; help: "a standard deviation must be positive; leave the cell empty to omit the point");
+                }
+                Ok(Sigma::Given(column.values.iter().map(|v| v * factor.abs()).collect()))
             }
             Err(_) => formula(name, words).map(Sigma::Formula),
         },

@@ -4,6 +4,7 @@ use super::*;
 use crate::script::world::{Files as _, MemoryWorld};
 
 mod inference;
+mod values;
 
 const MODEL: &str = "model Tank
   parameter Real k(unit = \"1/s\") = 1;

@@ -1,0 +1,93 @@
+//! Inputs of a model that follow the columns of a file in a simulation, as in an experiment of a
+//! problem.
+
+use super::data::Notes;
+use super::enclosing_class::{Base, EnclosingClass};
+use super::file::{Column, ColumnEntry, ExperimentEntry};
+use super::{data, inputs};
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::mat::MatFile;
+use crate::registry::BAD_OPTION;
+use crate::results;
+use crate::script::Session;
+use crate::script::models::simulation;
+use crate::source::Span;
+use crate::syntax::ast::CausalityPrefix;
+use std::path::Path;
+
+/// Columns of time by their names.
+const TIMES: [&str; 3] = ["time", "Time", "t"];
+
+/// A model whose inputs follow data.
+pub struct Driven {
+    /// The class around the model.
+    pub class: String,
+    /// The last time of the data.
+    pub last: f64,
+}
+
+/// Lets the inputs of the model `class` follow the columns of a file that have their names.
+///
+/// # Errors
+///
+/// Files that cannot be read, without a column of time or of an input.
+pub fn driven(session: &mut Session, class: &str, path: &Path) -> Result<Driven, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let bytes = session.read_bytes(path).map_err(one)?;
+    let table = results::read_data(&path.to_string_lossy(), &bytes).map_err(one)?;
+    let flat = simulation::flattened(session, class)?.model;
+    let mut notes = Notes::default();
+    let time = times(&table, &mut notes).map_err(one)?;
+    let names = flat.variables.values().filter(|variable| {
+        variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none()
+    });
+    let names: Vec<String> = names
+        .flat_map(|variable| match variable.dims.as_slice() {
+            [size] => (1..=*size).map(|at| format!("{}[{at}]", variable.name)).collect(),
+            _ => vec![variable.name.to_string()],
+        })
+        .collect();
+    let (found, missing): (Vec<&String>, Vec<&String>) =
+        names.iter().partition(|name| table.column(name).is_ok());
+    if found.is_empty() {
+        return Err(one(no_column(class, &names, &table)));
+    }
+    for name in missing {
+        notes.add(format!("{}: no column for the input `{name}`", table.file_name));
+    }
+    let columns = found.iter().map(|name| ((*name).clone(), Column::Name((*name).clone())));
+    let entry = ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() };
+    let mut enclosing = EnclosingClass::default();
+    let times = ("time", time.as_slice());
+    inputs::inputs(&entry, &table, times, &flat, &mut enclosing, &mut notes)
+        .map_err(|error| vec![error])?;
+    let base = Base::of(class, None).map_err(|error| vec![error])?;
+    let class = enclosing.load(session, &base, (0, Span::NONE))?;
+    for note in notes.into_sentences() {
+        session.note(crate::mat::errors::DATA_NOTE, note);
+    }
+    let last = time.iter().copied().filter(|t| t.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    Ok(Driven { class, last })
+}
+
+/// The column of time, in seconds.
+fn times(table: &MatFile, notes: &mut Notes) -> Result<Vec<f64>, Fault> {
+    let name = TIMES.into_iter().find(|name| table.column(name).is_ok()).unwrap_or(TIMES[0]);
+    let entry = ColumnEntry::named(Some(name.to_owned()));
+    let column = data::column(table, &entry, name, notes)?;
+    Ok(data::in_unit(&column, "time", "s", &entry, (table, notes))?.values)
+}
+
+fn no_column(class: &str, names: &[String], table: &MatFile) -> Fault {
+    let columns: Vec<&str> = table.arrays.keys().map(String::as_str).collect();
+    let shown = super::parameters::listed(&columns);
+    let file = &table.file_name;
+    if names.is_empty() {
+        return fault!(BAD_OPTION, "`{class}` has no inputs that could follow `{file}`");
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let inputs = super::parameters::listed(&names);
+    fault!(BAD_OPTION, "`{file}` has no column with the name of an input of `{class}`")
+        .help(format!("the inputs are {inputs}; the columns are {shown}"))
+}

@@ -1,0 +1,36 @@
+//! Variables of flat models by names with subscripts.
+
+use crate::flatten::{FlatModel, Variable};
+use crate::syntax::ast::{Expression, ExpressionKind};
+
+/// The variable of a model that has this name, or of which this is an element.
+pub(super) fn variable_of<'f>(flat: &'f FlatModel, name: &str) -> Option<&'f Variable> {
+    let array = || name.strip_suffix(']').and_then(|inner| inner.rsplit_once('['));
+    flat.variables.get(name).or_else(|| flat.variables.get(array()?.0))
+}
+
+/// The unit of a variable; empty where it has none.
+pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
+    let unit = variable_of(flat, name).and_then(|variable| variable.attributes.get("unit"));
+    match unit.map(|unit| &element(&unit.value, name).kind) {
+        Some(ExpressionKind::String(unit)) => unit.to_string(),
+        _ => String::new(),
+    }
+}
+
+/// What a model computes a parameter from; `None` where it depends on no other one.
+pub(super) fn computed(flat: &FlatModel, name: &str) -> Option<String> {
+    let variable = flat.variables.get(name).filter(|variable| variable.is_computed())?;
+    variable.binding.as_ref().map(crate::syntax::print::expression)
+}
+
+/// The value of an attribute for an element of an array, whose name ends with its subscript.
+fn element<'e>(value: &'e Expression, name: &str) -> &'e Expression {
+    let subscript = || name.strip_suffix(']')?.rsplit_once('[')?.1.parse::<usize>().ok();
+    match (&value.kind, subscript()) {
+        (ExpressionKind::Array(elements), Some(at)) => {
+            elements.get(at.wrapping_sub(1)).unwrap_or(value)
+        }
+        _ => value,
+    }
+}

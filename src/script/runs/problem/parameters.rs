@@ -1,0 +1,327 @@
+//! What the parameters of a problem are in one of its experiments: modifications of the model, and
+//! the free ones, which the search sets before each simulation.
+
+use super::data::Notes;
+use super::dynamics;
+use super::enclosing_class::{self, EnclosingClass, own_name};
+use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role};
+use super::flat::variable_of;
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::flatten::{BaseType, FlatModel, Variability, Variable};
+use crate::identify::problem::Free;
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::models::simulation::flat_model_of;
+use crate::script::models::translated::Translated;
+use crate::source::Span;
+use crate::syntax::ast::{Expression, ExpressionKind};
+use std::fmt::Write;
+
+/// An experiment whose parameters are set.
+pub(super) struct Setting<'a> {
+    pub file: &'a ProblemFile,
+    pub entry: &'a ExperimentEntry,
+    /// The name of the experiment.
+    pub experiment: &'a str,
+    pub free: &'a [Free],
+}
+
+impl Setting<'_> {
+    /// Adds modifications to the class around the model; the free parameters with their names in it.
+    ///
+    /// # Errors
+    ///
+    /// Entries that contradict each other or are no values.
+    pub(super) fn parameters(
+        &self,
+        enclosing: &mut EnclosingClass,
+    ) -> Result<Vec<(usize, String)>, Diagnostic> {
+        let mut names = Vec::new();
+        for (name, parameter) in &self.file.parameters {
+            let place = self.file.places.parameter(name);
+            let role = parameter.role(name).at(place)?;
+            let value = match role {
+                Role::Free { .. } => {
+                    let free = self.free_place(name, parameter).at(place)?;
+                    let Some(own) = self.declare(name, parameter, free, enclosing) else {
+                        names.push((free, name.clone()));
+                        continue;
+                    };
+                    names.push((free, own.clone()));
+                    enclosing_class::reference(&own, place)
+                }
+                Role::Fixed(value) => enclosing_class::literal(value, name, place).at(place)?,
+                Role::Tied(text) => self.tied(name, &text)?,
+            };
+            if dynamics::is_delay(self.file, name) {
+                continue;
+            }
+            match parameter.initial {
+                true => enclosing.start(name, value, place),
+                false => enclosing.bind(name, value, place),
+            }
+        }
+        self.values(enclosing)?;
+        Ok(names)
+    }
+
+    /// The place of a free parameter among all of them.
+    fn free_place(&self, name: &str, parameter: &ParameterEntry) -> Result<usize, Fault> {
+        let full = match parameter.per_experiment {
+            true => format!("{name}@{}", self.experiment),
+            false => name.to_owned(),
+        };
+        self.free.iter().position(|free| free.name == full).ok_or_else(|| {
+            fault!(
+                BAD_OPTION,
+                "`{name}` is estimated separately for each experiment, but {} has no value for it",
+                self.experiment;
+                help: "fix it there with `set`"
+            )
+        })
+    }
+
+    /// Declares a parameter of the class for a free initial value or delay; its name.
+    fn declare(
+        &self,
+        name: &str,
+        parameter: &ParameterEntry,
+        free: usize,
+        enclosing: &mut EnclosingClass,
+    ) -> Option<String> {
+        let (own, words) = match dynamics::is_delay(self.file, name) {
+            true => (dynamics::delay_name(name), format!("the delay {name}")),
+            false if parameter.initial => {
+                (own_name("initial value of", name), format!("the initial value of {name}"))
+            }
+            false => return None,
+        };
+        let middle = self.free[free].value(0.5);
+        _ = writeln!(enclosing.declarations, "  parameter Real {own} = {middle:e};");
+        enclosing.elements.push((own.clone(), words));
+        Some(own)
+    }
+
+    /// The expression of a tied parameter.
+    fn tied(&self, name: &str, text: &str) -> Result<Expression, Diagnostic> {
+        let places = &self.file.places;
+        let read = enclosing_class::expression(text, places.tied.get(name).copied());
+        read.map_err(|error| error.or_at(places.parameter(name)))
+    }
+
+    /// The values that the experiment itself sets.
+    fn values(&self, enclosing: &mut EnclosingClass) -> Result<(), Diagnostic> {
+        let (entry, parameters) = (self.entry, &self.file.parameters);
+        for (name, value) in &entry.set {
+            let place = entry.places.value(name);
+            if parameters.contains_key(name) {
+                let experiment = self.experiment;
+                let fault = fault!(
+                    BAD_OPTION,
+                    "`{name}` is set both in {experiment} and in `[parameters]`";
+                    help: "remove one of the two"
+                );
+                return Err(fault.at(place));
+            }
+            let value = enclosing_class::literal(*value, name, place).at(place)?;
+            enclosing.bind(name, value, place);
+        }
+        for (name, value) in &entry.start {
+            let place = entry.places.value(name);
+            if parameters.get(name).is_some_and(|parameter| parameter.initial) {
+                let fault = fault!(
+                    BAD_OPTION,
+                    "the initial value of `{name}` is given both in {} and in `[parameters]`",
+                    self.experiment;
+                    help: "remove one of the two"
+                );
+                return Err(fault.at(place));
+            }
+            let value = enclosing_class::literal(*value, name, place).at(place)?;
+            enclosing.start(name, value, place);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses, before the first simulation, free parameters that a simulation cannot be given.
+///
+/// # Errors
+///
+/// Names that the model does not have, variables, constants, final and structural parameters, and
+/// parameters that are not Real.
+pub(super) fn check_free(
+    file: &ProblemFile,
+    names: &[(usize, String)],
+    model: &Translated,
+) -> Result<(), Diagnostic> {
+    for (_, name) in names {
+        let settable = model.program.find_parameter(name).ok();
+        let base = settable.map(|at| &model.program.parameters()[at].base);
+        if matches!(base, Some(BaseType::Real)) {
+            continue;
+        }
+        return Err(not_free(name, base, model).at(file.places.parameter(name)));
+    }
+    Ok(())
+}
+
+/// Says which free parameters the model computes from others: they no longer depend on these.
+pub(super) fn note_computed(names: &[(usize, String)], model: &Translated, notes: &mut Notes) {
+    for (_, name) in names {
+        if model.declarations.get(name.as_str()).is_some_and(|declared| declared.is_computed) {
+            notes.add(format!(
+                "`{name}` is estimated, although the model computes it from other parameters: it \
+                 no longer follows them"
+            ));
+        }
+    }
+}
+
+/// Why a parameter cannot be estimated.
+fn not_free(name: &str, base: Option<&BaseType>, model: &Translated) -> Fault {
+    let shown = model.program.name();
+    let array = || name.strip_suffix(']').and_then(|inner| inner.rsplit_once('['));
+    let declared = model.declarations.get(name).or_else(|| model.declarations.get(array()?.0));
+    let base = base.or(declared.map(|declared| &declared.base));
+    let each = format!(
+        "give it one value, `{name} = {{ fixed = … }}`, and compare the fits of several problem \
+         files with different values"
+    );
+    let type_name = match base {
+        Some(BaseType::Integer) => Some("Integer"),
+        Some(BaseType::Boolean) => Some("Boolean"),
+        Some(BaseType::Enumeration(_)) => Some("an enumeration"),
+        Some(BaseType::Real) | None => None,
+        Some(_) => Some("not a number"),
+    };
+    let Some(declared) = declared else {
+        let is_own = |name: &&str| !name.contains('\'');
+        let parameters = model.program.parameters();
+        let names: Vec<&str> = parameters.iter().map(|own| &*own.name).filter(is_own).collect();
+        return fault!(BAD_OPTION, "`{shown}` has no parameter `{name}`")
+            .help_if(suggest::did_you_mean(name, names.iter().copied()))
+            .help(match names.is_empty() {
+                true => "declare it in the model, or remove it".to_owned(),
+                false => format!("its parameters are {}", listed(&names)),
+            });
+    };
+    if declared.variability > Variability::Parameter {
+        return fault!(BAD_OPTION, "`{name}` is a variable of `{shown}`, not a parameter")
+            .help("to estimate the initial value of a state, write `initial = true`");
+    }
+    if let Some(type_name) = type_name {
+        return fault!(BAD_OPTION, "`{name}` is {type_name} and cannot be estimated").help(each);
+    }
+    if !declared.dims.is_empty() && !name.ends_with(']') {
+        return fault!(BAD_OPTION, "`{name}` is an array")
+            .help(format!("estimate its elements: `\"{name}[1]\"`"));
+    }
+    let (why, help) = match () {
+        () if declared.variability == Variability::Constant => (
+            "is a constant",
+            "declare it as a parameter in the model, or remove it here".to_owned(),
+        ),
+        () if declared.is_final => {
+            ("is declared `final`", "remove `final` in the model, or remove it here".to_owned())
+        }
+        () => ("is a structural parameter: its value decides the equations", each),
+    };
+    fault!(BAD_OPTION, "`{name}` of `{shown}` {why} and cannot be estimated").help(help)
+}
+
+/// At most a dozen names.
+pub(super) fn listed(names: &[&str]) -> String {
+    const SHOWN: usize = 12;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// Refuses initial values of variables that are not states, where all states have theirs: such an
+/// initial value would contradict them.
+///
+/// # Errors
+///
+/// The variable, with the states.
+pub(super) fn check_initial(
+    session: &mut Session,
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    model: &Translated,
+) -> Result<(), Vec<Diagnostic>> {
+    let estimated = file.parameters.iter().filter(|(_, parameter)| parameter.initial);
+    let estimated = estimated.map(|(name, _)| (name, file.places.parameter(name)));
+    let set = entry.start.keys().map(|name| (name, entry.places.value(name)));
+    let states: Vec<String> = model.state_names().map(ToString::to_string).collect();
+    let is_other = |name: &String| {
+        let array = || name.strip_suffix(']').and_then(|inner| inner.rsplit_once('['));
+        let own = model.declarations.get(name.as_str());
+        let declared = own.or_else(|| model.declarations.get(array()?.0));
+        let continuous = declared.is_some_and(|one| one.variability == Variability::Continuous);
+        continuous && !states.iter().any(|state| state == name)
+    };
+    let others: Vec<(&String, Span)> =
+        estimated.chain(set).filter(|(name, _)| is_other(name)).collect();
+    let Some((name, place)) = others.first() else { return Ok(()) };
+    let flat = flat_model_of(session, model)?;
+    if !states.iter().all(|state| is_fixed(flat, state)) {
+        return Ok(());
+    }
+    let shown: Vec<&str> = states.iter().map(String::as_str).collect();
+    let fault = fault!(BAD_OPTION, "`{name}` is not a state of `{}`", flat.name);
+    Err(vec![match states.is_empty() {
+        true => fault.help("the model has no states; remove the initial value"),
+        false => fault.help(format!(
+            "its initial value follows from those of the states: give {} an initial value instead",
+            listed(&shown)
+        )),
+    }
+    .at(*place)])
+}
+
+/// Whether a state begins at its start value.
+fn is_fixed(flat: &FlatModel, state: &str) -> bool {
+    let fixed = |variable: &Variable| {
+        let fixed = variable.attributes.get("fixed")?;
+        Some(match &fixed.value.kind {
+            ExpressionKind::Boolean(fixed) => *fixed,
+            ExpressionKind::Array(_) => {
+                crate::syntax::print::expression(&fixed.value).contains("true")
+            }
+            _ => false,
+        })
+    };
+    variable_of(flat, state).and_then(fixed).unwrap_or(false)
+}
+
+/// Refuses outputs and X that the model does not have.
+///
+/// # Errors
+///
+/// The first such name, at its place.
+pub(super) fn check_variables(
+    names: &[(&str, Span)],
+    model: &Translated,
+) -> Result<(), Diagnostic> {
+    let program = &model.program;
+    let missing =
+        names.iter().find(|(name, _)| *name != "time" && program.find_variable(name).is_err());
+    let Some((name, place)) = missing else { return Ok(()) };
+    let is_own = |name: &&str| !name.contains('\'');
+    let known: Vec<&str> =
+        program.variables().iter().map(|variable| &*variable.name).filter(is_own).collect();
+    let fault = fault!(BAD_OPTION, "`{}` has no variable `{name}`", program.name());
+    let element = known
+        .iter()
+        .find(|known| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('[')));
+    let fault = match (element, *name) {
+        (Some(element), _) => {
+            fault.help(format!("it is an array; write an element: `\"{element}\"`"))
+        }
+        (None, "t" | "Time" | "TIME") => fault.help("did you mean `time`?"),
+        _ => fault.help_if(suggest::did_you_mean(name, known.iter().copied())),
+    };
+    Err(fault.help(format!("its variables are {}", listed(&known))).at(*place))
+}

@@ -1,0 +1,334 @@
+//! Names with subscripts, Integers and Booleans, forms of data, and what is said of mistakes. Every
+//! number is that of the exact solution.
+
+use super::*;
+
+const CLASSES: &str = "model Cell
+  parameter Real k = 1;
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -k*x;
+end Cell;
+model Stack
+  Cell c[2](k = {1, 2});
+  parameter Real p[2] = {1, 1};
+  input Real u[2] = {0, 0};
+  output Real y = p[1]*c[1].x + p[2]*c[2].x;
+end Stack;
+model Rods
+  parameter Integer n = 2;
+  parameter Boolean heated = false;
+  parameter Real k = 1;
+  final parameter Real other = 1;
+  Real T[n](each start = 1, each fixed = true);
+  Real twice = 2*T[1];
+  output Real y = T[n];
+equation
+  der(T[1]) = -k*T[1] + (if heated then 1 else 0);
+  for i in 2:n loop
+    der(T[i]) = k*(T[i - 1] - T[i]);
+  end for;
+end Rods;
+model Valve
+  input Boolean open;
+  input Integer level;
+  parameter Real K = 1;
+  parameter Real T = 1;
+  Real y(start = 0, fixed = true);
+  output Boolean high = y > 1;
+equation
+  T*der(y) = (if open then K*level else 0) - y;
+end Valve;
+model Mixer
+  input Real u[2];
+  parameter Real K = 1;
+  Real y(start = 0, fixed = true);
+equation
+  der(y) = K*(u[1] + 2*u[2]) - y;
+end Mixer;
+model Early
+  parameter Real a = 1;
+  output Real y = 1/(a*time);
+end Early;";
+
+/// The solution of a problem of the classes; each part of a problem's file as it is written.
+fn found(parameters: &str, experiment: &str, data: &str) -> Result<Solution, String> {
+    let problem = format!(
+        "files = [\"classes.mo\"]\n{parameters}\n[[experiment]]\ndata = \"d.csv\"\n{experiment}\n\
+         [stop]\nevaluations = 1500\n"
+    );
+    let world = MemoryWorld::new()
+        .with_file("classes.mo", CLASSES)
+        .with_file("p.toml", problem)
+        .with_file("d.csv", data);
+    let mut session = Session::new(Box::new(world));
+    solve(&mut session, Path::new("p.toml"), &RunOptions::default()).map_err(|errors| {
+        let place = session.sources.text(errors[0].span()).to_owned();
+        format!("{} | {} | {place}", errors[0].message, errors[0].helps.join(" | "))
+    })
+}
+
+#[track_caller]
+fn value(solution: &Result<Solution, String>, name: &str, exact: f64) {
+    let solution = solution.as_ref().unwrap_or_else(|error| panic!("{error}"));
+    let found = solution.parameters.iter().find(|p| p.name == name).expect("the parameter").value;
+    assert!((found - exact).abs() < 1e-4 * exact.abs(), "{name} = {found}, exactly {exact}");
+}
+
+#[track_caller]
+fn says(refused: &Result<Solution, String>, words: &[&str]) {
+    let message = refused.as_ref().err().expect("a refusal");
+    let missing: Vec<&&str> = words.iter().filter(|word| !message.contains(**word)).collect();
+    assert!(missing.is_empty(), "{missing:?} not in: {message}");
+    for own in ["GAPILib", "gapi_", "'data of", "'initial value"] {
+        assert!(!message.contains(own), "{message}");
+    }
+}
+
+/// exp(-0.5 t) + exp(-3 t).
+fn two_cells(t: f64) -> f64 {
+    (-0.5 * t).exp() + (-3.0 * t).exp()
+}
+
+#[test]
+fn elements_are_fixed_tied_set_started_and_constrained() {
+    let data = table("time,y", |t| two_cells(t).to_string());
+    let outputs = "outputs = { y = \"y\" }";
+    let head = "model = \"Stack\"\n[parameters]\n\"c[1].k\" = { min = 0.01, max = 10 }\n";
+    let fixed = found(&format!("{head}\"c[2].k\" = {{ fixed = 3 }}"), outputs, &data);
+    value(&fixed, "c[1].k", 0.5);
+    let tied = found(&format!("{head}\"c[2].k\" = {{ tied = \"6*c[1].k\" }}"), outputs, &data);
+    value(&tied, "c[1].k", 0.5);
+    let set = found(head, &format!("{outputs}\nset = {{ \"c[2].k\" = 3, \"p[2]\" = 1 }}"), &data);
+    value(&set, "c[1].k", 0.5);
+    let both = format!(
+        "constraints = [\"c[1].k < c[2].k\"]\n{head}\"c[2].k\" = {{ min = 0.01, max = 10 }}"
+    );
+    let both = found(&both, outputs, &data);
+    value(&both, "c[1].k", 0.5);
+    value(&both, "c[2].k", 3.0);
+    // Of the array p one element, so that the other keeps the value of the model.
+    let started =
+        table("time,y", |t| (4.0 * (-0.5 * t).exp() + 2.0 * (-3.0 * t).exp()).to_string());
+    let parts = format!("{head}\"c[2].k\" = {{ fixed = 3 }}\n\"p[2]\" = {{ fixed = 2 }}");
+    let start = found(&parts, &format!("{outputs}\nstart = {{ \"c[1].x\" = 4 }}"), &started);
+    value(&start, "c[1].k", 0.5);
+    let initial = format!("{parts}\n\"c[1].x\" = {{ min = 1, max = 9, initial = true }}");
+    let initial = found(&initial, outputs, &started);
+    value(&initial, "c[1].k", 0.5);
+    value(&initial, "c[1].x", 4.0);
+}
+
+#[test]
+fn initial_values_of_elements_of_one_array_are_estimated() {
+    // T[1] = 2 exp(-k t), T[2]' = k (T[1] - T[2]), T[2](0) = 3.
+    let t2 = |t: f64| (3.0 + 2.0 * 0.5 * t) * (-0.5 * t).exp();
+    let data = table("time,a,b", |t| format!("{},{}", 2.0 * (-0.5 * t).exp(), t2(t)));
+    let parameters = "model = \"Rods\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+         \"T[1]\" = { min = 0.5, max = 5, initial = true }\n\
+         \"T[2]\" = { min = 0.5, max = 5, initial = true }";
+    let solution = found(parameters, "outputs = { \"T[1]\" = \"a\", \"T[2]\" = \"b\" }", &data);
+    value(&solution, "k", 0.5);
+    value(&solution, "T[1]", 2.0);
+    value(&solution, "T[2]", 3.0);
+}
+
+#[test]
+fn integers_and_booleans_are_values() {
+    let parameters = "model = \"Rods\"\n[parameters]\nk = { min = 0.1, max = 10 }\n";
+    let outputs = "outputs = { y = \"y\" }";
+    // Three pieces at 1: y = (1 + k t + (k t)^2/2) exp(-k t) with k = 2.
+    let cold = |t: f64| (1.0 + 2.0 * t + 2.0 * t * t) * (-2.0 * t).exp();
+    let data = table("time,y", |t| cold(t).to_string());
+    let set = found(parameters, &format!("{outputs}\nset = {{ n = 3 }}"), &data);
+    value(&set, "k", 2.0);
+    let fixed = found(&format!("{parameters}n = {{ fixed = 3.0 }}"), outputs, &data);
+    value(&fixed, "k", 2.0);
+    // Heated, of one piece: T' = 1 - k T.
+    let warm = table("time,y", |t| (0.5 + 0.5 * (-2.0 * t).exp()).to_string());
+    let set = found(parameters, &format!("{outputs}\nset = {{ heated = true, n = 1 }}"), &warm);
+    value(&set, "k", 2.0);
+    let wrong = found(parameters, &format!("{outputs}\nset = {{ n = 2.5 }}"), &data);
+    says(&wrong, &["`n` is Integer", "2.5"]);
+    let wrong = found(parameters, &format!("{outputs}\nset = {{ heated = 1 }}"), &data);
+    says(&wrong, &["`heated` is Boolean", "1"]);
+    let infinite = found(&format!("{parameters}n = {{ fixed = inf }}"), outputs, &data);
+    says(&infinite, &["`n` is inf", "finite"]);
+}
+
+#[test]
+fn what_cannot_be_estimated_is_refused_before_the_first_simulation() {
+    let data = table("time,y", |t| (-t).exp().to_string());
+    let outputs = "outputs = { y = \"y\" }";
+    let with = |entry: &str, outputs: &str| {
+        found(&format!("model = \"Rods\"\n[parameters]\n{entry}"), outputs, &data)
+    };
+    says(&with("n = { min = 1, max = 9 }", outputs), &["`n` is Integer", "fixed = ", "{ min = 1"]);
+    says(&with("heated = { min = 0, max = 1 }", outputs), &["`heated` is Boolean", "{ min = 0"]);
+    says(&with("other = { min = 0, max = 1 }", outputs), &["`other`", "`final`"]);
+    says(&with("kk = { min = 0, max = 1 }", outputs), &["`Rods` has no parameter `kk`", "`k`"]);
+    says(&with("y = { min = 0, max = 1 }", outputs), &["`y` is a variable", "initial = true"]);
+    let k = "k = { min = 0.1, max = 9 }";
+    let other = with(&format!("{k}\ntwice = {{ min = 1, max = 9, initial = true }}"), outputs);
+    says(&other, &["`twice` is not a state", "`T[1]`", "`T[2]`"]);
+    says(&with(k, "outputs = { yy = \"y\" }"), &["`Rods` has no variable `yy`", "`y`"]);
+    says(&with(k, "outputs = { T = \"y\" }"), &["no variable `T`", "`\"T[1]\"`"]);
+    says(
+        &with(k, "x = { variable = \"t\", column = \"time\" }\noutputs = { y = \"y\" }"),
+        &["`t`", "did you mean `time`?"],
+    );
+    says(
+        &with(&format!("{k}\nother = {{ fixed = 2 }}"), outputs),
+        &["`other` is final", "{ fixed = 2 }"],
+    );
+    says(&with(&format!("{k}\nheat = {{ fixed = 2 }}"), outputs), &["`heat`", "{ fixed = 2 }"]);
+    says(
+        &with(&format!("{k}\n\"T[7]\" = {{ fixed = 2, initial = true }}"), outputs),
+        &["`T`", "[7]"],
+    );
+    let model = found(&format!("model = \"Rods.mo\"\n[parameters]\n{k}"), outputs, &data);
+    says(&model, &["`Rods.mo`", "`Rods`"]);
+}
+
+/// y of the valve with K = 2, T = 1.5, open from 1 to 3.
+fn opened(t: f64, level: f64) -> f64 {
+    let rise = |t: f64| 2.0 * level * (1.0 - (-t / 1.5).exp());
+    match t {
+        t if t <= 1.0 => 0.0,
+        t if t <= 3.0 => rise(t - 1.0),
+        t => rise(2.0) * (-(t - 3.0) / 1.5).exp(),
+    }
+}
+
+#[test]
+fn boolean_and_integer_inputs_follow_columns_of_words_and_numbers() {
+    let parameters = "model = \"Valve\"\n[parameters]\nK = { min = 0.1, max = 10 }\n\
+                      T = { min = 0.1, max = 10 }";
+    let experiment = "outputs = { y = \"y\" }\ninputs = { open = \"open\", level = \"level\" }";
+    for words in [["FALSE", "TRUE"], ["0", "1"], ["off", "On"]] {
+        let is_open = |t: f64| words[usize::from((1.0..3.0).contains(&t))];
+        let data = table("time,open,level,y", |t| format!("{},2,{}", is_open(t), opened(t, 2.0)));
+        let solution = found(parameters, experiment, &data);
+        value(&solution, "K", 2.0);
+        value(&solution, "T", 1.5);
+    }
+    let data = table("time,open,level,y", |t| format!("{t},2,{}", opened(t, 2.0)));
+    says(&found(parameters, experiment, &data), &["`open` is Boolean", "0.25", "line 3"]);
+    let linear = experiment
+        .replace("level = \"level\"", "level = { column = \"level\", interpolation = \"linear\" }");
+    let data = table("time,open,level,y", |t| format!("1,2,{}", opened(t, 2.0)));
+    says(&found(parameters, &linear, &data), &["`level`", "interpolated linearly"]);
+    let wrong = experiment.replace("open =", "K = \"y\", open =");
+    says(&found(parameters, &wrong, &data), &["`K` is a parameter", "`open`, `level`"]);
+}
+
+#[test]
+fn measured_booleans_are_compared() {
+    let parameters =
+        "model = \"Valve\"\n[parameters]\nK = { fixed = 2 }\nT = { min = 0.1, max = 10 }";
+    let experiment = "outputs = { y = \"y\", high = \"high\" }\n\
+                      inputs = { open = \"open\", level = \"level\" }";
+    let data = table("time,open,level,y,high", |t| {
+        let y = opened(t, 2.0);
+        format!("{},2,{y},{}", u8::from((1.0..3.0).contains(&t)), y > 1.0)
+    });
+    let solution = found(parameters, experiment, &data);
+    value(&solution, "T", 1.5);
+    assert_eq!(solution.unwrap().series[1].rmse, 0.0);
+}
+
+#[test]
+fn elements_of_input_arrays_follow_columns() {
+    // y' = K (1 + 2*2) - y
+    let data = table("time,a,b,y", |t| format!("1,2,{}", 15.0 * (1.0 - (-t).exp())));
+    let parameters = "model = \"Mixer\"\n[parameters]\nK = { min = 0.1, max = 10 }";
+    let outputs = "outputs = { y = \"y\" }";
+    let both = found(
+        parameters,
+        &format!("{outputs}\ninputs = {{ \"u[1]\" = \"a\", \"u[2]\" = \"b\" }}"),
+        &data,
+    );
+    value(&both, "K", 3.0);
+    let one = found(parameters, &format!("{outputs}\ninputs = {{ \"u[1]\" = \"a\" }}"), &data);
+    says(&one, &["only some elements of `u`", "`u[2]`"]);
+}
+
+#[test]
+fn replicates_are_series_of_one_variable() {
+    let parameters = "model = \"Rods(n = 1)\"\n[parameters]\nk = { min = 0.1, max = 10 }";
+    // The mean of both columns is the exact solution, so that least squares find it.
+    let y = |t: f64| (-2.0 * t).exp();
+    let data = table("time,y1,y2", |t| {
+        let error = 0.01 * (5.0 * t).sin();
+        format!("{},{}", y(t) + error, y(t) - error)
+    });
+    for outputs in [
+        "outputs = { y = [\"y1\", \"y2\"] }",
+        "outputs = { y = { columns = [\"y1\", \"y2\"], sigma = 0.01 } }",
+    ] {
+        let solution = found(parameters, outputs, &data);
+        value(&solution, "k", 2.0);
+        let solution = solution.unwrap();
+        assert_eq!(solution.series.len(), 2);
+        assert_eq!(solution.series.iter().map(|one| one.points.len()).sum::<usize>(), 34);
+    }
+}
+
+#[test]
+fn points_without_sigma_are_omitted_and_named() {
+    let parameters = "model = \"Rods(n = 1)\"\n[parameters]\nk = { min = 0.1, max = 10 }";
+    let outputs = "outputs = { y = { column = \"y\", sigma = \"s\" } }";
+    let data = table("time,y,s", |t| {
+        let sigma = if t == 0.5 { "" } else { "0.01" };
+        let y = if t == 0.5 { 7.0 } else { (-2.0 * t).exp() };
+        format!("{y},{sigma}")
+    });
+    let solution = found(parameters, outputs, &data);
+    value(&solution, "k", 2.0);
+    let solution = solution.unwrap();
+    assert_eq!(solution.series[0].points.len(), 16);
+    let said = |finding: &Finding| {
+        finding.sentence.contains("1 point of `y` without a sigma omitted: line 4")
+    };
+    assert!(solution.findings.iter().any(said));
+    let zero = data.replace(",0.01\n1,", ",0\n1,");
+    says(&found(parameters, outputs, &zero), &["the sigma of `y` is 0", "line 5"]);
+}
+
+#[test]
+fn simulations_that_all_fail_end_the_search_with_equation_time_and_values() {
+    let data = table("time,y", |t| (1.0 / (t + 0.3)).to_string());
+    let data = data.replace("\n0,", "\n0.1,");
+    let parameters = "model = \"Early\"\n[parameters]\na = { min = 0.1, max = 10 }";
+    let refused = found(parameters, "outputs = { y = \"y\" }", &data);
+    says(&refused, &["none of the first", "t = 0", "1/(a*time)", "a = ", "start_time = 0.1"]);
+    let count = refused.err().and_then(|message| {
+        message.split("the first ").nth(1)?.split(' ').next()?.parse::<u64>().ok()
+    });
+    assert!(count.is_some_and(|count| count < 600), "{count:?}");
+}
+
+#[test]
+fn results_of_a_simulation_are_data() {
+    let mut table = crate::results::ResultTable::new((0..17).map(|k| f64::from(k) / 4.0).collect());
+    let y = table.time.iter().map(|t| (-2.0 * t).exp()).collect();
+    let series = |name: &str, values| crate::results::Series::new(name, values);
+    table.series.push(series("k", crate::results::Values::Constant(2.0)));
+    table.series.push(series("y", crate::results::Values::Trajectory(y)));
+    let alias = crate::results::Values::Alias { of: 1, negated: true };
+    table.series.push(series("minus", alias));
+    let bytes = crate::results::format("mat").and_then(|format| format.write(&table)).unwrap();
+    let data = crate::results::read_data("r.mat", &bytes).unwrap();
+    assert_eq!(data.column("k").unwrap().values, [2.0; 17]);
+    let column = |name: &str| data.column(name).unwrap().values;
+    assert!(column("y").iter().zip(column("minus")).all(|(y, minus)| *y == -minus));
+    let problem = "model = \"Rods(n = 1)\"\nfiles = [\"classes.mo\"]\n[parameters]\n\
+                   k = { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"r.mat\"\noutputs = { y = \"y\" }\n";
+    let world = MemoryWorld::new()
+        .with_file("classes.mo", CLASSES)
+        .with_file("p.toml", problem)
+        .with_file("r.mat", bytes);
+    let mut session = Session::new(Box::new(world));
+    let solution = solve(&mut session, Path::new("p.toml"), &RunOptions::default());
+    value(&solution.map_err(|errors| errors[0].message.clone()), "k", 2.0);
+}
