@@ -112,8 +112,18 @@ pub fn run_parameter(
             Ok(Some(failure(tape, registers, at)))
         }
         Err(at) => Err(failure(tape, registers, at)),
-        Ok(()) => registers.overflow.map_or(Ok(None), |at| Err(failure(tape, registers, at))),
+        Ok(()) => match registers.overflow {
+            Some(at) => Err(failure(tape, registers, at)),
+            None if registers[parameter.0 as usize].is_infinite() => Err(infinite(tape)),
+            None => Ok(None),
+        },
     }
+}
+
+/// A value beyond the largest Real that no single operation is blamed for.
+fn infinite(tape: &Tape) -> Failure {
+    let origin = tape.origin((tape.code.len() as u32).saturating_sub(1));
+    Failure::Domain { origin, operation: Operation::OTHER }
 }
 
 /// The failure of an instruction.

@@ -175,9 +175,9 @@ impl System {
         let name = &self.program.parameters().get(index).map(|p| p.name.clone());
         let is_fraction = value.fract() != 0.0 && !self.is_real(index);
         match (self.set.get_mut(index), name) {
-            (Some(_), Some(name)) if value.is_nan() => Err(fault!(
+            (Some(_), Some(name)) if !value.is_finite() => Err(fault!(
                 crate::codegen::errors::UNKNOWN_PARAMETER,
-                "the value of `{name}` is not a number"
+                "the value of `{name}` is {value}"; help: "use a finite number"
             )),
             (Some(_), Some(name)) if is_fraction => Err(fault!(
                 crate::codegen::errors::UNKNOWN_PARAMETER,

@@ -172,8 +172,8 @@ impl Session {
 fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault> {
     let parameter = &model.program.parameters()[index];
     let name = &parameter.name;
-    if value.is_nan() {
-        bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
+    if !value.is_finite() {
+        bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be {value}"; help: "use a finite number");
     }
     if value.fract() != 0.0 && parameter.base != BaseType::Real {
         bail!(BAD_PARAMETER_VALUE, "`{name}` needs a whole number, but the value is {value}");
