@@ -239,7 +239,28 @@ impl MatFile {
         let names = self.arrays.keys().chain(self.aliases.keys()).map(String::as_str);
         Err(fault!(UNKNOWN_MATRIX, "{} has no {what} `{name}`", self.file())
             .help_if(suggest::did_you_mean(name, names))
-            .help(self.inventory()))
+            .help_if(self.why_skipped(name))
+            .help(self.inventory())
+            .help_if(self.columns_of_matrices()))
+    }
+
+    /// Why the variable to which a name belongs was not read.
+    fn why_skipped(&self, name: &str) -> Option<String> {
+        let is_part = |own: &str| {
+            name.strip_prefix(own).is_some_and(|rest| rest.starts_with(['.', '(', '[', '{']))
+        };
+        let (_, fault) = self.failed.iter().find(|(own, _)| is_part(own))?;
+        Some(fault.message.clone())
+    }
+
+    /// How columns of matrices are named, if there is a matrix that needs it.
+    fn columns_of_matrices(&self) -> Option<String> {
+        let is_wide = |matrix: &Matrix| matrix.kind != Kind::Char && matrix.as_vector().is_none();
+        let (name, matrix) = self.arrays.iter().find(|(_, matrix)| is_wide(matrix))?;
+        let Matrix { rows, columns, .. } = matrix;
+        Some(format!(
+            "`{name}` has {rows} rows and {columns} columns: write `{name}[:,1]` for a column"
+        ))
     }
 
     /// Measured values: a matrix with one row or one column, or a row or column of a larger one, as in

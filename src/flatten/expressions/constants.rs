@@ -135,10 +135,17 @@ impl Instantiation<'_> {
                 .at(span));
             }
         };
-        let mut whole = self.bound_constant(&value, &bound, &base, &dims)?;
+        let named = |error: Diagnostic| {
+            let name = format!("the value of `{name}` ");
+            error.with_words(|text| match text.strip_prefix("the value ") {
+                Some(rest) => format!("{name}{rest}"),
+                None => text.to_owned(),
+            })
+        };
+        let mut whole = self.bound_constant(&value, &bound, &base, &dims).map_err(named)?;
         for (indices, bound) in own {
             let (Some(value), Value::Array(array)) = (&bound.value, &mut whole) else { continue };
-            let element = self.bound_constant(value, &bound, &base, &[])?;
+            let element = self.bound_constant(value, &bound, &base, &[]).map_err(named)?;
             let offset =
                 indices.iter().zip(&dims).fold(0, |at, (index, size)| at * size + index - 1);
             array.elements.set(offset, element).map_err(|fault| fault.at(value.span))?;

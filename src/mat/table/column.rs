@@ -103,8 +103,7 @@ impl<'r> Cells<'r, '_> {
             .iter()
             .map(|word| format!("`{word}` as {}", u8::from(truth(word) == Some(true))))
             .collect();
-        let note = format!("in `{}` {} is read", self.name, meanings.join(" and "));
-        let note = if words.len() > 1 { note.replace(" is read", " are read") } else { note };
+        let note = format!("`{}` contains truth values: {}", self.name, meanings.join(" and "));
         Ok(Parsed { content: Content::Numbers(values), notes: vec![note] })
     }
 

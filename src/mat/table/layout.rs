@@ -140,8 +140,7 @@ pub fn layout<'a>(
         });
     }
     let mut rows = records.split_off(data);
-    let has_units = rows.first().is_some_and(|first| is_units_row(first, &head, rows.get(1)));
-    let units = has_units.then(|| rows.remove(0));
+    let units = units_row(&mut rows, &head, places, &mut warnings);
     let rows = checked(rows, &head, units.as_ref(), places, &mut warnings)?;
     if rows.is_empty() {
         let place = places.row(head.line);
@@ -185,6 +184,7 @@ fn head_above(records: &[Record<'_>], block: &Range<usize>) -> Option<usize> {
     };
     let above = || (0..block.start).rev().filter(|&at| is_text_only(&records[at].cells));
     let nearest = above().find(|&at| names_all(&records[at])).or_else(|| above().next())?;
+    let nearest = fuller_head(records, nearest, block.start).unwrap_or(nearest);
     // The same head stands before an earlier part where a file was continued.
     let nearest =
         records.iter().position(|record| record.cells == records[nearest].cells).unwrap_or(nearest);
@@ -193,6 +193,24 @@ fn head_above(records: &[Record<'_>], block: &Range<usize>) -> Option<usize> {
     let adjacent = names.line + 1 == units.line && is_text_only(&names.cells) && names_all(names);
     let is_units = adjacent && is_units_row(units, names, Some(first));
     Some(if is_units { before } else { nearest })
+}
+
+/// Above a row of names that leaves columns without one, such as channels below signals, a row directly
+/// before it that names more, and the first column as well.
+fn fuller_head(records: &[Record<'_>], nearest: usize, data: usize) -> Option<usize> {
+    /// Rows of a head at most.
+    const MOST: usize = 4;
+    let named = |at: usize| records[at].cells.iter().filter(|cell| !cell.is_empty()).count();
+    let has_first = |at: usize| records[at].cells.first().is_some_and(|cell| !cell.is_empty());
+    if has_first(nearest) || nearest + 1 != data {
+        return None;
+    }
+    let head = (nearest.saturating_sub(MOST - 1)..nearest).rev();
+    let mut together = head.take_while(|&at| {
+        records[at].line + 1 == records[at + 1].line && is_text_only(&records[at].cells)
+    });
+    let width = |at: usize| records[at].width() >= records[nearest].width();
+    together.find(|&at| has_first(at) && named(at) > named(nearest) && width(at))
 }
 
 /// A head with numbers among its names, such as `time,300,350`: the first row, if it has a text where
@@ -236,6 +254,24 @@ fn refuse_other_table(skipped: &[Record<'_>], places: Places) -> Result<(), Faul
          {}", places.row(skipped[named].line);
         help: "write each table to a separate file"
     )
+}
+
+/// Takes the row of units from the rows below the head, and what else stands above the data.
+fn units_row<'a>(
+    rows: &mut Vec<Record<'a>>,
+    head: &Record<'a>,
+    places: Places,
+    warnings: &mut Vec<String>,
+) -> Option<Record<'a>> {
+    let first_data = rows.iter().position(has_value);
+    let below = first_data.and_then(|at| rows.get(at)).cloned();
+    let has_units = rows.first().is_some_and(|first| is_units_row(first, head, below.as_ref()));
+    let units = has_units.then(|| rows.remove(0));
+    let between = rows.iter().take_while(|row| is_text_only(&row.cells)).count();
+    for row in rows.drain(..between) {
+        warnings.push(format!("{} between header and data is ignored", places.row(row.line)));
+    }
+    units
 }
 
 /// Whether the row below the head holds units: at least half of its cells are known ones, and none

@@ -254,4 +254,35 @@ mod tests {
         assert_eq!(cell_name(7, 1), "B7");
         assert_eq!([0, 25, 26, 701, 702].map(letters), ["A", "Z", "AA", "ZZ", "AAA"]);
     }
+
+    #[test]
+    fn the_fullest_row_above_the_data_names_the_columns() {
+        let text = "Protocol,,,2024-05-01\n\nZeit,Signal,Remark,Valve\ns,mV,,\n,Channel 1,,Digital\n\
+                    0,1.5,ok,TRUE\n1,2.5,,FALSE\n";
+        let file = read_text(text.as_bytes(), false).unwrap();
+        let column = |name: &str| file.column(name).unwrap();
+        assert_eq!(column("Zeit").values, [0.0, 1.0]);
+        assert_eq!(column("Zeit").about.unit.as_deref(), Some("s"));
+        assert_eq!(column("Signal").values, [1.5, 2.5]);
+        assert_eq!(column("Signal").about.unit.as_deref(), Some("mV"));
+        assert_eq!(column("Valve").values, [1.0, 0.0]);
+        assert!(file.warnings.iter().any(|w| w.contains("line 5 between header and data")));
+        // An index without a name above it is not a remark.
+        let file = read_text(b",time,y\n0,0.0,1\n1,0.5,2\n", false).unwrap();
+        assert_eq!(file.column("time").unwrap().values, [0.0, 0.5]);
+    }
+
+    #[test]
+    fn words_of_switches_are_one_and_zero() {
+        let read = |text: &str| read_text(text.as_bytes(), false).unwrap();
+        let file = read("t,a,b\n0,True,off\n1,,1\n2,False,ON\n");
+        let a = file.column("a").unwrap();
+        assert!(a.values[0] == 1.0 && a.values[1].is_nan() && a.values[2] == 0.0);
+        assert_eq!(a.about.notes, ["`a` contains truth values: `True` as 1 and `False` as 0"]);
+        assert_eq!(file.column("b").unwrap().values, [0.0, 1.0, 1.0]);
+        let wrong = read("t,a\n0,TRUE\n1,maybe\n").column("a").unwrap_err();
+        assert!(wrong.message.contains("line 3") && wrong.message.contains("truth value"));
+        let late = read("t,a\n0,1\n1,TRUE\n").column("a").unwrap_err();
+        assert!(late.helps[0].contains("1 for true and 0 for false"), "{:?}", late.helps);
+    }
 }

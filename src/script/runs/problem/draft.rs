@@ -6,7 +6,7 @@ use crate::bail;
 use crate::codegen::ParameterInfo;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
-use crate::mat::{self, MatFile};
+use crate::mat::{self, Kind, MatFile, Matrix};
 use crate::registry::BAD_OPTION;
 use crate::results;
 use crate::script::Session;
@@ -90,18 +90,34 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
 /// The columns of numbers by their shortest names.
 fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
     let mut found = Vec::new();
-    for (name, matrix) in &table.arrays {
-        if matrix.as_vector().is_none_or(<[f64]>::is_empty) {
-            continue;
+    for (name, matrix) in table.arrays.iter().filter(|(_, matrix)| matrix.kind != Kind::Char) {
+        for name in parts(name, matrix) {
+            let column = table.column(&name)?;
+            let name = table.short_name(&name).to_owned();
+            found.push(DataColumn { name, unit: column.about.unit, values: column.values });
         }
-        let column = table.column(name)?;
-        let name = table.short_name(name).to_owned();
-        found.push(DataColumn { name, unit: column.about.unit, values: column.values });
     }
     if found.len() < 2 {
         bail!(BAD_OPTION, "`{}` has fewer than two columns of numbers", table.file_name);
     }
     Ok(found)
+}
+
+/// The names of what a matrix holds: itself, or its columns, or its rows where these are longer.
+fn parts(name: &str, matrix: &Matrix) -> Vec<String> {
+    /// More columns than this are not signals.
+    const MOST: usize = 100;
+    match matrix.as_vector() {
+        Some([]) => Vec::new(),
+        Some(_) => vec![name.to_owned()],
+        None if matrix.columns <= matrix.rows.min(MOST) => {
+            (1..=matrix.columns).map(|at| format!("{name}[:,{at}]")).collect()
+        }
+        None if matrix.rows <= MOST => {
+            (1..=matrix.rows).map(|at| format!("{name}[{at},:]")).collect()
+        }
+        None => Vec::new(),
+    }
 }
 
 fn roles<'c>(

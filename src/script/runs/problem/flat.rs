@@ -9,10 +9,19 @@ pub(super) fn variable_of<'f>(flat: &'f FlatModel, name: &str) -> Option<&'f Var
     flat.variables.get(name).or_else(|| flat.variables.get(array()?.0))
 }
 
+/// An attribute of a variable or of an element of it.
+pub(super) fn attribute<'f>(
+    flat: &'f FlatModel,
+    name: &str,
+    which: &str,
+) -> Option<&'f Expression> {
+    let attribute = variable_of(flat, name)?.attributes.get(which)?;
+    Some(element(&attribute.value, name))
+}
+
 /// The unit of a variable; empty where it has none.
 pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
-    let unit = variable_of(flat, name).and_then(|variable| variable.attributes.get("unit"));
-    match unit.map(|unit| &element(&unit.value, name).kind) {
+    match attribute(flat, name, "unit").map(|unit| &unit.kind) {
         Some(ExpressionKind::String(unit)) => unit.to_string(),
         _ => String::new(),
     }

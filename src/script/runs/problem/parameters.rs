@@ -5,10 +5,10 @@ use super::data::Notes;
 use super::dynamics;
 use super::enclosing_class::{self, EnclosingClass, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role};
-use super::flat::variable_of;
+use super::flat::attribute;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
-use crate::flatten::{BaseType, FlatModel, Variability, Variable};
+use crate::flatten::{BaseType, FlatModel, Variability};
 use crate::identify::problem::Free;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
@@ -283,17 +283,8 @@ pub(super) fn check_initial(
 
 /// Whether a state begins at its start value.
 fn is_fixed(flat: &FlatModel, state: &str) -> bool {
-    let fixed = |variable: &Variable| {
-        let fixed = variable.attributes.get("fixed")?;
-        Some(match &fixed.value.kind {
-            ExpressionKind::Boolean(fixed) => *fixed,
-            ExpressionKind::Array(_) => {
-                crate::syntax::print::expression(&fixed.value).contains("true")
-            }
-            _ => false,
-        })
-    };
-    variable_of(flat, state).and_then(fixed).unwrap_or(false)
+    let fixed = attribute(flat, state, "fixed").map(|fixed| &fixed.kind);
+    matches!(fixed, Some(ExpressionKind::Boolean(true)))
 }
 
 /// Refuses outputs and X that the model does not have.
@@ -310,8 +301,9 @@ pub(super) fn check_variables(
         names.iter().find(|(name, _)| *name != "time" && program.find_variable(name).is_err());
     let Some((name, place)) = missing else { return Ok(()) };
     let is_own = |name: &&str| !name.contains('\'');
-    let known: Vec<&str> =
-        program.variables().iter().map(|variable| &*variable.name).filter(is_own).collect();
+    let variables = program.variables().iter().filter(|variable| !variable.is_known());
+    let measurable = |name: &&str| is_own(name) && !name.starts_with("der(");
+    let known: Vec<&str> = variables.map(|one| &*one.name).filter(measurable).collect();
     let fault = fault!(BAD_OPTION, "`{}` has no variable `{name}`", program.name());
     let element = known
         .iter()

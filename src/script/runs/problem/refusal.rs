@@ -66,11 +66,13 @@ impl<'t> Place<'t> {
                     .help("write `/` between folders, or single quotes, in which backslashes are plain: `'C:\\Users\\me\\data.csv'`"),
             );
         }
-        if is_about(&["invalid boolean", "expected `true`", "expected `false`"]) {
-            return Some(
-                fault!(BAD_OPTION, "this is not a value")
-                    .help("write `true` or `false` in lower case, and text in double quotes"),
-            );
+        if is_about(&["invalid boolean", "invalid float, expected `", "expected `true`"]) {
+            return Some(fault!(BAD_OPTION, "this is not a value").help(
+                "write a number, `true` or `false` in lower case, or text in double quotes",
+            ));
+        }
+        if let Some(fault) = self.punctuation(message) {
+            return Some(fault);
         }
         if !is_about(&["expected `=`", "extra comma", "missing comma", "expected newline"]) {
             return None;
@@ -81,13 +83,50 @@ impl<'t> Place<'t> {
                     .help(format!("write `{number}`")),
             );
         }
-        if line.trim_start().starts_with("//") {
-            return Some(fault!(BAD_OPTION, "`//` does not begin a comment").help("write `#`"));
+        let comment =
+            ["//", "%", "--", "/*"].into_iter().find(|mark| line.trim_start().starts_with(mark));
+        if let Some(mark) = comment {
+            return Some(fault!(BAD_OPTION, "`{mark}` does not begin a comment").help("write `#`"));
+        }
+        if after.starts_with('[') && !before.trim().is_empty() {
+            let end = after.find(['=', ' ']).unwrap_or(after.len());
+            let name = format!("{}{}", before.trim_start(), &after[..end]);
+            return Some(
+                fault!(BAD_OPTION, "a name with brackets is written in quotation marks")
+                    .help(format!("write `\"{name}\"`")),
+            );
         }
         let assignment = [":=", ":"].into_iter().find(|sign| {
             after.trim_start().starts_with(sign) || before.trim_end().ends_with(sign)
         })?;
         Some(fault!(BAD_OPTION, "`{assignment}` does not give an entry a value").help("write `=`"))
+    }
+
+    /// Commas, points and quotation marks.
+    fn punctuation(&self, message: &str) -> Option<Fault> {
+        let (_, after) = self.line();
+        let (words, help) = match message {
+            _ if message.contains("expected newline") && after.starts_with(',') => {
+                ("an entry ends with its line", "remove the comma")
+            }
+            _ if message.contains("extra assignment") => {
+                ("entries in braces are separated by commas", "write `,` between them")
+            }
+            _ if message.contains("expected digits") => (
+                "a number has digits on both sides of the point",
+                "write `0.5` for `.5` and `5.0` for `5.`",
+            ),
+            _ if message.starts_with("duplicate key") => {
+                ("this is written twice", "keep one of them")
+            }
+            _ if message.contains("literal string, expected `'`")
+                || message.contains("basic string, expected `\"`") =>
+            {
+                ("a quotation mark is missing at the end", "close the text on its line")
+            }
+            _ => return None,
+        };
+        Some(fault!(BAD_OPTION, "{words}").help(help))
     }
 
     /// An entry that there is not.
@@ -256,6 +295,10 @@ mod tests {
             ("model := \"Oven\"\n", ["`:=`", "write `=`"]),
             ("searches = \"5\"\n", ["whole number", "5"]),
             ("searches = True\n", ["not a value", "`true` or `false`"]),
+            ("searches = null\n", ["not a value", "write a number"]),
+            ("searches = 5,\n", ["ends with its line", "remove the comma"]),
+            ("% comment\n", ["`%` does not begin a comment", "write `#`"]),
+            ("searches = 5\nsearches = 6\n", ["written twice", "keep one"]),
             ("sigma = 1\n", ["no entry `sigma`", "`files`"]),
         ];
         for (line, words) in all {
@@ -271,6 +314,10 @@ mod tests {
             ("k = 2", ["integer `2`", "fixed = 2"]),
             ("k = { min = 0,1, max = 20 }", ["decimal point", "`0.1`"]),
             ("k = { min : 0.1, max = 20 }", ["`:`", "write `=`"]),
+            ("k = { min = 1 max = 2 }", ["separated by commas", "write `,`"]),
+            ("k = { min = 1; max = 2 }", ["separated by commas", "write `,`"]),
+            ("k = { min = .1, max = 2 }", ["both sides of the point", "`0.5`"]),
+            ("c[1].k = { fixed = 2 }", ["quotation marks", "`\"c[1].k\"`"]),
             ("k = { min = \"0.1\", max = 20 }", ["expected a number", "without quotes"]),
             (
                 "k = { min = 1, max = 2, prior = { mean = 2, sigma = 1 } }",

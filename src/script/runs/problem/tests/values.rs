@@ -57,7 +57,11 @@ fn found(parameters: &str, experiment: &str, data: &str) -> Result<Solution, Str
         "files = [\"classes.mo\"]\n{parameters}\n[[experiment]]\ndata = \"d.csv\"\n{experiment}\n\
          [stop]\nevaluations = 1500\n"
     );
-    let world = MemoryWorld::new()
+    let world = match experiment.contains("inputs") {
+        true => shipped(MemoryWorld::new(), Path::new("")),
+        false => MemoryWorld::new(),
+    };
+    let world = world
         .with_file("classes.mo", CLASSES)
         .with_file("p.toml", problem)
         .with_file("d.csv", data);
@@ -66,6 +70,16 @@ fn found(parameters: &str, experiment: &str, data: &str) -> Result<Solution, Str
         let place = session.sources.text(errors[0].span()).to_owned();
         format!("{} | {} | {place}", errors[0].message, errors[0].helps.join(" | "))
     })
+}
+
+/// A world with the libraries of the program, which have the tables that inputs follow.
+fn shipped(world: MemoryWorld, path: &Path) -> MemoryWorld {
+    let inside = Path::new(crate::models::FOLDER).join(path);
+    if let Some(bytes) = crate::models::read(&inside) {
+        return world.with_file(path, bytes);
+    }
+    let names = crate::models::list(&inside).unwrap_or_default();
+    names.iter().fold(world, |world, name| shipped(world, &path.join(name)))
 }
 
 #[track_caller]
@@ -149,7 +163,7 @@ fn integers_and_booleans_are_values() {
     let set = found(parameters, &format!("{outputs}\nset = {{ heated = true, n = 1 }}"), &warm);
     value(&set, "k", 2.0);
     let wrong = found(parameters, &format!("{outputs}\nset = {{ n = 2.5 }}"), &data);
-    says(&wrong, &["`n` is Integer", "2.5"]);
+    says(&wrong, &["the value of `n` is Real, expected Integer", "2.5"]);
     let wrong = found(parameters, &format!("{outputs}\nset = {{ heated = 1 }}"), &data);
     says(&wrong, &["`heated` is Boolean", "1"]);
     let infinite = found(&format!("{parameters}n = {{ fixed = inf }}"), outputs, &data);
@@ -331,4 +345,67 @@ fn results_of_a_simulation_are_data() {
     let mut session = Session::new(Box::new(world));
     let solution = solve(&mut session, Path::new("p.toml"), &RunOptions::default());
     value(&solution.map_err(|errors| errors[0].message.clone()), "k", 2.0);
+}
+
+#[test]
+fn drafts_name_columns_of_matrices_and_leave_out_what_is_computed() {
+    let rows: Vec<Vec<f64>> = (0..5).map(|k| vec![f64::from(k), 2.0 * f64::from(k), 1.0]).collect();
+    let bytes = crate::mat::write_v5([("meas", &crate::mat::Matrix::from_rows(&rows))]).unwrap();
+    let model = "model Oven
+  parameter Real G = 2;
+  parameter Real C = 500;
+  parameter Real tau = C/G;
+  Real T[3](each start = 20, each fixed = true);
+  output Real Tm = T[3];
+equation
+  for i in 1:3 loop
+    C*der(T[i]) = -G*T[i];
+  end for;
+end Oven;";
+    let world = MemoryWorld::new()
+        .with_file("meas.mat", bytes)
+        .with_file("T.csv", "time,T,Tm\n0,20,20\n1,19,19\n")
+        .with_file("Oven.mo", model);
+    let mut session = Session::new(Box::new(world));
+    let mut drafted = |data: &str| {
+        let options = DraftOptions {
+            data: data.to_owned(),
+            models: "Oven.mo".to_owned(),
+            ..DraftOptions::default()
+        };
+        draft(&mut session, &options).unwrap_or_else(|errors| panic!("{}", errors[0].message))
+    };
+    let of_matrix = drafted("meas.mat").text;
+    assert!(of_matrix.contains("column = \"meas[:,1]\""), "{of_matrix}");
+    let of_table = drafted("T.csv");
+    assert!(
+        of_table.text.contains("# tau = ")
+            && of_table.text.contains("the model computes it: C / G"),
+        "{}",
+        of_table.text
+    );
+    assert!(of_table.text.contains("\noutputs.Tm") && !of_table.text.contains("\noutputs.T "));
+    assert!(of_table.incomplete.is_none(), "{:?}", of_table.incomplete);
+}
+
+#[test]
+fn the_calibrated_model_has_what_the_file_fixes_and_ties() {
+    let data = table("time,y", |t| two_cells(t).to_string());
+    let parameters = "model = \"Stack\"\n[parameters]\n\"c[1].k\" = { min = 0.01, max = 10 }\n\
+                      \"c[2].k\" = { tied = \"6*c[1].k\" }\n\"p[1]\" = { fixed = 1 }";
+    let solution = found(parameters, "outputs = { y = \"y\" }", &data).unwrap();
+    let text = solution.modelica();
+    let k = solution.parameters[0].value;
+    assert!(text.contains(&format!("c(k = {{{k}, 6*c[1].k}})")), "{text}");
+    assert!(text.contains("p = {1, 1}"), "{text}");
+    let rods = "model = \"Rods\"\n[parameters]\nk = { min = 0.1, max = 10 }\nn = { fixed = 2 }\n\
+                \"T[1]\" = { fixed = 2, initial = true }\n\"T[2]\" = { fixed = 3, initial = true }";
+    let data = table("time,y", |t| ((3.0 + t) * (-0.5 * t).exp()).to_string());
+    let solution = found(rods, "outputs = { y = \"y\" }", &data);
+    value(&solution, "k", 0.5);
+    let text = solution.unwrap().modelica();
+    assert!(
+        text.contains("T(start = {2, 3}, each fixed = true)") && text.contains("n = 2"),
+        "{text}"
+    );
 }
