@@ -168,11 +168,6 @@ impl Variable {
             && !self.structural
     }
 
-    /// Whether its binding depends on other variables.
-    pub fn is_computed(&self) -> bool {
-        self.binding.as_ref().is_some_and(super::functions::defaults::has_references)
-    }
-
     /// Number of scalars.
     pub fn len(&self) -> usize {
         self.dims.iter().product()

@@ -51,7 +51,7 @@ fn given<'e>(function: &Function, arguments: &'e Arguments, name: Ident) -> Opti
 
 /// Whether a default needs other inputs, or variables of the model from which a modifier of the
 /// function took it; constants are values by now.
-pub fn has_references(default: &Expression) -> bool {
+fn has_references(default: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn expression(&mut self, e: &Expression) {

@@ -2,7 +2,8 @@
 
 use crate::codegen::Program;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
-use crate::syntax::ast::CausalityPrefix;
+use crate::syntax::ast::{CausalityPrefix, ComponentReference, Expression, ExpressionKind};
+use crate::syntax::visit::{Visit, walk_expression};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
@@ -98,10 +99,34 @@ impl Declaration {
             causality: variable.causality,
             is_final: variable.is_final,
             is_evaluated: variable.structural || variable.evaluate,
-            is_computed: variable.is_computed(),
+            is_computed: variable.binding.as_ref().is_some_and(has_references),
             top_level: variable.top_level,
             says_fixed: variable.attributes.contains_key("fixed"),
             final_start: variable.attributes.get("start").map(|start| start.is_final),
         }
     }
+}
+
+/// Whether a binding depends on other variables.
+fn has_references(binding: &Expression) -> bool {
+    struct References(bool);
+    impl Visit for References {
+        fn reference(&mut self, _: &ComponentReference) {
+            self.0 = true;
+        }
+
+        fn expression(&mut self, e: &Expression) {
+            match &e.kind {
+                // The name of a function is a reference as well.
+                ExpressionKind::Call { arguments, .. } => {
+                    arguments.positional.iter().for_each(|argument| self.expression(argument));
+                    arguments.named.iter().for_each(|one| self.expression(&one.value));
+                }
+                _ => walk_expression(self, e),
+            }
+        }
+    }
+    let mut search = References(false);
+    search.expression(binding);
+    search.0
 }

@@ -227,12 +227,19 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
             continue;
         }
         count += 1;
-        let computed = super::flat::computed(flat, &parameter.name);
+        let computed = computed(model, flat, &parameter.name);
         text.push_str(&parameter_line(parameter, computed));
     }
     if count == 0 {
         text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
     }
+}
+
+/// What the model computes a parameter from; `None` where it depends on no other one.
+fn computed(model: &Translated, flat: &FlatModel, name: &str) -> Option<String> {
+    let declared = model.declarations.get(name).filter(|declared| declared.is_computed);
+    let binding = declared.and_then(|_| flat.variables.get(name)?.binding.as_ref());
+    binding.map(crate::syntax::print::expression)
 }
 
 /// The line of a parameter, with what is known of it; a comment where there is nothing to estimate.

@@ -27,12 +27,6 @@ pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
     }
 }
 
-/// What a model computes a parameter from; `None` where it depends on no other one.
-pub(super) fn computed(flat: &FlatModel, name: &str) -> Option<String> {
-    let variable = flat.variables.get(name).filter(|variable| variable.is_computed())?;
-    variable.binding.as_ref().map(crate::syntax::print::expression)
-}
-
 /// The value of an attribute for an element of an array, whose name ends with its subscript.
 fn element<'e>(value: &'e Expression, name: &str) -> &'e Expression {
     let subscript = || name.strip_suffix(']')?.rsplit_once('[')?.1.parse::<usize>().ok();
