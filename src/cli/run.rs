@@ -61,7 +61,7 @@ pub(super) struct RunArgs {
     /// Compute profile likelihoods from there: intervals that are also valid for strongly nonlinear models
     #[arg(long, conflicts_with = "no_probe")]
     pub profile: bool,
-    /// Show only errors
+    /// Show only errors and what the script prints
     #[arg(long, short)]
     pub quiet: bool,
     /// Show statements and results in the format of the dialect's tool

@@ -124,7 +124,13 @@ impl Screen for Terminal {
     }
 
     fn print(&mut self, text: &str) {
-        if self.quiet || self.silent {
+        if !self.quiet {
+            self.print_of_script(text);
+        }
+    }
+
+    fn print_of_script(&mut self, text: &str) {
+        if self.silent {
             return;
         }
         if self.live.is_shown() && std::io::stdout().is_terminal() {

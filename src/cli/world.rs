@@ -342,6 +342,10 @@ impl Screen for SystemWorld {
         self.screen.print(text);
     }
 
+    fn print_of_script(&mut self, text: &str) {
+        self.screen.print_of_script(text);
+    }
+
     fn eprint(&mut self, text: &str) {
         self.screen.eprint(text);
     }

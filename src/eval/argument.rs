@@ -83,10 +83,14 @@ impl Evaluator<'_> {
         })
     }
 
-    /// The name that a variable of a script holds.
+    /// The name that a variable of a script holds; of an iterator, also as an element of a list of
+    /// names, which are texts.
     fn type_name_in(&self, variable: &Name) -> Option<Name> {
-        match self.scope.get(variable.is_simple().then(|| variable.first())??) {
+        let ident = variable.is_simple().then(|| variable.first())??;
+        let is_iterator = self.scope.iterators.iter().any(|(iterator, _)| *iterator == ident);
+        match self.scope.get(ident) {
             Some(Value::TypeName(held)) => Some(held.clone()),
+            Some(Value::String(text)) if is_iterator => Some(Name::parse(text)),
             _ => None,
         }
     }

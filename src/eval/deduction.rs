@@ -90,6 +90,10 @@ impl Search {
                 self.expressions(arguments.named.iter().map(|named| &named.value));
                 self.expressions(arguments.iterators.iter().filter_map(|i| i.range.as_ref()));
             }
+            ExpressionKind::Guarded { condition, values, .. } => {
+                self.expression(condition);
+                self.expression(values);
+            }
             ExpressionKind::PartialApplication { named, .. } => {
                 self.expressions(named.iter().map(|named| &named.value));
             }

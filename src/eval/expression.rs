@@ -69,6 +69,9 @@ impl Evaluator<'_> {
             ExpressionKind::Range { start, step, stop } => {
                 self.range(start, step.as_deref(), stop, span)?.into_value().at(span)
             }
+            ExpressionKind::Guarded { name, condition, values } => {
+                self.guarded(*name, condition, values)?.into_value().at(span)
+            }
             ExpressionKind::Array(elements) => {
                 let values = self.expressions(elements)?;
                 construct::array(values).at(span)
@@ -102,6 +105,15 @@ impl Evaluator<'_> {
 
     /// A condition: a scalar Boolean.
     pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
+        self.begin_use(expression);
+        let value = self.boolean(expression)?;
+        if self.scope.is_script() {
+            self.host.tested();
+        }
+        Ok(value)
+    }
+
+    fn boolean(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
         if let Some(Scalar::Boolean(value)) = self.scalar(expression) {
             return Ok(value);
         }

@@ -88,6 +88,19 @@ pub trait Host {
         Ok(())
     }
 
+    /// Called before a script evaluates what it assigns to a variable or tests in a condition.
+    fn begin_use(&mut self, value: &ast::Expression) {
+        let _ = value;
+    }
+
+    /// Called when a script assigns a value to a variable or to a part of one.
+    fn keep_status(&mut self, target: &ast::ComponentReference, value: &Value) {
+        let _ = (target, value);
+    }
+
+    /// Called when a script has evaluated a condition.
+    fn tested(&mut self) {}
+
     /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.
     fn warn(&mut self, warning: Diagnostic) {
         let _ = warning;

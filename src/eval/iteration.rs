@@ -7,7 +7,8 @@ use super::{Evaluator, deduction};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::functions::{self, Meaning};
-use crate::source::Span;
+use crate::name::Ident;
+use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Expression, ExpressionKind, ForIndex};
 use crate::value::construct::{self, Range};
 use crate::value::errors::DOMAIN_ERROR;
@@ -31,12 +32,37 @@ impl Evaluator<'_> {
                 {
                     Ok(Range::Values(vec![Value::Boolean(false), Value::Boolean(true)]))
                 }
+                ExpressionKind::Guarded { name, condition, values } => {
+                    self.guarded(*name, condition, values)
+                }
                 _ => {
                     let value = self.expression(expression)?;
                     Range::over(value).at(expression.span)
                 }
             },
         }
+    }
+
+    /// The values for which a condition holds.
+    pub(super) fn guarded(
+        &mut self,
+        name: Ident,
+        condition: &Expression,
+        values: &Expression,
+    ) -> Result<Range, Diagnostic> {
+        let all = ForIndex {
+            name: Spanned { node: name, span: condition.span },
+            range: Some(values.clone()),
+        };
+        let range = self.iterated(&all, Body::Expression(condition))?;
+        let mut kept = Vec::new();
+        self.with_each(&all, &range, |evaluator| {
+            if evaluator.condition(condition)? {
+                kept.extend(evaluator.scope.get(name).cloned());
+            }
+            Ok(())
+        })?;
+        Ok(Range::Values(kept))
     }
 
     /// The range `1:size(x, d)` of the array `x` that the loop variable is a subscript of

@@ -9,6 +9,7 @@ use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
+use crate::value::Value;
 
 impl Evaluator<'_> {
     /// Executes statements in order, until one leads elsewhere.
@@ -25,10 +26,12 @@ impl Evaluator<'_> {
     fn statement(&mut self, statement: &Statement) -> Result<Flow, Diagnostic> {
         match &statement.kind {
             StatementKind::Assign { target, value } => {
+                self.begin_use(value);
                 let new = match self.scalar(value) {
                     Some(scalar) => scalar.into(),
                     None => self.expression(value)?,
                 };
+                self.keep_status(target, &new);
                 self.assign(target, new, statement.span)?;
             }
             StatementKind::MultiAssign { targets, value } => self.assign_outputs(targets, value)?,
@@ -70,6 +73,7 @@ impl Evaluator<'_> {
             let message = "only the outputs of a function call can be assigned to a list";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
         }
+        self.begin_use(call);
         let outputs = self.outputs(call)?;
         if outputs.len() < targets.len() {
             let fault = fault!(
@@ -82,10 +86,25 @@ impl Evaluator<'_> {
         }
         for (target, value) in targets.iter().zip(outputs) {
             if let Some(target) = target {
+                self.keep_status(target, &value);
                 self.assign(target, value, target.span)?;
             }
         }
         Ok(())
+    }
+
+    /// A script is going to assign or to test this value.
+    pub(super) fn begin_use(&mut self, value: &Expression) {
+        if self.scope.is_script() {
+            self.host.begin_use(value);
+        }
+    }
+
+    /// A script assigns this value, which may say whether a command succeeded.
+    fn keep_status(&mut self, target: &ComponentReference, value: &Value) {
+        if self.scope.is_script() {
+            self.host.keep_status(target, value);
+        }
     }
 
     fn if_statement(

@@ -60,6 +60,13 @@ fn number(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression) -> Option<Pa
     }
 }
 
+/// What is printed ends its line once, whether or not the text does.
+fn end_line(parts: &mut [Part]) {
+    if let Some(Part::Text(last)) = parts.last_mut() {
+        *last = last.trim_end_matches('\n').into();
+    }
+}
+
 impl Builder<'_> {
     /// A call of a function that prints to the screen; `None` for other calls. It is a message that
     /// is told wherever it is carried out.
@@ -81,7 +88,8 @@ impl Builder<'_> {
         {
             return Ok(None);
         }
-        let parts = message_parts(&mut lowering, nth(arguments, 0, "string"));
+        let mut parts = message_parts(&mut lowering, nth(arguments, 0, "string"));
+        end_line(&mut parts);
         let condition = self.dae.pool.constant(0.0);
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Message, call.span));
         Ok(Some(()))

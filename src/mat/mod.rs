@@ -35,7 +35,7 @@ pub use matrix::{About, Column, Kind, MatFile, Matrix, Version};
 pub use number::Storage;
 pub use table::read_csv;
 pub use v5::MAX_INFLATED;
-pub use write::{append_v4, write_v4, write_v5};
+pub use write::{append_v4, write_named, write_v4, write_v5};
 
 #[cfg(feature = "xlsx")]
 use spreadsheet::read as read_spreadsheet;
@@ -116,10 +116,16 @@ pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
 const TABLES: [&str; 12] =
     ["csv", "tsv", "txt", "dat", "dta", "mpt", "asc", "prn", "tab", "log", "xy", "out"];
 
+/// What stands behind the last point of a file's name, in lower case.
+fn ending(file_name: &str) -> String {
+    let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
+    name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase()
+}
+
 /// Whether a file is text in columns.
 fn is_table(file_name: &str, bytes: &[u8]) -> bool {
-    let lower = file_name.to_lowercase();
-    let ending = lower.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let ending = ending(file_name);
+    let ending = ending.as_str();
     let binary = signatures::is_zip(bytes) || signatures::is_hdf5(bytes);
     let is_delimited = ["csv", "tsv"].contains(&ending);
     TABLES.contains(&ending) && !binary && (is_delimited || !text::looks_like(bytes))

@@ -1,11 +1,78 @@
-//! Writing versions 4 and 5, little-endian, without compression and without a date.
+//! Writing versions 4 and 5, little-endian, without compression and without a date; text in the `#1`
+//! format, and columns with separators.
 
 use super::errors::UNWRITABLE_MATRIX;
 use super::matrix::{Kind, Matrix};
 use super::number::Storage;
 use super::v4::STORAGES;
+use super::{TABLES, ending};
 use crate::bail;
 use crate::diag::Fault;
+use indexmap::IndexMap;
+
+/// Matrices in the format that the ending of the file's name stands for, in which [`read_named`]
+/// reads them back: columns with separators (`.csv`, `.tsv`), the `#1` format for other endings of
+/// text, else version 4.
+///
+/// # Errors
+/// Several matrices in columns; those of [`write_v4`].
+///
+/// [`read_named`]: super::read_named
+pub fn write_named(file_name: &str, arrays: &IndexMap<String, Matrix>) -> Result<Vec<u8>, Fault> {
+    match ending(file_name).as_str() {
+        "csv" => columns(file_name, arrays, ","),
+        "tsv" => columns(file_name, arrays, "\t"),
+        text if TABLES.contains(&text) => Ok(text_of(arrays)),
+        _ => write_v4(arrays.iter().map(|(name, matrix)| (name.as_str(), matrix))),
+    }
+}
+
+/// One matrix below a header that names its columns: `name[1]`, `name[2]`, …
+fn columns(
+    file_name: &str,
+    arrays: &IndexMap<String, Matrix>,
+    separator: &str,
+) -> Result<Vec<u8>, Fault> {
+    if arrays.len() > 1 {
+        let last = arrays.keys().last().map_or("", String::as_str);
+        bail!(
+            UNWRITABLE_MATRIX,
+            "`{file_name}` would contain several matrices, which a table cannot";
+            help: "write `{last}` to another file, or use a `.mat` file for all"
+        );
+    }
+    let mut text = String::new();
+    for (name, matrix) in arrays {
+        let heads: Vec<String> = (1..=matrix.columns).map(|j| format!("{name}[{j}]")).collect();
+        let rows = (0..matrix.rows).map(|i| row(matrix, i, separator));
+        for line in std::iter::once(heads.join(separator)).chain(rows) {
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+    Ok(text.into_bytes())
+}
+
+fn text_of(arrays: &IndexMap<String, Matrix>) -> Vec<u8> {
+    let mut text = "#1\n".to_owned();
+    for (name, matrix) in arrays {
+        let is_text = matrix.kind == Kind::Char;
+        let kind = if is_text { "char" } else { "double" };
+        text.push_str(&format!("{kind} {name}({},{})\n", matrix.rows, matrix.columns));
+        let rows: Vec<String> = match is_text {
+            true => matrix.text_rows(),
+            false => (0..matrix.rows).map(|i| row(matrix, i, " ")).collect(),
+        };
+        rows.iter().for_each(|row| text.push_str(&format!("{row}\n")));
+    }
+    text.into_bytes()
+}
+
+/// The numbers of a row, each the shortest text that reads back as the same.
+fn row(matrix: &Matrix, i: usize, separator: &str) -> String {
+    let numbers = (0..matrix.columns).map(|j| format!("{:?}", matrix.values[i + j * matrix.rows]));
+    numbers.collect::<Vec<_>>().join(separator)
+}
 
 /// A version 4 file: numbers (and logical values, which version 4 does not know) as doubles, text
 /// as bytes.

@@ -44,6 +44,9 @@ codes! {
     /// A script variable with the name of a parameter.
     SHARED_NAME = "shared-name":
         "## What it means\n\nA script variable was assigned whose name is also that of a parameter at the top level of the last translated model. Both get the value, as in Dymola. Reported once for each name.\n\n## Example\n\n`translateModel(\"Decay\"); k = 2;` where `Decay` has a parameter `k`\n\n## What to do\n\nNothing, if you meant the parameter; otherwise rename the variable.",
+    /// A function with the name of a command (a note).
+    OWN_FUNCTION = "own-function":
+        "## What it means\n\nA function of a loaded package has the full name of a built-in command. The function is called in its place, by its full name and by its bare one; of several functions of a bare name, the one loaded last. Reported once.\n\n## Example\n\n`openModel(\"GAPILib.mo\"); f = Fit(D, Y);` where `GAPILib.mo` defines `GAPILib.Basics.Fit`\n\n## What to do\n\nNothing, if you meant the function; otherwise rename it, or do not load it.",
     /// A command that the program does not carry out.
     REFUSED = "refused-command":
         "## What it means\n\nThe command exists in other tools but is not supported here, for the reason given in the message.\n\n## Example\n\n`system(\"rm -rf results\")`\n\n## What to do\n\nRemove the call, or do its work outside the script.",

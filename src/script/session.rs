@@ -8,6 +8,7 @@ use super::language::execution::{Execution, Iteration, RunStatus, Stop};
 use super::language::follow_up::FollowUps;
 use super::language::output::Output;
 use super::language::parsed_scripts::ParsedScripts;
+use super::language::statuses::Statuses;
 use super::language::workspace::Workspace;
 use super::models::classes::Classes;
 use super::models::compiled::CompiledModels;
@@ -39,6 +40,7 @@ pub struct Session {
     pub(super) execution: Execution,
     pub(super) parsed: ParsedScripts,
     pub(super) follow_ups: FollowUps,
+    pub(super) statuses: Statuses,
     pub(super) process: Process,
     pub(super) outdated: Outdated,
     pub(super) classes: Classes,
@@ -62,6 +64,7 @@ impl Session {
             execution: Execution::default(),
             parsed: ParsedScripts::default(),
             follow_ups: FollowUps::default(),
+            statuses: Statuses::default(),
             process: Process::default(),
             outdated: Outdated::default(),
             classes: Classes::default(),
@@ -138,6 +141,12 @@ impl Session {
     /// Text for standard output and the transcript.
     pub fn print(&mut self, text: &str) {
         self.world.print(text);
+        self.output.record(text);
+    }
+
+    /// As [`Session::print`], for what a script prints: a quiet session shows it, too.
+    pub fn print_of_script(&mut self, text: &str) {
+        self.world.print_of_script(text);
         self.output.record(text);
     }
 

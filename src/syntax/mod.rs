@@ -39,6 +39,9 @@ use place::Place;
 use scan::Dialect;
 use std::sync::Arc;
 
+/// The command of scripts that runs another one: `@script.mos`.
+pub const RUN_COMMAND: &str = "@";
+
 /// Reads a `.mo` file (MLS §A.2.1).
 ///
 /// ```

@@ -23,13 +23,13 @@ pub struct ScriptParts {
 }
 
 impl ScriptParts {
-    /// Reads a `.mos` file; also what `look` finds first in its statements.
+    /// Reads a `.mos` file; also what `look` finds in its statements, in their order.
     ///
     /// ```
     /// use gapilib::{source::SourceId, syntax::ScriptParts};
     ///
     /// let text = "a = 1;\n".repeat(200_000);
-    /// let (script, _) = ScriptParts::read(SourceId::NONE, &text, |_| None::<()>)?;
+    /// let (script, _) = ScriptParts::read(SourceId::NONE, &text, |_| Vec::<()>::new())?;
     /// let statements = (0..script.count()).map(|at| Ok(script.part(at)?.len()));
     /// assert_eq!(statements.sum::<Result<usize, _>>()?, 200_000);
     /// # Ok::<(), gapilib::diag::Diagnostic>(())
@@ -40,17 +40,17 @@ impl ScriptParts {
     pub fn read<T: Send>(
         source: SourceId,
         text: &str,
-        look: impl Fn(&InteractiveStatement) -> Option<T> + Sync,
-    ) -> Result<(ScriptParts, Option<T>), Diagnostic> {
+        look: impl Fn(&[InteractiveStatement]) -> Vec<T> + Sync,
+    ) -> Result<(ScriptParts, Vec<T>), Diagnostic> {
         let lower = |at, nodes: Nodes<'_>| {
             let statements = lower::script(nodes)?.statements;
-            let found = statements.iter().find_map(&look);
+            let found = look(&statements);
             Ok((if at < PIECES { statements } else { Vec::new() }, found))
         };
         let (pieces, read) = Pieces::read(source, text, Rule::script, Dialect::Script, lower)?;
         let (first, found): (Vec<_>, Vec<_>) = read.into_iter().unzip();
         let first = first.into_iter().flatten().collect();
-        Ok((ScriptParts { pieces, first }, found.into_iter().flatten().next()))
+        Ok((ScriptParts { pieces, first }, found.into_iter().flatten().collect()))
     }
 
     /// How many parts there are; at least one.

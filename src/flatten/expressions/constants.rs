@@ -283,10 +283,11 @@ impl Instantiation<'_> {
             let Type::Class(scope) = class else { break };
             if self.classes.has_component(scope, part.name)? {
                 let node = self.classes.node_of(scope);
-                if !self.classes.is_constant(node, part.name) {
-                    break;
+                if self.classes.is_constant(node, part.name) {
+                    return self.walk(node, &path[at..], reference, context, local);
                 }
-                return self.walk(node, &path[at..], reference, context, local);
+                let local = self.as_of_class(scope, part.name, reference, local)?;
+                return self.walk(node, &path[at..], reference, context, &local);
             }
             found = self.classes.lookup_inside(found, &[part.name])?;
             if at + 1 == path.len()
@@ -301,6 +302,34 @@ impl Instantiation<'_> {
             return Ok(function);
         }
         Err(self.classes.unknown_name(reference, context))
+    }
+
+    /// How a component of a class is looked up that is not a constant: a parameter has the value of
+    /// its declaration, as in OpenModelica, with a warning (MLS §5.3.2 allows constants only).
+    fn as_of_class(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+        reference: &ComponentReference,
+        local: &Local,
+    ) -> Result<Local, Diagnostic> {
+        let node = self.classes.node_of(scope);
+        let variability = self.classes.variability(node, name);
+        let (shown, class) = (reference.name(), self.classes.text(scope).name.clone());
+        if variability != Some(VariabilityPrefix::Parameter) || self.classes.library.is_strict() {
+            return Err(fault!(NOT_CONSTANT, "`{name}` is a component of the class `{class}`, not a \
+                                             constant";
+                help: "declare a component of this class and use its `{name}`, or declare it `constant`")
+            .at(reference.span));
+        }
+        let warning = fault!(NOT_CONSTANT, "`{shown}` is a parameter of the class `{class}`, not of a \
+                                            component: the value of its declaration is used";
+            help: "declare it `constant` (MLS §5.3.2)");
+        let warning = warning.at(reference.span);
+        if !self.warnings.iter().any(|known| known.message == warning.message) {
+            self.warn_once(warning);
+        }
+        Ok(Local { values: true, ..local.clone() })
     }
 
     /// The name of a function, to be passed to another one (MLS §12.4.2).
@@ -330,12 +359,13 @@ impl Classes<'_> {
 
     /// Whether a package's instance has a constant of this name.
     fn is_constant(&mut self, package: NodeId, name: Ident) -> bool {
-        if self.members(package).is_err() {
-            return false;
-        }
-        self.tree.declaration_of(package, name).is_some_and(|declaration| {
-            declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant)
-        })
+        self.variability(package, name) == Some(VariabilityPrefix::Constant)
+    }
+
+    /// The variability that a class declares for a component of its own.
+    fn variability(&mut self, class: NodeId, name: Ident) -> Option<VariabilityPrefix> {
+        self.members(class).ok()?;
+        self.tree.declaration_of(class, name)?.type_prefixes.variability
     }
 
     /// The scope in which flat names mean variables.

@@ -3,7 +3,7 @@
 
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::errors::{NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
 use crate::flatten::expressions::comprehensions::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
@@ -85,6 +85,10 @@ impl Instantiation<'_> {
                 step: step.as_ref().map(|step| sub(self, step).map(Box::new)).transpose()?,
                 stop: Box::new(sub(self, stop)?),
             },
+            ExpressionKind::Guarded { .. } => {
+                let message = "`guard` is supported only in scripts";
+                return Err(fault!(NOT_SUPPORTED, "{message}").at(e.span));
+            }
             ExpressionKind::Array(elements) => {
                 ExpressionKind::Array(self.all(elements, context, local)?)
             }

@@ -7,6 +7,7 @@ use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNK
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::literal;
 use crate::flatten::functions::outer_names::names_any;
+use crate::flatten::functions::printing::PRINT;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::functions::unrolled::runs_over_strings;
 use crate::flatten::ids::ScopeId;
@@ -83,6 +84,7 @@ impl Instantiation<'_> {
             },
             _ => match self.function_of_component(name, context, span)? {
                 Some(full) => Ok(full),
+                None if name.is_simple() && name.parts[0] == PRINT => Ok(self.bare_print()),
                 None => Ok(self.intrinsic_name(name)),
             },
         }

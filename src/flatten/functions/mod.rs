@@ -5,6 +5,7 @@ pub mod declared;
 pub mod defaults;
 mod outer_names;
 mod partial_derivative;
+mod printing;
 pub mod specialization;
 pub mod table;
 mod unrolled;

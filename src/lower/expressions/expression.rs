@@ -91,6 +91,9 @@ impl<T: Target> Lowering<'_, T> {
                     return Err(fault!(NOT_SUPPORTED, "an output list is not a value").at(e.span));
                 }
             },
+            ExpressionKind::Guarded { .. } => {
+                return Err(fault!(NOT_SUPPORTED, "`guard` in models").at(e.span));
+            }
             ExpressionKind::PartialApplication { function, .. } => {
                 return Err(fault!(
                     NOT_SUPPORTED,

@@ -18,7 +18,36 @@ pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
         io::ErrorKind::NotADirectory => "a part of its path is not a directory".to_owned(),
         _ => error.to_string().to_lowercase(),
     };
-    Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
+    let fault = Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", shown(path)));
+    fault.help_if(escape_help(path))
+}
+
+/// A path as people read it: control characters as escapes.
+pub fn shown(path: &Path) -> String {
+    let text = path.display().to_string();
+    let escaped = |c: char| escape_of(c).map_or_else(|| c.to_string(), |(escape, _)| escape.into());
+    text.chars().map(escaped).collect()
+}
+
+/// What to do about a path that has a control character, as `"..\bin"` has in Modelica.
+pub fn escape_help(path: &Path) -> Option<String> {
+    let text = path.to_string_lossy();
+    let (escape, name) = text.chars().find_map(escape_of)?;
+    Some(format!("`{escape}` in a string is {name}: write `/` or `\\\\` between folders"))
+}
+
+/// The escape of MLS §2.4.6 that stands for a control character, and the character's name.
+fn escape_of(c: char) -> Option<(&'static str, &'static str)> {
+    Some(match c {
+        '\u{07}' => ("\\a", "a bell"),
+        '\u{08}' => ("\\b", "a backspace"),
+        '\t' => ("\\t", "a tab"),
+        '\n' => ("\\n", "a line break"),
+        '\u{0b}' => ("\\v", "a vertical tab"),
+        '\u{0c}' => ("\\f", "a form feed"),
+        '\r' => ("\\r", "a carriage return"),
+        _ => return None,
+    })
 }
 
 /// The fault of a file that the policy does not let us use.

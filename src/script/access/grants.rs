@@ -1,15 +1,27 @@
 //! Files and folders that a session may use, as the user names them.
 
-use super::faults::cannot;
+use super::faults::{cannot, escape_help, shown};
 use super::policy::{Access, Grant};
 use crate::diag::Fault;
+use crate::fault;
 use crate::script::Session;
+use crate::script::errors::FILE_ERROR;
 use std::path::Path;
 
 impl Session {
     /// A fault unless a file of this path may be read, written, made or removed.
     pub(in crate::script) fn may(&self, access: Access, path: &Path) -> Result<(), Fault> {
         let verb = if access == Access::Read { "read" } else { "change" };
+        if access == Access::Write
+            && let Some(help) = escape_help(path)
+        {
+            return Err(fault!(
+                FILE_ERROR,
+                "cannot write `{}`: no file is named so on purpose",
+                shown(path)
+            )
+            .help(help));
+        }
         self.world.permits(path, access).map_err(|error| cannot(verb, path, &error))
     }
 

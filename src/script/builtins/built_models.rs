@@ -30,7 +30,7 @@ pub(super) struct Executable {
 #[derive(Default)]
 struct Built {
     programs: BTreeMap<String, Executable>,
-    init_files: BTreeMap<String, Vec<(String, f64)>>,
+    init_files: BTreeMap<String, Vec<(String, String)>>,
 }
 
 /// Notes a model that was built, and returns the name of its init file.
@@ -69,11 +69,11 @@ pub(super) fn program(session: &mut Session, name: &str) -> Option<Executable> {
 }
 
 /// What an init file holds, if there is one.
-pub(super) fn init_file_values(session: &mut Session, file: &str) -> Option<Vec<(String, f64)>> {
+pub(super) fn init_file_values(session: &mut Session, file: &str) -> Option<Vec<(String, String)>> {
     session.extension::<Built>().init_files.get(file).cloned()
 }
 
 /// Writes an init file.
-pub(super) fn keep_init_file(session: &mut Session, file: String, values: Vec<(String, f64)>) {
+pub(super) fn keep_init_file(session: &mut Session, file: String, values: Vec<(String, String)>) {
     session.extension::<Built>().init_files.insert(file, values);
 }

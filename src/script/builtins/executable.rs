@@ -95,22 +95,13 @@ end setInitXmlStartValue;
 fn set_init_xml_start_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (file, name): (String, String) = (args.take("fileName")?, args.take("variableName")?);
     let (value, output): (String, String) = (args.take("startValue")?, args.take("outputFile")?);
-    let number = match value.trim() {
-        "true" => Ok(1.0),
-        "false" => Ok(0.0),
-        number => number.parse(),
-    };
-    let Ok(number) = number else {
-        session.report_fault(fault!(BAD_ARGUMENT, "`startValue` is not a number: `{value}`"));
-        return Ok(false.into());
-    };
     let Some(mut values) = built_models::init_file_values(session, &file) else {
         session.report_fault(fault!(BAD_ARGUMENT, "no built model has the init file `{file}`";
             help: "call `buildModel` first"));
         return Ok(false.into());
     };
     values.retain(|(known, _)| *known != name);
-    values.push((name, number));
+    values.push((name, value));
     built_models::keep_init_file(session, output, values);
     Ok(true.into())
 }

@@ -81,7 +81,7 @@ fn list_files(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     } else {
         session.read_text(&path)?
     };
-    session.print(&listing);
+    session.print_of_script(&listing);
     Ok(Value::nothing())
 }
 

@@ -7,6 +7,7 @@ use crate::mat::{self, MatFile, Matrix};
 use crate::script::Session;
 use crate::script::errors::BAD_ARGUMENT;
 use crate::value::{RealMatrix, Value};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// The commands of this file.
@@ -26,6 +27,17 @@ pub(super) const FAMILY: Family = Family {
 pub(super) fn read_file(session: &mut Session, name: &str) -> Result<MatFile, Fault> {
     let bytes = session.read_bytes(Path::new(name))?;
     mat::read_named(name, &bytes)
+}
+
+/// A matrix of a file; in a table also the columns `name[1]`, `name[2]`, … as one.
+fn matrix_of<'f>(file: &'f MatFile, name: &str) -> Result<Cow<'f, Matrix>, Fault> {
+    let column = |j: usize| file.arrays.get(&format!("{name}[{j}]"));
+    let columns: Vec<&Matrix> = (1..).map_while(column).collect();
+    let Some(first) = columns.first().filter(|_| file.is_table()) else {
+        return file.matrix(name).map(Cow::Borrowed);
+    };
+    let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
+    Ok(Cow::Owned(Matrix::from_columns(first.values.len(), columns.len(), values)))
 }
 
 impl Session {
@@ -59,7 +71,7 @@ end readMatrixSize;
 fn read_matrix_size(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
     let contents = read_file(session, &file)?;
-    let matrix = contents.matrix(&name)?;
+    let matrix = matrix_of(&contents, &name)?;
     Ok(vec![matrix.rows as i64, matrix.columns as i64].into())
 }
 
@@ -101,7 +113,7 @@ fn checked_matrix(
 ) -> Result<Value, Failure> {
     let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
     let contents = read_file(session, &file)?;
-    let matrix = contents.matrix(&name)?;
+    let matrix = matrix_of(&contents, &name)?;
     if (matrix.rows as i64, matrix.columns as i64) != (rows, columns) {
         bail!(
             BAD_ARGUMENT,
@@ -118,7 +130,7 @@ fn checked_matrix(
 }
 
 const WRITE_MATRIX: &str = r#"
-function writeMatrix "Writes a matrix to a MAT file of version 4."
+function writeMatrix "Writes a matrix to a file; the extension selects the format: .csv and .tsv a table, .txt text in the #1 format, .mat a MAT file of version 4."
   input String fileName;
   input String matrixName;
   input Real matrix[:, :] "a vector v is written as [v]";
@@ -128,12 +140,12 @@ end writeMatrix;
 "#;
 
 const WRITE_REAL_MATRIX: &str = r#"
-function writeRealMatrix "Writes a matrix to a MAT file of version 4."
+function writeRealMatrix "Writes a matrix to a file, as writeMatrix does."
   input String fileName;
   input String matrixName;
   input Real matrix[:, :];
   input Boolean append = false "false: the file is overwritten";
-  input String format = "4" "only version 4 is supported";
+  input String format = "4" "of MAT files; only version 4 is supported";
   output Boolean success;
 end writeRealMatrix;
 "#;
@@ -172,10 +184,10 @@ fn write(
 ) -> Result<(), Fault> {
     let path = Path::new(file);
     let mut arrays = match append && session.world.exists(path) {
-        true => mat::read(&session.read_bytes(path)?)?.arrays,
+        true => read_file(session, file)?.arrays,
         false => Default::default(),
     };
     arrays.insert(name.to_owned(), new);
-    let bytes = mat::write_v4(arrays.iter().map(|(name, matrix)| (name.as_str(), matrix)))?;
+    let bytes = mat::write_named(file, &arrays)?;
     session.write_file(path, &bytes)
 }

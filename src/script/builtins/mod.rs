@@ -15,6 +15,7 @@ mod files;
 mod gapilib;
 mod header;
 mod initial;
+mod input_tables;
 mod inputs;
 mod installation;
 mod introspection;
@@ -208,6 +209,11 @@ impl BuiltinId {
     pub(super) fn function(self) -> Arc<Function> {
         let known = &TABLE[self.0];
         known.function.get_or_init(|| Arc::new(parsed(known.builtin))).clone()
+    }
+
+    /// The packages through which it can be named in full.
+    pub(super) fn packages(self) -> &'static [&'static str] {
+        TABLE[self.0].family.packages
     }
 
     /// The declaration as written.

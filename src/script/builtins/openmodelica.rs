@@ -1,6 +1,7 @@
 //! Models as OpenModelica's scripts handle them.
 
 use super::built_models::{self, Executable};
+use super::input_tables;
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
@@ -71,7 +72,7 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let format: String = args.take("outputFormat")?;
     let flags: String = args.take("simflags")?;
     let given: String = args.take("variableFilter")?;
-    let filter = filter(&given)?;
+    let filter = filter_of(&given)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
@@ -103,7 +104,7 @@ pub(super) fn simulation_result(strings: [String; 3]) -> Value {
 }
 
 /// The names that are stored: those that an expression matches as a whole.
-fn filter(expression: &str) -> Result<Regex, Fault> {
+fn filter_of(expression: &str) -> Result<Regex, Fault> {
     let whole = format!("^(?:{expression})$");
     RegexBuilder::new(&whole).size_limit(1 << 20).build().map_err(|_| {
         fault!(BAD_ARGUMENT, "`variableFilter` is not a valid regular expression: `{expression}`")
@@ -133,7 +134,7 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let prefix: String = args.take("fileNamePrefix")?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let (wanted, format) = (options(&mut args)?, args.take("outputFormat")?);
-    let filter = filter(&args.take::<String>("variableFilter")?)?;
+    let filter = filter_of(&args.take::<String>("variableFilter")?)?;
     let flags = args.take("simflags")?;
     let done = simulation::translate_anew(session, &class.to_string());
     let Some(model) = session.or_report_all(done) else {
@@ -191,9 +192,15 @@ pub(super) fn run(
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
     built_models::preset(session, &mut flags).at(at).map_err(one)?;
+    flags.read_override_files(session).at(at).map_err(one)?;
+    let driven = input_tables::driven(session, model, flags.csv_input.as_deref())?;
+    let model = driven.as_ref().unwrap_or(model);
     simulation::look_at(session, model);
     let options = completed(options, &model.program.experiment());
-    let file = flags.result.as_deref().unwrap_or(file);
+    let own_filter = flags.filter.as_deref().map(filter_of).transpose().at(at).map_err(one)?;
+    let filter = own_filter.as_ref().unwrap_or(filter);
+    let file = result_file(&flags, file);
+    let file = file.as_str();
     let before = session.current_values();
     let set = flags.apply(session).at(at);
     let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
@@ -208,6 +215,18 @@ pub(super) fn run(
     }
     write_results(session, &done.table, file).at(at).map_err(one)?;
     Ok((options, file.to_owned()))
+}
+
+/// The file that the flags name, or else the usual one with the ending that they name.
+fn result_file(flags: &SimulationFlags, usual: &str) -> String {
+    match (&flags.result, &flags.format) {
+        (Some(file), _) => file.clone(),
+        (None, Some(format)) => {
+            let stem = usual.rsplit_once('.').map_or(usual, |(stem, _)| stem);
+            format!("{stem}.{format}")
+        }
+        (None, None) => usual.to_owned(),
+    }
 }
 
 /// A simulation that ends where it begins has two rows, the beginning and the end.

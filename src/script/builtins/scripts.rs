@@ -46,12 +46,13 @@ fn run_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 const RUN_SCRIPT_OPENMODELICA: &str = r#"
 function runScript "Executes a script; it shares the variables of the calling script."
   input String fileName;
-  output String result "empty";
+  output String result "what its statements answer, one after the other";
 end runScript;
 "#;
 
 fn run_script_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let script: String = args.take("fileName")?;
-    session.run_nested(&script)?;
-    Ok("".into())
+    let (done, answers) = session.collecting_answers(|session| session.run_nested(&script));
+    done?;
+    Ok(answers.into())
 }

@@ -106,7 +106,7 @@ fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let listing: String =
         patterns.iter().map(|pattern| session.workspace.listing(pattern, !is_script)).collect();
     if file.is_empty() {
-        session.print(&listing);
+        session.print_of_script(&listing);
         return Ok(true.into());
     }
     let written = session.write_file(file.as_ref(), listing.as_bytes());
@@ -204,13 +204,13 @@ fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("name")?;
     if name.is_empty() {
         let names: String = super::names().iter().map(|name| format!("{name}\n")).collect();
-        session.print(&names);
+        session.print_of_script(&names);
         return Ok(true.into());
     }
     match super::find(&crate::name::Name::parse(&name), session.dialect()) {
         Some(id) => {
             let shown = id.header().replace(" annotation(optional = true)", "");
-            session.print(shown.trim_start());
+            session.print_of_script(shown.trim_start());
             Ok(true.into())
         }
         None => {

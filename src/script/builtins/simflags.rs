@@ -3,14 +3,24 @@
 
 use crate::bail;
 use crate::diag::Fault;
+use crate::fault;
 use crate::script::Session;
 use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
 use crate::script::models::simulation::SimulationOptions;
+use std::path::Path;
 
 /// What `simflags` asks for.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct SimulationFlags {
-    overrides: Vec<(String, f64)>,
+    overrides: Vec<(String, String)>,
+    /// `-overrideFile`: files with lines `name=value`.
+    override_files: Vec<String>,
+    /// `-csvInput`: the file whose columns the inputs follow.
+    pub csv_input: Option<String>,
+    /// The ending of the result file.
+    pub format: Option<String>,
+    /// Which variables are stored, as a regular expression.
+    pub filter: Option<String>,
     start: Option<f64>,
     stop: Option<f64>,
     step: Option<f64>,
@@ -23,11 +33,9 @@ pub(super) struct SimulationFlags {
     idle: Vec<String>,
 }
 
-/// Flags that stand for input that is not read, with what to do instead.
+/// Flags that stand for what is not done, with what to do instead.
 const REFUSED: &[(&str, &str)] = &[
-    ("csvInput", "inputs cannot be read from a file: write a model that reads a table"),
-    ("exInputFile", "inputs cannot be read from a file: write a model that reads a table"),
-    ("overrideFile", "values cannot be read from a file: give them with `-override`"),
+    ("exInputFile", "write the inputs to a table in CSV and give it with `-csvInput`"),
     ("iif", "start values cannot be read from a file: use `importInitialResult`"),
     ("iim", "there is only one initialization method"),
     ("iit", "start values cannot be read from a file: use `importInitialResult`"),
@@ -38,7 +46,7 @@ const REFUSED: &[(&str, &str)] = &[
 impl SimulationFlags {
     /// Reads flags as `-name`, `-name=value` and `-name value`.
     pub(super) fn parse(text: &str) -> Result<SimulationFlags, Fault> {
-        SimulationFlags::of_words(text.split_whitespace())
+        SimulationFlags::of_words(unquoted_words(text).iter().map(String::as_str))
     }
 
     /// The same from separate words.
@@ -66,10 +74,12 @@ impl SimulationFlags {
         }
         match name {
             "override" => {
-                for setting in value.split(',').filter(|setting| !setting.is_empty()) {
-                    self.set(setting)?;
+                for setting in settings(&value) {
+                    self.set(&setting)?;
                 }
             }
+            "overrideFile" => self.override_files.push(value),
+            "csvInput" => self.csv_input = Some(value),
             "startTime" | "stopTime" | "stepSize" | "tolerance" => {
                 self.set(&format!("{name}={value}"))?;
             }
@@ -83,29 +93,62 @@ impl SimulationFlags {
 
     /// `name=value`, of the experiment or the model.
     fn set(&mut self, setting: &str) -> Result<(), Fault> {
-        let parsed = setting.split_once('=').and_then(|(name, value)| {
-            let value = match value.trim() {
-                "true" => 1.0,
-                "false" => 0.0,
-                number => number.parse().ok()?,
-            };
-            Some((name.trim(), value))
-        });
-        let Some((name, value)) = parsed else {
+        let parsed = setting.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
+        let Some((name, value)) =
+            parsed.filter(|(name, value)| !name.is_empty() && !value.is_empty())
+        else {
             bail!(BAD_ARGUMENT, "`{setting}` in `simflags` is not `name=value`")
         };
+        let number = || {
+            let not_a_number = |_| {
+                fault!(BAD_ARGUMENT, "`{name}` in `simflags` is `{value}`, which is not a number")
+            };
+            value.parse().map_err(not_a_number).map(Some)
+        };
         match name {
-            "startTime" => self.start = Some(value),
-            "stopTime" => self.stop = Some(value),
-            "stepSize" => self.step = Some(value),
-            "tolerance" => self.tolerance = Some(value),
-            _ => self.overrides.push((name.to_owned(), value)),
+            "startTime" => self.start = number()?,
+            "stopTime" => self.stop = number()?,
+            "stepSize" => self.step = number()?,
+            "tolerance" => self.tolerance = number()?,
+            "solver" => self.method = Some(value.to_owned()),
+            "outputFormat" => self.format = Some(value.to_owned()),
+            "variableFilter" => self.filter = Some(value.to_owned()),
+            _ => self.overrides.push((name.to_owned(), value.to_owned())),
         }
         Ok(())
     }
 
+    /// Takes the lines of the files that `-overrideFile` names. What `-override` gives comes later.
+    pub(super) fn read_override_files(&mut self, session: &Session) -> Result<(), Fault> {
+        for file in std::mem::take(&mut self.override_files) {
+            let text = session.read_text(Path::new(&file))?;
+            let own = std::mem::take(self);
+            let lines = text.lines().map(str::trim);
+            let is_setting =
+                |line: &&str| !line.is_empty() && !line.starts_with('#') && !line.starts_with("//");
+            for line in lines.filter(is_setting) {
+                self.set(line)?;
+            }
+            self.put_before(own);
+        }
+        Ok(())
+    }
+
+    /// These flags, with others that come later.
+    fn put_before(&mut self, later: SimulationFlags) {
+        let before = std::mem::replace(self, later);
+        self.overrides.splice(0..0, before.overrides);
+        self.start = self.start.or(before.start);
+        self.stop = self.stop.or(before.stop);
+        self.step = self.step.or(before.step);
+        self.tolerance = self.tolerance.or(before.tolerance);
+        self.method = self.method.take().or(before.method);
+        self.format = self.format.take().or(before.format);
+        self.filter = self.filter.take().or(before.filter);
+    }
+
     /// Values that come before those of `-override`.
-    pub(super) fn preset(&mut self, values: &[(String, f64)]) {
+    pub(super) fn preset(&mut self, values: &[(String, String)]) {
         self.overrides.splice(0..0, values.iter().cloned());
     }
 
@@ -115,7 +158,8 @@ impl SimulationFlags {
             let flags = self.idle.join("`, `");
             session.note(NO_WINDOW, format!("`{flags}` in `simflags` has no effect here"));
         }
-        self.overrides.iter().try_for_each(|(name, value)| session.set_parameter(name, *value))
+        let mut overrides = self.overrides.iter();
+        overrides.try_for_each(|(name, value)| session.set_parameter_text(name, value))
     }
 
     /// The settings of a simulation, complete, with those of the flags. The length of the output
@@ -138,6 +182,41 @@ impl SimulationFlags {
     }
 }
 
+/// The words of a text; quotes keep blanks together and are taken away.
+fn unquoted_words(text: &str) -> Vec<String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), String::new(), None);
+    for c in text.chars() {
+        match (quote, c) {
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(open), close) if open == close => quote = None,
+            (None, blank) if blank.is_whitespace() => words.push(std::mem::take(&mut word)),
+            (_, c) => word.push(c),
+        }
+    }
+    words.push(word);
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// The settings between commas, those within brackets aside: `A[1,2]=7,k=2`.
+fn settings(list: &str) -> Vec<String> {
+    let (mut all, mut one, mut depth) = (Vec::new(), String::new(), 0usize);
+    for c in list.chars() {
+        match c {
+            '[' | '(' | '{' => depth += 1,
+            ']' | ')' | '}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        match c {
+            ',' if depth == 0 => all.push(std::mem::take(&mut one)),
+            c => one.push(c),
+        }
+    }
+    all.push(one);
+    all.retain(|setting| !setting.trim().is_empty());
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::SimulationFlags;
@@ -147,16 +226,28 @@ mod tests {
     fn flags_are_read_in_all_their_forms() {
         let text = "-lv=LOG_STATS -override=k=1,stopTime=2 -override b=true -s euler -r x.mat";
         let flags = SimulationFlags::parse(text).expect("flags");
-        assert_eq!(flags.overrides, [("k".to_owned(), 1.0), ("b".to_owned(), 1.0)]);
+        let own = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        assert_eq!(flags.overrides, [own("k", "1"), own("b", "true")]);
         assert_eq!((flags.stop, flags.method.as_deref()), (Some(2.0), Some("euler")));
         assert_eq!((flags.result.as_deref(), flags.idle), (Some("x.mat"), vec!["-lv".to_owned()]));
     }
 
     #[test]
     fn flags_that_would_change_results_are_refused() {
-        for wrong in ["-csvInput=u.csv", "-override=k", "-stopTime=soon", "k=1"] {
+        for wrong in ["-exInputFile=u.csv", "-override=k", "-override==2", "-stopTime=soon", "k=1"]
+        {
             assert!(SimulationFlags::parse(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn settings_of_the_experiment_are_no_parameters() {
+        let text = "-override=A[1,2]=7,solver=euler,outputFormat=csv,variableFilter=\".*\",f='a b'";
+        let flags = SimulationFlags::parse(text).expect("flags");
+        let own = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        assert_eq!(flags.overrides, [own("A[1,2]", "7"), own("f", "a b")]);
+        assert_eq!(flags.method.as_deref(), Some("euler"));
+        assert_eq!((flags.format.as_deref(), flags.filter.as_deref()), (Some("csv"), Some(".*")));
     }
 
     #[test]

@@ -41,7 +41,7 @@ fn print(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (mut line, file): (String, String) = (args.take("string")?, args.take("fileName")?);
     line.push('\n');
     if file.is_empty() {
-        session.print(&line);
+        session.print_of_script(&line);
     } else {
         session.append_file(Path::new(&file), line.as_bytes())?;
     }
@@ -56,7 +56,7 @@ end print;
 
 fn print_bare(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let string: String = args.take("str")?;
-    session.print(&string);
+    session.print_of_script(&string);
     Ok(Value::nothing())
 }
 

@@ -92,7 +92,7 @@ fn status(session: &mut Session, args: &mut Args, input: &str) -> Result<i32, Fa
     }
     let (status, printed) =
         session.process.run(&mut *session.world, session.options.permissions, &command)?;
-    session.print(&String::from_utf8_lossy(&printed));
+    session.print_of_script(&String::from_utf8_lossy(&printed));
     Ok(status)
 }
 

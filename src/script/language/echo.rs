@@ -9,6 +9,29 @@ use crate::value::Value;
 use crate::value::show::{Style, show};
 
 impl Session {
+    /// Runs a script whose answers are the value of the statement that runs it, as OpenModelica's
+    /// are: what the statements answer, line by line. In Dymola's dialect there are none.
+    pub(in crate::script) fn collecting_answers<T>(
+        &mut self,
+        work: impl FnOnce(&mut Session) -> T,
+    ) -> (T, String) {
+        if self.dialect() == Dialect::Dymola {
+            return (work(self), String::new());
+        }
+        let depth = self.execution.go_to_top();
+        self.output.begin_collecting();
+        let done = work(self);
+        self.execution.return_to(depth);
+        (done, self.output.collected())
+    }
+
+    /// Shows a line of an answer, or adds it to those that are collected.
+    fn echo(&mut self, line: &str) {
+        if !self.output.collect(line) {
+            self.print(line);
+        }
+    }
+
     fn may_echo(&self) -> bool {
         self.execution.is_at_top() && !self.output.is_muted() && self.options.echo != Echo::Nothing
     }
@@ -41,7 +64,7 @@ impl Session {
             }
             value if self.answers_names(expression) => {
                 let line = format!("{}\n", show(value, Style::OpenModelica).replace('"', ""));
-                self.print(&line);
+                self.echo(&line);
             }
             value => self.answer(value),
         }
@@ -82,7 +105,7 @@ impl Session {
             _ => {
                 let all = values.iter().map(|value| show(value, Style::OpenModelica));
                 let line = format!("({})\n", all.collect::<Vec<_>>().join(", "));
-                self.print(&line);
+                self.echo(&line);
             }
         }
     }
@@ -120,7 +143,7 @@ impl Session {
     /// The empty line that OpenModelica prints for a statement without a value.
     pub fn echo_nothing(&mut self) {
         if self.dialect() == Dialect::OpenModelica && self.may_echo() {
-            self.print("\n");
+            self.echo("\n");
         }
     }
 
@@ -129,6 +152,9 @@ impl Session {
             Dialect::Dymola => (Style::Dymola, " = "),
             Dialect::OpenModelica => (Style::OpenModelica, ""),
         };
+        if self.output.collect(&format!("{}\n", show(value, style))) {
+            return;
+        }
         if self.options.echo != Echo::Nothing {
             let line = format!("{lead}{}\n", show(value, style));
             self.world.print(&line);

@@ -126,6 +126,16 @@ impl Execution {
         self.depth -= 1;
     }
 
+    /// Statements are at the top level from here on; the depth until now.
+    pub fn go_to_top(&mut self) -> usize {
+        std::mem::take(&mut self.depth)
+    }
+
+    /// Statements are as deep as they were before.
+    pub fn return_to(&mut self, depth: usize) {
+        self.depth = depth;
+    }
+
     /// The iteration of the outermost loop being run.
     pub fn iteration(&self) -> Option<Iteration> {
         self.iteration

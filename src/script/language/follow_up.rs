@@ -1,6 +1,7 @@
 //! One cause, one error: what cannot be done because an earlier statement failed is noted once.
 
 use crate::name::Ident;
+use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
     Expression, ExpressionKind, InteractiveKind, InteractiveStatement, Statement, StatementKind,
 };
@@ -55,9 +56,10 @@ impl FollowUps {
                 InteractiveKind::Declaration(clause) => {
                     self.missing.extend(clause.components.iter().map(|c| c.name.node));
                 }
-                InteractiveKind::Class(_)
-                | InteractiveKind::Import(_)
-                | InteractiveKind::Command { .. } => {}
+                InteractiveKind::Command { name, .. } => {
+                    self.anything |= &*name.node == RUN_COMMAND;
+                }
+                InteractiveKind::Class(_) | InteractiveKind::Import(_) => {}
             }
         }
     }

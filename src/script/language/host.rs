@@ -5,13 +5,14 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
 use crate::external::c::Request;
 use crate::external::{Entry, Outside, Random};
+use crate::models::FOLDER;
 use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::script::builtins::{BuiltinId, Failure};
-use crate::script::errors::INTERRUPTED;
+use crate::script::errors::{INTERRUPTED, OWN_FUNCTION};
 use crate::script::{Dialect, Session};
 use crate::source::Span;
-use crate::syntax::ast::ComponentReference;
+use crate::syntax::ast::{ComponentReference, Expression};
 use crate::value::Value;
 use std::path::Path;
 use std::sync::Arc;
@@ -48,24 +49,19 @@ impl Host for Session {
             unreachable!("`callee` gives out headers of the table only")
         };
         let around = self.execution.begin_call(span);
+        let before = self.output.messages.next_number();
         let result = id.run(self, arguments);
         self.execution.end_call(around);
+        if let Ok(answer) = &result {
+            self.statuses.answered(answer, before..self.output.messages.next_number());
+        }
         if result.as_ref().is_ok_and(is_success) {
             self.output.messages.note_success();
         }
         match result {
             Ok(Value::Tuple(values)) => Ok(values),
             Ok(value) => Ok(vec![value]),
-            Err(Failure::Here(fault)) => Err(fault.at(span)),
-            Err(Failure::Elsewhere(mut diagnostics)) => {
-                let last = diagnostics.pop();
-                // What has no place of its own was found by this call.
-                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic.or_at(span)));
-                let last = last.map(|diagnostic| diagnostic.or_at(span));
-                Err(last.unwrap_or_else(|| {
-                    Fault::new(crate::script::errors::SCRIPT_ERROR, "failed").at(span)
-                }))
-            }
+            Err(failure) => Err(self.last_of(failure, span)),
         }
     }
 
@@ -140,6 +136,19 @@ impl Host for Session {
         self.share_with_model(name, value)
     }
 
+    fn begin_use(&mut self, value: &Expression) {
+        self.statuses.begin_use(value);
+    }
+
+    fn keep_status(&mut self, target: &ComponentReference, value: &Value) {
+        self.statuses.keep(target, value);
+    }
+
+    fn tested(&mut self) {
+        let messages = &mut self.output.messages;
+        self.statuses.used().into_iter().for_each(|numbers| messages.note_tested(numbers));
+    }
+
     fn warn(&mut self, warning: Diagnostic) {
         self.report(warning);
     }
@@ -190,7 +199,7 @@ impl Outside for Session {
     }
 
     fn print(&mut self, text: &str) -> Result<(), Fault> {
-        Session::print(self, &format!("{text}\n"));
+        self.print_of_script(&format!("{text}\n"));
         Ok(())
     }
 
@@ -212,9 +221,29 @@ impl Outside for Session {
 }
 
 impl Session {
+    /// The last diagnostic of a command that failed; the others are reported.
+    pub(super) fn last_of(&mut self, failure: Failure, span: Span) -> Diagnostic {
+        match failure {
+            Failure::Here(fault) => fault.at(span),
+            Failure::Elsewhere(mut diagnostics) => {
+                let last = diagnostics.pop();
+                // What has no place of its own was found by this call.
+                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic.or_at(span)));
+                let last = last.map(|diagnostic| diagnostic.or_at(span));
+                last.unwrap_or_else(|| {
+                    Fault::new(crate::script::errors::SCRIPT_ERROR, "failed").at(span)
+                })
+            }
+        }
+    }
+
     fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
-        if let Some(function) = self.loaded_function(name)? {
-            return Ok(Some(self.loaded_callee(function)));
+        let loaded = self.loaded_function(name)?;
+        let replacing = self.replacing(name, loaded.as_deref())?;
+        if let Some(function) = replacing.or(loaded) {
+            let callee = self.loaded_callee(function);
+            self.note_replaced(name, &callee);
+            return Ok(Some(callee));
         }
         for candidate in self.workspace.candidates(name) {
             if let Some(id) = builtins::find(&candidate, self.dialect()) {
@@ -230,6 +259,53 @@ impl Session {
             }
         }
         Ok(None)
+    }
+
+    /// The loaded function that replaces a command called by its bare name: one of the command's full
+    /// name, as long as no function of the bare name was loaded later.
+    fn replacing(
+        &mut self,
+        name: &Name,
+        bare: Option<&Function>,
+    ) -> Result<Option<Arc<Function>>, Diagnostic> {
+        let Some(command) = builtins::find(name, self.dialect()).filter(|_| name.is_simple())
+        else {
+            return Ok(None);
+        };
+        for package in command.packages() {
+            let full = Name::parse(package).child(name.parts[0]);
+            let root = Name::new(full.first());
+            let is_shipped = self.is_shipped(&root);
+            let library = self.library();
+            let is_older = bare.is_some_and(|bare| {
+                let other = Name::new(bare.name.first());
+                library.find(&other).is_some_and(|other| Some(other) > library.find(&root))
+            });
+            if !is_shipped && !is_older && library.contains(&full) {
+                return self.function_named(&full);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether a class is one of the program's own.
+    fn is_shipped(&self, name: &Name) -> bool {
+        self.source_file(name).is_some_and(|file| file.starts_with(FOLDER))
+    }
+
+    /// Says once that a function of a package is called in place of a command. That one of the
+    /// script itself is called by its own name needs no word.
+    fn note_replaced(&mut self, name: &Name, callee: &Callee) {
+        let (Callee::Function(function), Some(command)) = (callee, name.last()) else { return };
+        let is_own = function.name.is_simple() || self.is_shipped(&function.name);
+        let replaces = builtins::find(name, self.dialect()).is_some();
+        if replaces && self.workspace.replaces_newly(command, &function.name) && !is_own {
+            let called = &function.name;
+            let message = format!(
+                "`{command}` is the function `{called}` that was loaded, not the built-in command"
+            );
+            self.report(Fault::new(OWN_FUNCTION, message).at(function.span).note());
+        }
     }
 
     /// A loaded function, or the command that it declares with `external "builtin"`, or that is its

@@ -2,11 +2,17 @@
 
 use crate::diag::{Diagnostic, Severity};
 use crate::source::SourceMap;
+use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Diagnostics since the script asked last.
 #[derive(Debug, Clone, Default)]
 pub struct Messages {
     unread: Vec<Diagnostic>,
+    /// The number of the first unread message: they are counted from the start of the session.
+    first: usize,
+    /// The numbers of errors whose status the script has tested.
+    tested: BTreeSet<usize>,
     last_error: Option<String>,
 }
 
@@ -24,9 +30,23 @@ impl Messages {
         &self.unread
     }
 
-    /// Number of errors that the script has not asked for.
+    /// The number that the next message gets.
+    pub fn next_number(&self) -> usize {
+        self.first + self.unread.len()
+    }
+
+    /// The script has tested the status that stands for these messages.
+    pub fn note_tested(&mut self, numbers: Range<usize>) {
+        self.tested.extend(numbers.start.max(self.first)..numbers.end);
+    }
+
+    /// Number of errors that the script has neither asked for nor tested.
     pub fn unread_errors(&self) -> usize {
-        self.unread.iter().filter(|diagnostic| diagnostic.is_error()).count()
+        let numbered = self.unread.iter().zip(self.first..);
+        let counts = |(diagnostic, number): &(&Diagnostic, usize)| {
+            diagnostic.is_error() && !self.tested.contains(number)
+        };
+        numbered.filter(counts).count()
     }
 
     /// Numbers of unread notes, warnings and errors.
@@ -38,7 +58,8 @@ impl Messages {
     /// The unread messages, one a line, as OpenModelica's scripts expect them
     /// (`[file:l:c-l:c:writable] Error: …`); the buffer is empty afterwards.
     pub fn take_text(&mut self, sources: &SourceMap, warnings_as_errors: bool) -> String {
-        let unread = std::mem::take(self).unread;
+        let unread = self.unread.clone();
+        self.clear();
         let severity = |diagnostic: &Diagnostic| match diagnostic.severity {
             Severity::Warning if warnings_as_errors => Severity::Error,
             severity => severity,
@@ -60,12 +81,14 @@ impl Messages {
 
     /// What a user saw at a prompt has been read; what the script can ask for stays.
     pub fn forget_unread(&mut self) {
+        self.first = self.next_number();
         self.unread.clear();
+        self.tested.clear();
     }
 
     /// Forgets everything.
     pub fn clear(&mut self) {
-        self.unread.clear();
+        self.forget_unread();
         self.last_error = None;
     }
 }

@@ -16,6 +16,7 @@ pub mod parsed_scripts;
 pub mod parsing;
 mod scripts;
 mod statements;
+pub mod statuses;
 pub mod transcript;
 mod variables;
 pub mod workspace;

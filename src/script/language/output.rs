@@ -24,6 +24,8 @@ pub struct Output {
     windowless: BTreeSet<&'static str>,
     /// `echo(false)` was called.
     muted: bool,
+    /// Answers of scripts that return them, innermost last.
+    collected: Vec<String>,
     /// Warnings and notes from here on, for whoever keeps what they are about.
     pub overheard: Option<Vec<Diagnostic>>,
 }
@@ -86,6 +88,24 @@ impl Output {
     /// Whether it is the first time that this command has no effect.
     pub fn is_first_without_window(&mut self, command: &'static str) -> bool {
         self.windowless.insert(command)
+    }
+
+    /// Answers are collected from here on, not shown.
+    pub fn begin_collecting(&mut self) {
+        self.collected.push(String::new());
+    }
+
+    /// Adds a line to the answers that are collected; `false` if none are.
+    pub fn collect(&mut self, line: &str) -> bool {
+        let innermost = self.collected.last_mut();
+        let collects = innermost.is_some();
+        innermost.into_iter().for_each(|answers| answers.push_str(line));
+        collects
+    }
+
+    /// The answers since [`Output::begin_collecting`].
+    pub fn collected(&mut self) -> String {
+        self.collected.pop().unwrap_or_default()
     }
 
     /// Whether `echo(false)` was called.

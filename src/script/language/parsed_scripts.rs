@@ -4,26 +4,63 @@ use crate::diag::Diagnostic;
 use crate::script::options::Dialect;
 use crate::script::world::Stamp;
 use crate::source::SourceId;
-use crate::syntax::ScriptParts;
-use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, StatementKind};
+use crate::syntax::ast::{
+    Arguments, ComponentReference, Expression, ExpressionKind, InteractiveKind,
+    InteractiveStatement,
+};
+use crate::syntax::visit::{Visit, walk_expression, walk_modification};
+use crate::syntax::{RUN_COMMAND, ScriptParts};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// What a call says about the dialect of the script that it stands in.
+#[derive(Debug)]
+enum Sign {
+    /// Only this dialect has such a call.
+    Of(Dialect),
+    /// `runScript`, which is how OpenModelica writes it: the script that it names shows more.
+    Runs(Option<Arc<str>>),
+}
+
+/// Signs of a piece of a script that are kept: the first that is certain decides.
+const MAX_SIGNS: usize = 64;
 
 /// A script that was read.
 pub struct Parsed {
     /// Its statements.
     pub parts: ScriptParts,
-    /// The dialect that it shows: that of the first call or `=` that only one of them has.
-    pub dialect: Option<Dialect>,
+    signs: Vec<Sign>,
 }
 
 impl Parsed {
     /// # Errors
     /// What is wrong with the text.
     pub fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
-        let (parts, dialect) = ScriptParts::read(source, text, |one| dialect_of(&one.kind))?;
-        Ok(Parsed { parts, dialect })
+        let (parts, signs) = ScriptParts::read(source, text, signs_of)?;
+        Ok(Parsed { parts, signs })
+    }
+
+    /// The dialect that the script itself shows: that of the first call that only one of them has.
+    pub fn dialect(&self) -> Option<Dialect> {
+        self.signs.iter().find_map(|sign| match sign {
+            Sign::Of(dialect) => Some(*dialect),
+            Sign::Runs(_) => None,
+        })
+    }
+
+    /// The dialect of a script that shows none but in the word for running others.
+    pub fn dialect_of_running(&self) -> Option<Dialect> {
+        let runs = self.signs.iter().any(|sign| matches!(sign, Sign::Runs(_)));
+        runs.then_some(Dialect::OpenModelica)
+    }
+
+    /// The scripts that it runs by `runScript`, as far as they are named by literals.
+    pub fn scripts_run(&self) -> impl Iterator<Item = &Arc<str>> {
+        self.signs.iter().filter_map(|sign| match sign {
+            Sign::Runs(name) => name.as_ref(),
+            Sign::Of(_) => None,
+        })
     }
 }
 
@@ -61,28 +98,53 @@ impl ParsedScripts {
     }
 }
 
-/// The dialect that a statement shows, if only one of them has it.
-fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
-    let call = match kind {
-        InteractiveKind::Expression(expression) => expression,
-        InteractiveKind::Statement(statement) => match &statement.kind {
-            StatementKind::Assign { value, .. } | StatementKind::Call(value) => value,
-            _ => return None,
-        },
-        _ => return None,
-    };
-    let Expression { kind: ExpressionKind::Call { function, arguments }, .. } = call else {
-        return None;
-    };
-    let has_class = arguments
-        .positional
-        .first()
-        .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
+/// The signs of some statements.
+fn signs_of(statements: &[InteractiveStatement]) -> Vec<Sign> {
+    let mut signs = Signs::default();
+    for statement in statements {
+        if signs.found.len() >= MAX_SIGNS {
+            break;
+        }
+        match &statement.kind {
+            InteractiveKind::Statement(statement) => signs.statement(statement),
+            InteractiveKind::Expression(expression) => signs.expression(expression),
+            InteractiveKind::Declaration(clause) => {
+                let modifications =
+                    clause.components.iter().filter_map(|c| c.modification.as_ref());
+                modifications.for_each(|modification| walk_modification(&mut signs, modification));
+            }
+            InteractiveKind::Command { name, .. } if &*name.node == RUN_COMMAND => {
+                signs.found.push(Sign::Of(Dialect::Dymola));
+            }
+            _ => {}
+        }
+    }
+    signs.found
+}
+
+#[derive(Default)]
+struct Signs {
+    found: Vec<Sign>,
+}
+
+impl Visit for Signs {
+    fn expression(&mut self, expression: &Expression) {
+        if let ExpressionKind::Call { function, arguments } = &expression.kind {
+            self.found.extend(sign_of(function, arguments));
+        }
+        walk_expression(self, expression);
+    }
+}
+
+/// What a call says about the dialect, if anything.
+fn sign_of(function: &ComponentReference, arguments: &Arguments) -> Option<Sign> {
     match function.parts.first()?.name.as_str() {
-        "OpenModelica" => return Some(Dialect::OpenModelica),
-        "DymolaCommands" => return Some(Dialect::Dymola),
+        "OpenModelica" => return Some(Sign::Of(Dialect::OpenModelica)),
+        "DymolaCommands" => return Some(Sign::Of(Dialect::Dymola)),
         _ => {}
     }
+    let first = arguments.positional.first();
+    let has_class = first.is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
     match function.as_ident()?.as_str() {
         "loadModel"
         | "getErrorString"
@@ -90,9 +152,20 @@ fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
         | "buildModel"
         | "setCommandLineOptions"
         | "instantiateModel"
-        | "loadFile" => Some(Dialect::OpenModelica),
-        "simulate" | "checkModel" if has_class => Some(Dialect::OpenModelica),
-        "simulateModel" | "translateModel" | "RunScript" | "openModel" => Some(Dialect::Dymola),
+        | "loadFile" => Some(Sign::Of(Dialect::OpenModelica)),
+        "simulate" | "checkModel" if has_class => Some(Sign::Of(Dialect::OpenModelica)),
+        "simulateModel" | "translateModel" | "RunScript" | "openModel" => {
+            Some(Sign::Of(Dialect::Dymola))
+        }
+        "runScript" => {
+            let named = arguments.named.iter().find(|named| named.name.node == "fileName");
+            let script = first.or(named.map(|named| &named.value));
+            let literal = script.and_then(|script| match &script.kind {
+                ExpressionKind::String(name) => Some(name.clone()),
+                _ => None,
+            });
+            Some(Sign::Runs(literal))
+        }
         _ => None,
     }
 }

@@ -3,7 +3,7 @@
 use super::parsed_scripts::Parsed;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault, suggest};
-use crate::script::access::faults::cannot;
+use crate::script::access::faults::{cannot, escape_help, shown};
 use crate::script::access::policy::{Access, Grant};
 use crate::script::builtins::Failure;
 use crate::script::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
@@ -12,6 +12,7 @@ use crate::script::world::normalized;
 use crate::script::{Dialect, RunStatus, Session};
 use crate::source::{SourceId, Span};
 use crate::syntax::{self, ScriptParts, ast};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -48,7 +49,35 @@ impl Session {
 
     /// The dialect that a text shows by what only one of them has.
     pub fn looks_like(&self, text: &str) -> Option<Dialect> {
-        Parsed::read(SourceId::NONE, text).ok()?.dialect
+        let script = Parsed::read(SourceId::NONE, text).ok()?;
+        script.dialect().or(script.dialect_of_running())
+    }
+
+    /// The dialect that a script in a folder shows, or else the scripts that it runs.
+    fn shown_dialect(
+        &mut self,
+        script: &Parsed,
+        folder: &Path,
+        seen: &mut HashSet<PathBuf>,
+    ) -> Option<Dialect> {
+        if let Some(dialect) = script.dialect() {
+            return Some(dialect);
+        }
+        for name in script.scripts_run() {
+            let plain = self.expanded(Path::new(&**name));
+            let Some(path) = self.exact_script(folder, &plain) else { continue };
+            if !seen.insert(path.clone()) {
+                continue;
+            }
+            // What is wrong with it is reported where it is run.
+            let Ok(inner) = self.parsed_script(&path) else { continue };
+            let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+            let found = self.shown_dialect(&inner, &folder, seen);
+            if found.is_some() {
+                return found;
+            }
+        }
+        script.dialect_of_running()
     }
 
     /// Runs a script that another one names; its errors end it and come back with a trace.
@@ -96,7 +125,7 @@ impl Session {
     }
 
     /// Executes the statements of a script. Errors of the outermost one are reported where they
-    /// happen; in a nested one the first ends it.
+    /// happen; in Dymola's dialect the first ends a nested one.
     fn run_script_statements(
         &mut self,
         script: &Parsed,
@@ -104,7 +133,8 @@ impl Session {
     ) -> Result<(), Diagnostic> {
         let outermost = self.execution.scripts() == 0;
         if outermost && self.options.dialect.is_none() {
-            self.recognized = script.dialect.unwrap_or_default();
+            let shown = self.shown_dialect(script, &folder, &mut HashSet::new());
+            self.recognized = shown.unwrap_or_default();
         }
         self.execution.enter(folder);
         let result = self.parts(&script.parts, outermost);
@@ -144,7 +174,8 @@ impl Session {
                 return Ok(());
             }
             self.follow_ups.failed(statement);
-            if !outermost {
+            // OpenModelica goes on in scripts that scripts run, too.
+            if !outermost && self.dialect() == Dialect::Dymola {
                 self.follow_ups.not_done(&statements[at + 1..]);
                 return Err(diagnostic);
             }
@@ -195,19 +226,11 @@ impl Session {
 
     fn search_script(&mut self, folder: &Path, name: &str) -> Result<PathBuf, Fault> {
         let plain = self.expanded(Path::new(name));
-        let mut with_ending = plain.clone().into_os_string();
-        with_ending.push(".mos");
-        let with_ending = PathBuf::from(with_ending);
-        let folders = [self.world.absolute(folder), self.world.current_dir()];
-        let candidates = || {
-            folders.iter().flat_map(|folder| [&plain, &with_ending].map(|name| folder.join(name)))
-        };
-        let is_file = |path: &PathBuf| self.world.exists(path) && !self.world.is_dir(path);
-        let exact = candidates().map(|path| normalized(&self.world.absolute(&path))).find(is_file);
-        if let Some(path) = exact {
+        if let Some(path) = self.exact_script(folder, &plain) {
             return Ok(path);
         }
-        let other_case = candidates().find_map(|path| self.other_case(&path));
+        let candidates = self.script_candidates(folder, &plain);
+        let other_case = candidates.iter().find_map(|path| self.other_case(path));
         if let Some(path) = other_case {
             let found = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into());
             let message =
@@ -217,7 +240,10 @@ impl Session {
         }
         // Whether there is a file that may not be read stays unknown.
         self.may(Access::Read, &plain)?;
-        let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
+        let folders = [self.world.absolute(folder), self.world.current_dir()];
+        let written = Path::new(name);
+        let message = format!("there is no script `{}`", shown(written));
+        let fault = Fault::new(SCRIPT_NOT_FOUND, message).help_if(escape_help(written));
         let [own, working] = folders.each_ref().map(|folder| folder.display());
         let is_one = normalized(&folders[0]) == normalized(&folders[1]);
         let searched = match Path::new(name).is_absolute() {
@@ -226,6 +252,28 @@ impl Session {
             false => format!("searched in `{own}` and in the working directory `{working}`"),
         };
         Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(searched))
+    }
+
+    /// Where a script of this name may lie, in the order of precedence.
+    fn script_candidates(&self, folder: &Path, name: &Path) -> [PathBuf; 4] {
+        let mut with_ending = name.to_path_buf().into_os_string();
+        with_ending.push(".mos");
+        let (own, working) = (self.world.absolute(folder), self.world.current_dir());
+        let path =
+            |folder: &Path, name: &Path| normalized(&self.world.absolute(&folder.join(name)));
+        let with_ending = Path::new(&with_ending);
+        [
+            path(&own, name),
+            path(&own, with_ending),
+            path(&working, name),
+            path(&working, with_ending),
+        ]
+    }
+
+    /// The script of exactly this name, with or without the ending.
+    fn exact_script(&self, folder: &Path, name: &Path) -> Option<PathBuf> {
+        let is_file = |path: &PathBuf| self.world.exists(path) && !self.world.is_dir(path);
+        self.script_candidates(folder, name).into_iter().find(is_file)
     }
 
     fn similar_script(&self, path: &Path) -> Option<String> {

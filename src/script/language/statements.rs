@@ -7,6 +7,7 @@ use crate::name::{Ident, Name};
 use crate::script::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
 use crate::script::{Session, builtins};
 use crate::source::{Span, Spanned};
+use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
     ComponentReference, Expression, Import, ImportKind, InteractiveKind, InteractiveStatement,
     Statement, StatementKind,
@@ -154,6 +155,15 @@ impl Session {
             "exit" => {
                 let status = argument.node.trim_matches(['(', ')', ' ']).parse().unwrap_or(0);
                 self.execution.exit(status);
+            }
+            RUN_COMMAND => {
+                let script = argument.node.trim().trim_matches('"');
+                let around = self.execution.begin_call(name.span);
+                self.execution.descend();
+                let done = self.run_nested(script);
+                self.execution.ascend();
+                self.execution.end_call(around);
+                done.map_err(|failure| self.last_of(failure, name.span))?;
             }
             // The grammar knows no other command.
             _ => {

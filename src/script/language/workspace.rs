@@ -11,7 +11,7 @@ use crate::value::errors::TYPE_MISMATCH;
 use crate::value::show::{Style, show};
 use crate::value::{Elements, Value};
 use indexmap::IndexMap;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Flags that scripts read before they set them, to set them back, and what they are until then.
 const UNSET: &[(&str, bool)] = &[("Advanced.StoreProtectedVariables", true)];
@@ -25,6 +25,8 @@ pub struct Workspace {
     pub variables: Scope,
     /// Functions that names stand for, looked up before.
     pub callees: Callees,
+    /// The functions that commands were last said to be replaced by, by the commands' bare names.
+    replacing: HashMap<Ident, Name>,
     /// The hidden state of `Modelica.Math.Random.Utilities.impureRandom`.
     pub random: Random,
     /// Flags such as `Advanced.StoreProtectedVariables`.
@@ -40,6 +42,7 @@ impl Default for Workspace {
         Workspace {
             variables: Scope::script(),
             callees: Callees::default(),
+            replacing: HashMap::new(),
             random: Random::default(),
             flags: BTreeMap::new(),
             imports: IndexMap::new(),
@@ -54,6 +57,11 @@ fn is_flag(reference: &ComponentReference) -> bool {
 }
 
 impl Workspace {
+    /// A function is called in place of a command; whether that was not said yet.
+    pub fn replaces_newly(&mut self, command: Ident, function: &Name) -> bool {
+        self.replacing.insert(command, function.clone()).as_ref() != Some(function)
+    }
+
     /// The value of the flag of this name, if it was set.
     pub fn flag(&self, name: &str) -> Option<&Value> {
         self.flags.get(name)

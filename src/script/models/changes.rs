@@ -16,7 +16,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default)]
 pub struct Changes {
     /// Values by the path of what they belong to: `a.n`, or `a.x.start` for a start value.
-    values: IndexMap<String, f64>,
+    values: IndexMap<String, ExpressionKind>,
     /// The model with them, if it has been translated.
     model: Option<Arc<Translated>>,
 }
@@ -62,21 +62,35 @@ impl Changes {
             let is_other = matches!(variable.base, BaseType::String | BaseType::ExternalObject(_));
             let is_number = !is_other && !variable.says_fixed;
             return is_number.then(|| {
-                self.insert(name.to_owned(), value);
+                self.insert(name.to_owned(), literal(variable, value));
                 Changed::Structure
             });
         }
         if variable.variability <= Variability::Parameter || !may_start(model, name, variable) {
             return None;
         }
-        self.insert(format!("{name}.start"), value);
+        self.insert(format!("{name}.start"), literal(variable, value));
         if is_state(model, name) {
-            self.insert(format!("{name}.fixed"), 1.0);
+            self.insert(format!("{name}.fixed"), ExpressionKind::Boolean(true));
         }
         Some(Changed::Start)
     }
 
-    fn insert(&mut self, path: String, value: f64) {
+    /// Gives a String parameter a value; `false` if there is none of this name that may be set.
+    pub fn set_text(&mut self, model: &Translated, name: &str, text: &str) -> bool {
+        let is_text = model.declarations.get(name).is_some_and(|variable| {
+            variable.base == BaseType::String
+                && variable.variability == Variability::Parameter
+                && variable.dims.is_empty()
+                && !variable.is_final
+        });
+        if is_text {
+            self.insert(name.to_owned(), ExpressionKind::String(text.into()));
+        }
+        is_text
+    }
+
+    fn insert(&mut self, path: String, value: ExpressionKind) {
         self.values.insert(path, value);
         self.model = None;
     }
@@ -90,7 +104,7 @@ impl Changes {
         let (class, mut arguments) = parsed.map_err(|error| vec![error])?;
         for (path, value) in &self.values {
             let parts: Vec<Ident> = Name::parse(path).parts.to_vec();
-            merge(&mut arguments, &parts, &literal(model, path, *value));
+            merge(&mut arguments, &parts, &Expression::new(value.clone(), Span::NONE));
         }
         let modification = Modification { arguments, binding: None, span: Span::NONE };
         Ok(format!("{class}{}", print::modification(&modification)))
@@ -98,16 +112,12 @@ impl Changes {
 }
 
 /// The value as the type of what it belongs to writes it.
-fn literal(model: &Translated, path: &str, value: f64) -> Expression {
-    let owner = path.strip_suffix(".start").unwrap_or(path);
-    let base = model.declarations.get(owner).map(|variable| &variable.base);
-    let kind = match base {
-        Some(BaseType::Boolean) => ExpressionKind::Boolean(value != 0.0),
-        Some(BaseType::Integer) => ExpressionKind::Integer(value as i64),
-        None if path.ends_with(".fixed") => ExpressionKind::Boolean(value != 0.0),
+fn literal(variable: &Declaration, value: f64) -> ExpressionKind {
+    match &variable.base {
+        BaseType::Boolean => ExpressionKind::Boolean(value != 0.0),
+        BaseType::Integer => ExpressionKind::Integer(value as i64),
         _ => ExpressionKind::Real(value),
-    };
-    Expression::new(kind, Span::NONE)
+    }
 }
 
 fn may_start(model: &Translated, name: &str, variable: &Declaration) -> bool {

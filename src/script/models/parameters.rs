@@ -94,6 +94,30 @@ impl Session {
         }
     }
 
+    /// As [`Session::set_parameter`], with the value as text: a number, a Boolean, a literal of an
+    /// enumeration by its name, or the content of a String.
+    ///
+    /// # Errors
+    /// Also a text that is no value of the parameter's type.
+    pub fn set_parameter_text(&mut self, name: &str, text: &str) -> Result<(), Fault> {
+        let Some(current) = &mut self.models.current else {
+            return self.set_parameter(name, f64::NAN);
+        };
+        let model = current.model.clone();
+        let whole = name.split_once('[').map_or(name, |(whole, _)| whole);
+        let owner = whole.strip_suffix(".start").unwrap_or(whole);
+        let base = model.declarations.get(owner).map(|variable| &variable.base);
+        if base == Some(&BaseType::String) {
+            if !current.changes.set_text(&model, name, unquoted(text)) {
+                return Err(not_tunable(&model, name));
+            }
+            self.note_structural(name, &model.problem);
+            return Ok(());
+        }
+        let value = number_of(name, text.trim(), base)?;
+        self.set_parameter(name, value)
+    }
+
     /// The model translated last and the values that it has, to be restored.
     pub(in crate::script) fn current_values(&self) -> Option<Current> {
         self.models.current.clone()
@@ -166,6 +190,40 @@ impl Session {
             );
             self.note(TRANSLATED_AGAIN, message);
         }
+    }
+}
+
+/// A text without the quotes around it.
+fn unquoted(text: &str) -> &str {
+    let inner = text.trim().strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+    inner.unwrap_or(text)
+}
+
+/// The number that stands for a value: of a literal its ordinal.
+fn number_of(name: &str, text: &str, base: Option<&BaseType>) -> Result<f64, Fault> {
+    if let Some(BaseType::Enumeration(definition)) = base {
+        let literal = text.rsplit('.').next().unwrap_or(text);
+        if let Some(at) = definition.literals.iter().position(|known| *known == literal) {
+            return Ok(at as f64 + 1.0);
+        }
+        let literals = definition.literals.iter().map(|known| known.as_str());
+        return text.parse().map_err(|_| {
+            fault!(
+                BAD_PARAMETER_VALUE,
+                "`{text}` is not a literal of `{}`, the type of `{name}`",
+                definition.name
+            )
+            .help_if(suggest::did_you_mean(literal, literals.clone()))
+            .help(format!("its literals are {}", literals.collect::<Vec<_>>().join(", ")))
+        });
+    }
+    match text {
+        "true" => Ok(1.0),
+        "false" => Ok(0.0),
+        number => number.parse().map_err(|_| {
+            fault!(BAD_PARAMETER_VALUE, "`{text}` is not a value of `{name}`";
+                help: "write a number, `true` or `false`")
+        }),
     }
 }
 

@@ -400,7 +400,7 @@ fn report_log(session: &mut Session, system: &System) {
             let message = format!("{text} (at t = {time})");
             session.report(Fault::new(ASSERTION_FAILED, message).at(span).warning());
         } else {
-            session.print(&(text + "\n"));
+            session.print_of_script(&(text + "\n"));
         }
     }
     if omitted > 0 {

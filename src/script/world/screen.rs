@@ -6,6 +6,10 @@ use crate::script::runs::view::{Progress, View};
 pub trait Screen {
     /// Text for standard output; no line end is added.
     fn print(&mut self, text: &str);
+    /// The same, that a script prints: shown where only errors are, too.
+    fn print_of_script(&mut self, text: &str) {
+        self.print(text);
+    }
     /// Text for standard error (diagnostics); no line end is added.
     fn eprint(&mut self, text: &str);
     /// Shows how far a long piece of work is.

@@ -72,6 +72,16 @@ pub enum ExpressionKind {
         /// Bound.
         stop: Box<Expression>,
     },
+    /// What an iterator runs over, without the values for which a condition does not hold:
+    /// `i guard condition in values` (OpenModelica); only as the range of a [`ForIndex`]
+    Guarded {
+        /// The iterator.
+        name: Ident,
+        /// The condition, in which the iterator has its value.
+        condition: Box<Expression>,
+        /// All values.
+        values: Box<Expression>,
+    },
     /// `{a, b}`
     Array(Vec<Expression>),
     /// `{e for i in r, j in s}`

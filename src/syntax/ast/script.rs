@@ -37,7 +37,7 @@ pub enum InteractiveKind {
     Class(Arc<ClassDefinition>),
     /// `import …`
     Import(Box<Import>),
-    /// A bare command: `clear`, `cd ..`, `exit`, `clearlog`.
+    /// A bare command: `clear`, `cd ..`, `exit`, `clearlog`, `@other.mos`.
     Command {
         /// Its name.
         name: Spanned<Arc<str>>,

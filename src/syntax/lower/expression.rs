@@ -326,7 +326,18 @@ pub(super) fn for_indices(nodes: &mut Nodes<'_>) -> Lowered<Vec<ForIndex>> {
     let mut list = nodes.enter(Rule::for_indices);
     let mut indices = Vec::new();
     while let Some(mut index) = list.try_enter(Rule::for_index) {
-        indices.push(ForIndex { name: ident(&mut index), range: try_expression(&mut index)? });
+        let name = ident(&mut index);
+        let is_guarded = index.skip(Rule::word_guard);
+        let range = match try_expression(&mut index)? {
+            Some(condition) if is_guarded => {
+                let values = Box::new(expression(&mut index)?);
+                let (span, condition) = (condition.span.to(values.span), Box::new(condition));
+                let kind = ExpressionKind::Guarded { name: name.node, condition, values };
+                Some(Expression::new(kind, span))
+            }
+            range => range,
+        };
+        indices.push(ForIndex { name, range });
     }
     Ok(indices)
 }

@@ -83,6 +83,11 @@ impl Printer {
                 self.reference(function);
                 self.arguments(arguments);
             }
+            ExpressionKind::Guarded { condition, values, .. } => {
+                self.expression(condition);
+                self.word(" in ");
+                self.expression(values);
+            }
             ExpressionKind::PartialApplication { function, named } => {
                 self.word("function ");
                 self.show(function);
@@ -265,7 +270,8 @@ impl Printer {
         self.list(indices, |printer, index| {
             printer.show(index.name.node);
             if let Some(range) = &index.range {
-                printer.word(" in ");
+                let is_guarded = matches!(range.kind, ExpressionKind::Guarded { .. });
+                printer.word(if is_guarded { " guard " } else { " in " });
                 printer.expression(range);
             }
         });

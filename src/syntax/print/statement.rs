@@ -1,6 +1,7 @@
 //! Equations, statements and scripts as text.
 
 use super::Printer;
+use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, InteractiveKind, Script, Statement,
     StatementKind,
@@ -152,10 +153,9 @@ impl Printer {
             InteractiveKind::Import(import) => self.import(import),
             InteractiveKind::Command { name, argument } => {
                 self.word(&name.node);
-                if !argument.node.is_empty() {
-                    self.word(" ");
-                    self.word(&argument.node);
-                }
+                let apart = !argument.node.is_empty() && &*name.node != RUN_COMMAND;
+                self.word(if apart { " " } else { "" });
+                self.word(&argument.node);
             }
         }
     }

@@ -151,6 +151,7 @@ impl<'t> Tokens<'t> {
         let Some(&first) = self.text.as_bytes().get(start) else { return Ok(None) };
         let kind = match first {
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => self.word(command),
+            b'@' if command => self.run_command(),
             b'$' if self.quotes() => self.single(TokenKind::Operator),
             b'0'..=b'9' => self.number(),
             b'.' if self.peek(1).is_some_and(|byte| byte.is_ascii_digit()) => self.number(),
@@ -261,6 +262,15 @@ impl<'t> Tokens<'t> {
             let length = [" //", "\t//", " /*"].iter().filter_map(|mark| line[blanks..].find(mark));
             self.at += blanks + length.min().unwrap_or(argument.trim_end().len());
         }
+        TokenKind::Command
+    }
+
+    /// `@script.mos` runs a script: the rest of the line is its name.
+    fn run_command(&mut self) -> TokenKind {
+        let line = &self.text[self.at..];
+        let line = &line[..line.find(['\n', ';']).unwrap_or(line.len())];
+        let comment = ["//", "/*"].iter().filter_map(|mark| line.find(mark)).min();
+        self.at += line[..comment.unwrap_or(line.len())].trim_end().len();
         TokenKind::Command
     }
 

@@ -64,6 +64,10 @@ pub fn walk_expression<V: Visit + ?Sized>(visitor: &mut V, expression: &Expressi
             step.iter().for_each(|step| visitor.expression(step));
             visitor.expression(stop);
         }
+        ExpressionKind::Guarded { condition, values, .. } => {
+            visitor.expression(condition);
+            visitor.expression(values);
+        }
         ExpressionKind::Array(elements) => {
             elements.iter().for_each(|element| visitor.expression(element));
         }

@@ -71,6 +71,10 @@ pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mu
             step.iter_mut().for_each(|step| rewriter.expression(step));
             rewriter.expression(stop);
         }
+        ExpressionKind::Guarded { condition, values, .. } => {
+            rewriter.expression(condition);
+            rewriter.expression(values);
+        }
         ExpressionKind::Array(elements) => expressions(rewriter, elements),
         ExpressionKind::Comprehension { element, indices } => {
             rewriter.expression(element);
