@@ -13,6 +13,7 @@ use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::library::LegacyConstruct;
 use crate::flatten::types::Types;
 use crate::name::Ident;
 use crate::source::Span;
@@ -92,8 +93,12 @@ impl Instantiation<'_> {
             Section::Equations { initial, equations, .. } => {
                 for equation in equations {
                     let mut out = Vec::new();
-                    match self.equation(equation, context, &local, &mut out) {
-                        Ok(()) if *initial => model.initial_equations.append(&mut out),
+                    let own = std::slice::from_ref(equation);
+                    let at_start = self.only_at_start(equation, context).filter(|_| !initial);
+                    let initial = *initial || at_start.is_some();
+                    let mut all = at_start.unwrap_or(own).iter();
+                    match all.try_for_each(|one| self.equation(one, context, &local, &mut out)) {
+                        Ok(()) if initial => model.initial_equations.append(&mut out),
                         Ok(()) => model.equations.append(&mut out),
                         Err(error) => errors.push(error),
                     }
@@ -121,6 +126,28 @@ impl Instantiation<'_> {
             Section::Elements { .. } | Section::Annotation(_) => {}
         }
         Ok(())
+    }
+
+    /// The equations of `if initial() then … end if`, which old libraries write for initial ones: with
+    /// them the model would have more equations at its start than later.
+    fn only_at_start<'e>(
+        &self,
+        equation: &'e Equation,
+        context: ScopeId,
+    ) -> Option<&'e [Equation]> {
+        let EquationKind::If { branches, otherwise } = &equation.kind else { return None };
+        let ([(condition, body)], []) = (branches.as_slice(), otherwise.as_slice()) else {
+            return None;
+        };
+        let ExpressionKind::Call { function, .. } = &condition.kind else { return None };
+        let is_plain = |one: &Equation| matches!(one.kind, EquationKind::Equal { .. });
+        let library = self.classes.library;
+        if function.as_ident()? != "initial" || !body.iter().all(is_plain) || library.is_strict() {
+            return None;
+        }
+        let class = &self.classes.text(context).name;
+        library.meet(class, LegacyConstruct::InitialBranch, equation.span);
+        Some(body)
     }
 
     fn equation(

@@ -29,6 +29,8 @@ pub(in crate::flatten) enum LegacyConstruct {
     PublicVariable,
     /// A `connect` equation of variables that are not connectors.
     ConnectedVariable,
+    /// `if initial() then …` without `else` in an equation section.
+    InitialBranch,
 }
 
 /// The legacy constructs found in each library.
@@ -74,6 +76,10 @@ impl LegacyConstruct {
             LegacyConstruct::ConnectedVariable => (
                 "`connect` equations of variables that are not connectors, which are taken as equal",
                 "write an equation, or give the variables the type of a connector",
+            ),
+            LegacyConstruct::InitialBranch => (
+                "equations in `if initial() then`, which are taken as initial equations",
+                "write them in an `initial equation` section",
             ),
             LegacyConstruct::PublicVariable => (
                 "public variables of functions that are neither input nor output",

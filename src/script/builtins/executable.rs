@@ -2,12 +2,14 @@
 //! that would run one is answered by simulating the translated model.
 
 use super::built_models::{self, Executable, init_file};
+use super::input_tables;
 use super::openmodelica;
-use super::simflags::SimulationFlags;
+use super::simflags::{SimulationFlags, unquoted_words};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::script::errors::BAD_ARGUMENT;
+use crate::script::models::simulation;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use std::path::Path;
@@ -44,14 +46,23 @@ fn run(
     program: &Executable,
     flags: &[String],
 ) -> Result<(), Vec<Diagnostic>> {
-    let all = program.flags.split_whitespace().chain(flags.iter().map(String::as_str));
-    let parsed = SimulationFlags::of_words(all).at(session.call_site());
+    let mut all = unquoted_words(&program.flags);
+    all.extend_from_slice(flags);
+    let words = all.iter().map(String::as_str);
+    let parsed = SimulationFlags::of_words(words).at(session.call_site());
     let mut flags = parsed.map_err(|error| vec![error])?;
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
-    let written = flags.result.clone().unwrap_or_else(|| file.clone());
+    let written = flags.result_file(&file);
     let wanted = (file.as_str(), &program.filter);
-    let done = openmodelica::run(session, &program.model, &program.options, flags, wanted);
+    let model = match flags.csv_input.as_deref() {
+        None => program.model.clone(),
+        input => {
+            let problem = input_tables::driven(session, &program.model.problem, input)?;
+            simulation::translate(session, &problem)?
+        }
+    };
+    let done = openmodelica::run(session, &model, &program.options, flags, wanted);
     session.noting_outdated(written.as_ref(), done).map(|_| ())
 }
 

@@ -3,47 +3,48 @@
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
+use crate::flatten::Variable;
 use crate::mat::MatFile;
 use crate::script::Session;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::simulation::{self, Translated};
+use crate::script::models::simulation;
 use crate::syntax::ast::CausalityPrefix;
 use std::sync::Arc;
 
-/// The model whose inputs follow the columns of a file that have their names; `None` without a file.
+/// The class around a model whose inputs follow the columns of a file that have their names; the
+/// model itself without a file.
 ///
 /// # Errors
 /// The file has no column `time` or none of an input, or the model has no inputs.
 pub(super) fn driven(
     session: &mut Session,
-    model: &Arc<Translated>,
+    problem: &str,
     file: Option<&str>,
-) -> Result<Option<Arc<Translated>>, Vec<Diagnostic>> {
-    let Some(file) = file else { return Ok(None) };
+) -> Result<String, Vec<Diagnostic>> {
+    let Some(file) = file else { return Ok(problem.to_owned()) };
+    let flat = simulation::flat_model(session, problem)?;
+    let is_input = |v: &&Variable| v.causality == Some(CausalityPrefix::Input) && v.top_level;
+    let inputs: Vec<Arc<str>> =
+        flat.variables.values().filter(is_input).map(|variable| variable.name.clone()).collect();
     let at = session.call_site();
-    let text = class_text(session, model, file).at(at).map_err(|error| vec![error])?;
-    session.load_text(&format!("inputs of {}", model.problem), &text)?;
-    simulation::translated(session, NAME).map(Some)
+    let text = class_text(session, problem, &inputs, file).at(at).map_err(|error| vec![error])?;
+    session.load_text(&format!("inputs of {problem}"), &text)?;
+    Ok(NAME.to_owned())
 }
 
 /// The class around the model.
 const NAME: &str = "GAPILibDriven";
 
-fn class_text(session: &mut Session, model: &Translated, file: &str) -> Result<String, Fault> {
+fn class_text(
+    session: &mut Session,
+    problem: &str,
+    inputs: &[Arc<str>],
+    file: &str,
+) -> Result<String, Fault> {
     let data = super::matrices::read_file(session, file)?;
     let time = data.matrix("time")?.row_major();
-    let is_input = |name: &str| {
-        let declared = model.declarations.get(name);
-        declared.is_some_and(|variable| variable.causality == Some(CausalityPrefix::Input))
-    };
-    let inputs: Vec<String> = model
-        .declarations
-        .keys()
-        .filter(|name| is_input(name))
-        .map(|name| name.to_string())
-        .collect();
     if inputs.is_empty() {
-        bail!(BAD_ARGUMENT, "`-csvInput` in `simflags`: `{}` has no inputs", model.problem);
+        bail!(BAD_ARGUMENT, "`-csvInput` in `simflags`: `{problem}` has no inputs");
     }
     let mut tables = String::new();
     let mut bindings = Vec::new();
@@ -55,9 +56,9 @@ fn class_text(session: &mut Session, model: &Translated, file: &str) -> Result<S
         ));
         bindings.push(format!("{name} = gapi_input_{number}.y[1]"));
     }
-    let (class, own) = match model.problem.split_once('(') {
+    let (class, own) = match problem.split_once('(') {
         Some((class, own)) => (class, own.trim_end().strip_suffix(')').unwrap_or(own)),
-        None => (model.problem.as_str(), ""),
+        None => (problem, ""),
     };
     let own = std::iter::once(own.to_owned()).filter(|own| !own.is_empty());
     let all = own.chain(bindings).collect::<Vec<_>>().join(", ");

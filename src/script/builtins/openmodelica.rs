@@ -76,9 +76,11 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
-        let written = flags.result.clone().unwrap_or_else(|| file.clone());
-        let done = simulation::translate(session, &class.to_string())
-            .and_then(|model| run(session, &model, &options, flags, (&file, &filter)));
+        let written = flags.result_file(&file);
+        let input = flags.csv_input.as_deref();
+        let problem = input_tables::driven(session, &class.to_string(), input);
+        let model = problem.and_then(|problem| simulation::translate(session, &problem));
+        let done = model.and_then(|model| run(session, &model, &options, flags, (&file, &filter)));
         session.noting_outdated(written.as_ref(), done)
     });
     let messages = match &done {
@@ -193,13 +195,11 @@ pub(super) fn run(
     let one = |error: Diagnostic| vec![error];
     built_models::preset(session, &mut flags).at(at).map_err(one)?;
     flags.read_override_files(session).at(at).map_err(one)?;
-    let driven = input_tables::driven(session, model, flags.csv_input.as_deref())?;
-    let model = driven.as_ref().unwrap_or(model);
     simulation::look_at(session, model);
     let options = completed(options, &model.program.experiment());
     let own_filter = flags.filter.as_deref().map(filter_of).transpose().at(at).map_err(one)?;
     let filter = own_filter.as_ref().unwrap_or(filter);
-    let file = result_file(&flags, file);
+    let file = flags.result_file(file);
     let file = file.as_str();
     let before = session.current_values();
     let set = flags.apply(session).at(at);
@@ -215,18 +215,6 @@ pub(super) fn run(
     }
     write_results(session, &done.table, file).at(at).map_err(one)?;
     Ok((options, file.to_owned()))
-}
-
-/// The file that the flags name, or else the usual one with the ending that they name.
-fn result_file(flags: &SimulationFlags, usual: &str) -> String {
-    match (&flags.result, &flags.format) {
-        (Some(file), _) => file.clone(),
-        (None, Some(format)) => {
-            let stem = usual.rsplit_once('.').map_or(usual, |(stem, _)| stem);
-            format!("{stem}.{format}")
-        }
-        (None, None) => usual.to_owned(),
-    }
 }
 
 /// A simulation that ends where it begins has two rows, the beginning and the end.

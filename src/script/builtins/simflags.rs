@@ -27,7 +27,7 @@ pub(super) struct SimulationFlags {
     tolerance: Option<f64>,
     method: Option<String>,
     /// `-r`: the file for the results.
-    pub result: Option<String>,
+    result: Option<String>,
     /// `-f`: the init file, of which the values are known that scripts wrote into it.
     pub init_file: Option<String>,
     idle: Vec<String>,
@@ -134,6 +134,18 @@ impl SimulationFlags {
         Ok(())
     }
 
+    /// The file that they name for the results, or else the usual one with the ending that they name.
+    pub(super) fn result_file(&self, usual: &str) -> String {
+        match (&self.result, &self.format) {
+            (Some(file), _) => file.clone(),
+            (None, Some(format)) => {
+                let stem = usual.rsplit_once('.').map_or(usual, |(stem, _)| stem);
+                format!("{stem}.{format}")
+            }
+            (None, None) => usual.to_owned(),
+        }
+    }
+
     /// These flags, with others that come later.
     fn put_before(&mut self, later: SimulationFlags) {
         let before = std::mem::replace(self, later);
@@ -183,7 +195,7 @@ impl SimulationFlags {
 }
 
 /// The words of a text; quotes keep blanks together and are taken away.
-fn unquoted_words(text: &str) -> Vec<String> {
+pub(super) fn unquoted_words(text: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), String::new(), None);
     for c in text.chars() {
         match (quote, c) {

@@ -156,6 +156,7 @@ impl Session {
                 let status = argument.node.trim_matches(['(', ')', ' ']).parse().unwrap_or(0);
                 self.execution.exit(status);
             }
+            "experiment" => self.set_experiment(argument)?,
             RUN_COMMAND => {
                 let script = argument.node.trim().trim_matches('"');
                 let around = self.execution.begin_call(name.span);
@@ -172,6 +173,15 @@ impl Session {
             }
         }
         Ok(())
+    }
+
+    /// `experiment StopTime=10 Tolerance=1e-7`, as scripts of Dymola 4 to 6 have it.
+    fn set_experiment(&mut self, settings: &Spanned<Arc<str>>) -> Result<(), Diagnostic> {
+        let tight: Vec<&str> = settings.node.split('=').map(str::trim).collect();
+        let tight = tight.join("=").replace(',', " ");
+        let call =
+            format!("experiment({})", tight.split_whitespace().collect::<Vec<_>>().join(", "));
+        self.value_of("experiment", &call).map(drop)
     }
 
     /// Forgets variables, flags, imports and classes.

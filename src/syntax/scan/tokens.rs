@@ -237,13 +237,13 @@ impl<'t> Tokens<'t> {
             .unwrap_or(rest.len());
         let word = &self.text[self.at..self.at + length];
         self.at += length;
-        if command && matches!(word, "cd" | "clear" | "clearlog" | "exit") {
+        if command && matches!(word, "cd" | "clear" | "clearlog" | "exit" | "experiment") {
             return self.command(word);
         }
         TokenKind::Word
     }
 
-    /// Reads the argument of a bare command, if it is one: only `cd` has any.
+    /// Reads the argument of a bare command, if it is one: only `cd` and `experiment` have any.
     fn command(&mut self, word: &str) -> TokenKind {
         let line = &self.text[self.at..];
         let line = &line[..line.find(['\n', ';']).unwrap_or(line.len())];
@@ -251,11 +251,11 @@ impl<'t> Tokens<'t> {
         let blanks = line.len() - argument.len();
         let comment = argument.starts_with("//") || argument.starts_with("/*");
         let empty = argument.is_empty() || comment;
-        let is_path = word == "cd"
+        let is_path = matches!(word, "cd" | "experiment")
             && blanks > 0
             && !argument.starts_with(['(', '=', '['])
             && !argument.starts_with(":=");
-        if !empty && !is_path {
+        if !empty && !is_path || empty && word == "experiment" {
             return TokenKind::Word;
         }
         if !empty {
