@@ -65,19 +65,21 @@ impl Session {
         if let Err(errors) = &done {
             let cause = errors.first().map_or("", |error| error.message.as_str());
             let reason = format!("the simulation that writes it failed: {cause}");
-            self.outdated.0.entry(self.world.absolute(file)).or_insert(reason);
+            self.outdated.0.entry(self.world.absolute(&self.expanded(file))).or_insert(reason);
         }
         done
     }
 
     /// Writes a file anew, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.write_by(path, &mut |session| session.world.write(path, bytes))
+        let path = self.expanded(path);
+        self.write_by(&path, &mut |session| session.world.write(&path, bytes))
     }
 
     /// Writes behind the end of a file.
     pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.write_by(path, &mut |session| session.world.append(path, bytes))
+        let path = self.expanded(path);
+        self.write_by(&path, &mut |session| session.world.append(&path, bytes))
     }
 
     /// Writes results into a file anew, with the directories it lies in. A file with former results
@@ -89,9 +91,10 @@ impl Session {
         table: &ResultTable,
     ) -> Result<(), Fault> {
         table.check()?;
-        self.grant_replacement(path);
-        self.write_by(path, &mut |session| {
-            session.world.write_with(path, &mut |to| format.write_to(table, to))
+        let path = self.expanded(path);
+        self.grant_replacement(&path);
+        self.write_by(&path, &mut |session| {
+            session.world.write_with(&path, &mut |to| format.write_to(table, to))
         })
     }
 
@@ -101,7 +104,8 @@ impl Session {
         path: &Path,
         bytes: &[u8],
     ) -> Result<(), Fault> {
-        self.grant_replacement(path);
+        let expanded = self.expanded(path);
+        self.grant_replacement(&expanded);
         self.write_file(path, bytes)
     }
 
