@@ -165,7 +165,7 @@ fn run(
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let mut options = SimulationOptions { only: filter, ..options(arguments) };
     let input = arguments.input.as_deref();
-    let driven = input.map(|path| problem::driven(session, class, path)).transpose()?;
+    let driven = input.map(|path| problem::driven(session, class, path, None)).transpose()?;
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
     if let Some(driven) = driven.filter(|_| model.program.experiment().stop_time.is_none()) {
@@ -183,8 +183,7 @@ fn run(
     let mut simulated = with_progress(span, options, global, |options| {
         simulation::simulate(session, &model, &options).map_err(|error| vec![error])
     })?;
-    // The tables of inputs are not part of the model.
-    simulated.table.retain(|name| !name.starts_with("'data of "));
+    problem::Driven::without_tables(&mut simulated.table);
     session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));

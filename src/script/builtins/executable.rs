@@ -2,14 +2,12 @@
 //! that would run one is answered by simulating the translated model.
 
 use super::built_models::{self, Executable, init_file};
-use super::input_tables;
 use super::openmodelica;
 use super::simflags::{SimulationFlags, unquoted_words};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::simulation;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use std::path::Path;
@@ -55,12 +53,9 @@ fn run(
     let file = format!("{name}_res.{}", program.format);
     let written = flags.result_file(&file);
     let wanted = (file.as_str(), &program.filter);
-    let model = match flags.csv_input.as_deref() {
+    let model = match flags.csv_input {
         None => program.model.clone(),
-        input => {
-            let problem = input_tables::driven(session, &program.model.problem, input)?;
-            simulation::translate(session, &problem)?
-        }
+        Some(_) => openmodelica::driven_model(session, &program.model.problem, &flags)?,
     };
     let done = openmodelica::run(session, &model, &program.options, flags, wanted);
     session.noting_outdated(written.as_ref(), done).map(|_| ())

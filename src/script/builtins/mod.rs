@@ -15,7 +15,6 @@ mod files;
 mod gapilib;
 mod header;
 mod initial;
-mod input_tables;
 mod inputs;
 mod installation;
 mod introspection;

@@ -1,7 +1,6 @@
 //! Models as OpenModelica's scripts handle them.
 
 use super::built_models::{self, Executable};
-use super::input_tables;
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
@@ -15,10 +14,12 @@ use crate::script::errors::BAD_ARGUMENT;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{SimulationOptions, Translated};
 use crate::script::openmodelica::flat_model::{flat_text, trivial_equations};
+use crate::script::runs::problem::{self, Driven};
 use crate::script::{Dialect, Session};
 use crate::value::{FromValue, RecordValue, Value, check_length};
 use indexmap::IndexMap;
 use regex::{Regex, RegexBuilder};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The commands of this file.
@@ -77,9 +78,7 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
         let written = flags.result_file(&file);
-        let input = flags.csv_input.as_deref();
-        let problem = input_tables::driven(session, &class.to_string(), input);
-        let model = problem.and_then(|problem| simulation::translate(session, &problem));
+        let model = driven_model(session, &class.to_string(), &flags);
         let done = model.and_then(|model| run(session, &model, &options, flags, (&file, &filter)));
         session.noting_outdated(written.as_ref(), done)
     });
@@ -183,6 +182,23 @@ fn flags_of(session: &Session, flags: &str) -> Result<SimulationFlags, Vec<Diagn
     parsed.map_err(|error| vec![error])
 }
 
+/// The model, whose inputs follow the columns of a file if the flags name one: linearly between its
+/// rows, as OpenModelica's programs do.
+///
+/// # Errors
+/// Everything that is wrong with the model, or the file has no column of an input.
+pub(super) fn driven_model(
+    session: &mut Session,
+    class: &str,
+    flags: &SimulationFlags,
+) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    let Some(file) = &flags.csv_input else { return simulation::translate(session, class) };
+    let at = session.call_site();
+    let placed = |errors: Vec<Diagnostic>| errors.into_iter().map(|one| one.or_at(at)).collect();
+    let driven = problem::driven(session, class, Path::new(file), Some("linear"));
+    simulation::translate(session, &driven.map_err(placed)?.class)
+}
+
 /// Simulates and writes the results; the settings used, and the file.
 pub(super) fn run(
     session: &mut Session,
@@ -207,6 +223,7 @@ pub(super) fn run(
     let done = set.and_then(|()| simulation::simulate(session, model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
+    Driven::without_tables(&mut done.table);
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }

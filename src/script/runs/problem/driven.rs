@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::mat::MatFile;
 use crate::registry::BAD_OPTION;
-use crate::results;
+use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::models::simulation;
 use crate::source::Span;
@@ -27,12 +27,25 @@ pub struct Driven {
     pub last: f64,
 }
 
-/// Lets the inputs of the model `class` follow the columns of a file that have their names.
+impl Driven {
+    /// Takes the tables of the inputs, which are no part of the model, out of its results.
+    pub fn without_tables(results: &mut ResultTable) {
+        results.retain(|name| !name.starts_with("'data of "));
+    }
+}
+
+/// Lets the inputs of the model `class` follow the columns of a file that have their names. Between
+/// the samples they go on as `interpolation` says, `hold` or `linear`, or as they look.
 ///
 /// # Errors
 ///
 /// Files that cannot be read, without a column of time or of an input.
-pub fn driven(session: &mut Session, class: &str, path: &Path) -> Result<Driven, Vec<Diagnostic>> {
+pub fn driven(
+    session: &mut Session,
+    class: &str,
+    path: &Path,
+    interpolation: Option<&str>,
+) -> Result<Driven, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let bytes = session.read_bytes(path).map_err(one)?;
     let table = results::read_data(&path.to_string_lossy(), &bytes).map_err(one)?;
@@ -56,7 +69,11 @@ pub fn driven(session: &mut Session, class: &str, path: &Path) -> Result<Driven,
     for name in missing {
         notes.add(format!("{}: no column for the input `{name}`", table.file_name));
     }
-    let columns = found.iter().map(|name| ((*name).clone(), Column::Name((*name).clone())));
+    let columns = found.iter().map(|name| {
+        let named = ColumnEntry::named(Some((*name).clone()));
+        let interpolation = interpolation.map(str::to_owned);
+        ((*name).clone(), Column::More(Box::new(ColumnEntry { interpolation, ..named })))
+    });
     let entry = ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() };
     let mut enclosing = EnclosingClass::default();
     let times = ("time", time.as_slice());
