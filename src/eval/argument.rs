@@ -84,7 +84,7 @@ impl Evaluator<'_> {
     }
 
     /// The name that a variable of a script holds; of an iterator, also as an element of a list of
-    /// names, which are texts.
+    /// names, which are Strings.
     fn type_name_in(&self, variable: &Name) -> Option<Name> {
         let ident = variable.is_simple().then(|| variable.first())??;
         let is_iterator = self.scope.iterators.iter().any(|(iterator, _)| *iterator == ident);

@@ -101,7 +101,7 @@ impl Builder<'_> {
     }
 
     /// Whether an expression varies even where no when-clause acts: between events `pre(v)` is `v`.
-    fn varies_between_events(&mut self, e: Expr) -> bool {
+    pub(super) fn varies_between_events(&mut self, e: Expr) -> bool {
         let initial = self.initial_signal();
         let initial = self.dae.pool.as_variable(initial);
         let zero = self.dae.pool.constant(0.0);

@@ -129,7 +129,7 @@ impl Builder<'_> {
         if let Some(variable) = self.scalars.conditions.get(&b) {
             return Ok(self.dae.pool.variable(*variable));
         }
-        if self.varies(b) {
+        if self.varies(b) && self.varies_between_events(b) {
             return Err(fault!(NOT_DISCRETE, "this condition can change between events";
                 help: "do not use relations inside `noEvent` or inside functions")
             .at(span));

@@ -116,7 +116,7 @@ pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
 const TABLES: [&str; 12] =
     ["csv", "tsv", "txt", "dat", "dta", "mpt", "asc", "prn", "tab", "log", "xy", "out"];
 
-/// What stands behind the last point of a file's name, in lower case.
+/// The part of a file's name after its last point, in lower case.
 fn ending(file_name: &str) -> String {
     let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
     name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase()

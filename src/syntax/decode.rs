@@ -4,7 +4,7 @@ use super::errors::NOT_UTF8;
 use crate::diag::Fault;
 use crate::fault;
 
-/// The byte-order marks of UTF-16, and how a code unit is read behind each.
+/// The byte-order marks of UTF-16, and how a code unit is read after each.
 const UTF16: [(&[u8], fn([u8; 2]) -> u16); 2] =
     [(b"\xff\xfe", u16::from_le_bytes), (b"\xfe\xff", u16::from_be_bytes)];
 
@@ -37,7 +37,7 @@ mod tests {
     use super::decode;
 
     #[test]
-    fn utf16_is_read_behind_its_mark() {
+    fn utf16_is_read_after_its_mark() {
         let letters: Vec<u16> = "x = \"°C 😀\"".encode_utf16().collect();
         for (mark, bytes) in
             [(0xfeff_u16, u16::to_le_bytes as fn(u16) -> [u8; 2]), (0xfeff, u16::to_be_bytes)]

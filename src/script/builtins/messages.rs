@@ -16,6 +16,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: COUNT_MESSAGES, run: count_messages },
         Builtin { header: CLEAR_MESSAGES, run: clear_messages },
         Builtin { header: CLEARLOG, run: clear_messages },
+        Builtin { header: MESSAGE_DIALOG, run: message_dialog },
     ],
 };
 
@@ -79,5 +80,19 @@ end clearlog;
 
 fn clear_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
     session.output.messages.clear();
+    Ok(Value::Boolean(true))
+}
+
+const MESSAGE_DIALOG: &str = r#"
+function messageDialog "Prints a message; there is no window to confirm it in."
+  input String message;
+  input Real timeOut = 0 "has no effect";
+  output Boolean ok;
+end messageDialog;
+"#;
+
+fn message_dialog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let message: String = args.take("message")?;
+    session.print_of_script(&format!("{message}\n"));
     Ok(Value::Boolean(true))
 }

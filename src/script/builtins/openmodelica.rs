@@ -60,7 +60,7 @@ function simulate "Simulates a model. Defaults come from its experiment annotati
   input String outputFormat = "mat" "mat, csv, or empty for no file";
   input String variableFilter = ".*" "regular expression; selects the variables to store";
   input String cflags = "" "has no effect";
-  input String simflags = "" "-override=name=value,… sets parameters and start values; also -startTime, -stopTime, -stepSize, -tolerance, -s, -r";
+  input String simflags = "" "-override=name=value,… sets parameters and start values; also -overrideFile, -csvInput, -startTime, -stopTime, -stepSize, -tolerance, -s, -r";
   input String resimulateExecutable = "" "has no effect: a model is translated only once anyway";
   output Any simulationResults "resultFile, simulationOptions, messages";
 end simulate;
@@ -194,7 +194,8 @@ pub(super) fn driven_model(
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let Some(file) = &flags.csv_input else { return simulation::translate(session, class) };
     let at = session.call_site();
-    let placed = |errors: Vec<Diagnostic>| errors.into_iter().map(|one| one.or_at(at)).collect();
+    let placed =
+        |errors: Vec<Diagnostic>| errors.into_iter().map(|one| one.or_at(at)).collect::<Vec<_>>();
     let driven = problem::driven(session, class, Path::new(file), Some("linear"));
     simulation::translate(session, &driven.map_err(placed)?.class)
 }

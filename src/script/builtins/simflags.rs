@@ -5,7 +5,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
 use crate::script::Session;
-use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
+use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW, UNKNOWN_PARAMETER};
 use crate::script::models::simulation::SimulationOptions;
 use std::path::Path;
 
@@ -13,6 +13,8 @@ use std::path::Path;
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct SimulationFlags {
     overrides: Vec<(String, String)>,
+    /// Those of files: names that the model does not have are left out, with a warning.
+    of_files: Vec<(String, String)>,
     /// `-overrideFile`: files with lines `name=value`.
     override_files: Vec<String>,
     /// `-csvInput`: the file whose columns the inputs follow.
@@ -129,6 +131,7 @@ impl SimulationFlags {
             for line in lines.filter(is_setting) {
                 self.set(line)?;
             }
+            self.of_files.append(&mut self.overrides);
             self.put_before(own);
         }
         Ok(())
@@ -149,7 +152,7 @@ impl SimulationFlags {
     /// These flags, with others that come later.
     fn put_before(&mut self, later: SimulationFlags) {
         let before = std::mem::replace(self, later);
-        self.overrides.splice(0..0, before.overrides);
+        self.of_files.splice(0..0, before.of_files);
         self.start = self.start.or(before.start);
         self.stop = self.stop.or(before.stop);
         self.step = self.step.or(before.step);
@@ -169,6 +172,17 @@ impl SimulationFlags {
         if !self.idle.is_empty() {
             let flags = self.idle.join("`, `");
             session.note(NO_WINDOW, format!("`{flags}` in `simflags` has no effect here"));
+        }
+        for (name, value) in &self.of_files {
+            match session.set_parameter_text(name, value) {
+                // One file serves several versions of a library: OpenModelica leaves such lines out, too.
+                Err(mut fault) if fault.code == UNKNOWN_PARAMETER => {
+                    fault.message.push_str("; its line in the file is left out");
+                    let warning = fault.at(session.call_site()).warning();
+                    session.report(warning);
+                }
+                set => set?,
+            }
         }
         let mut overrides = self.overrides.iter();
         overrides.try_for_each(|(name, value)| session.set_parameter_text(name, value))

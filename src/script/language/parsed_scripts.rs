@@ -23,7 +23,7 @@ enum Sign {
     Runs(Option<Arc<str>>),
 }
 
-/// Signs of a piece of a script that are kept: the first that is certain decides.
+/// The most signs collected from one piece of a script: the first that is certain decides.
 const MAX_SIGNS: usize = 64;
 
 /// A script that was read.

@@ -174,7 +174,7 @@ impl Session {
                 return Ok(());
             }
             self.follow_ups.failed(statement);
-            // OpenModelica goes on in scripts that scripts run, too.
+            // OpenModelica also continues scripts that scripts run.
             if !outermost && self.dialect() == Dialect::Dymola {
                 self.follow_ups.not_done(&statements[at + 1..]);
                 return Err(diagnostic);

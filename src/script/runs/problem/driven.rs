@@ -35,7 +35,7 @@ impl Driven {
 }
 
 /// Lets the inputs of the model `class` follow the columns of a file that have their names. Between
-/// the samples they go on as `interpolation` says, `hold` or `linear`, or as they look.
+/// the samples they continue as `interpolation` says, `hold` or `linear`, or as they look.
 ///
 /// # Errors
 ///
