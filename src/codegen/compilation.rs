@@ -570,6 +570,7 @@ fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         infos.push(VariableInfo {
             name: v.name.clone(),
             unit: v.unit.clone(),
+            is_relative: v.is_relative,
             display_unit: v.display_unit.clone(),
             description: v.description.clone(),
             base: v.base.clone(),

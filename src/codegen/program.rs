@@ -42,6 +42,8 @@ pub struct VariableInfo {
     pub name: Arc<str>,
     /// Unit, empty if none.
     pub unit: Arc<str>,
+    /// A difference, whose unit converts without an offset.
+    pub is_relative: bool,
     /// Unit for people, empty if none.
     pub display_unit: Arc<str>,
     /// The string behind its declaration.

@@ -26,7 +26,7 @@ codes! {
         "## What it means\n\nThe measured data contain NaN or an infinite value, or no points at all.\n\n## Example\n\nA matrix exported with an empty cell.\n\n## What to do\n\nRemove or correct the point given in the message.",
     /// A measured column in another unit than the variable beside it (a note).
     UNITS_DIFFER = "units-differ":
-        "## What it means\n\nA script compares a measured column with a model variable in a different unit. Scripts use the numbers of their files without conversion; problem files convert units.\n\n## Example\n\nA column `V [mV]` beside an output `V` in volts.\n\n## What to do\n\nMultiply the column in the script by the factor given in the message, or correct the unit in the header if it is wrong.",
+        "## What it means\n\nA script compares a measured column with a model variable in a different unit. `Eval`, `Fit` and `Refine` convert the column for the comparison, as a problem file does; the arrays of the script keep the numbers of the file. Functions of the script that compare these arrays themselves do not convert.\n\n## Example\n\nA column `V [mV]` beside an output `V` in volts.\n\n## What to do\n\nNothing if the conversion is right. Correct the unit in the header if it is wrong; a function of your own needs the column times the factor given in the message.",
     /// Sizes of measured X and Y differ.
     DATA_SIZES_DIFFER = "data-sizes-differ":
         "## What it means\n\nThe matrices of X and Y values have different numbers of elements, so they do not form pairs of one experiment.\n\n## Example\n\n`Exp_Adq_SISO(\"data.mat\", \"t\", \"V\")` where `t` has 100 elements and `V` has 99.\n\n## What to do\n\nCorrect the file or the names of the matrices.",

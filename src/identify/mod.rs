@@ -34,4 +34,5 @@ pub use probe::{Ending, Probe};
 pub use program::CompiledModel;
 pub use recorder::{Best, Recorder};
 pub use study::{Compared, Measurement, Quantity, Study};
+pub use table::significant;
 pub use uncertainty::{Uncertainty, error_of_combination, uncertainty, uncertainty_given};

@@ -16,6 +16,11 @@ pub trait Model: Send + Sync {
     fn names(&self) -> Vec<String>;
     /// The unit of a Real variable, empty if it has none; `None` if there is no such variable.
     fn unit(&self, variable: &str) -> Option<String>;
+    /// Whether a variable is a difference, whose unit converts without an offset
+    /// (`annotation(absoluteValue = false)`).
+    fn is_relative(&self, _variable: &str) -> bool {
+        false
+    }
     /// Whether the variable's value depends on time but on no state and on none of these
     /// parameters; `false` where that is not certain.
     fn depends_on_time_alone(&self, variable: &str, varied: &[String]) -> bool;

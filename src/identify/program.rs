@@ -142,6 +142,10 @@ impl Model for CompiledModel {
         self.variable(variable).map(|variable| variable.unit.to_string())
     }
 
+    fn is_relative(&self, variable: &str) -> bool {
+        self.variable(variable).is_some_and(|variable| variable.is_relative)
+    }
+
     fn depends_on_time_alone(&self, variable: &str, varied: &[String]) -> bool {
         let Ok(variable) = self.program.find_variable(variable) else { return false };
         let varied: Result<Vec<usize>, Fault> =

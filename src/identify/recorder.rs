@@ -85,6 +85,14 @@ impl Recorder {
         self.measurements.push(measurement);
     }
 
+    /// Measured X are compared in another unit: what was read with `from` belongs to `to` as well.
+    pub fn measured_over(&mut self, from: &[f64], to: &[f64]) {
+        let own = self.measurements.iter().filter(|read| read.x == from);
+        let converted = own.map(|read| Measurement { x: to.to_vec(), ..read.clone() });
+        let converted: Vec<Measurement> = converted.collect();
+        self.measurements.extend(converted);
+    }
+
     /// `Ram_Gen_ARENA` was called with `seed`, at the place `site` of a script, and gave `next` to
     /// go on with.
     pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6], site: u64) {

@@ -697,6 +697,7 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
         causality: variable.causality,
         top_level: variable.top_level,
         protected: variable.protected,
+        is_relative: variable.is_relative,
         description: variable.description.clone().unwrap_or_default(),
         ..scalar_of_nothing("", kind, variable.span)
     }
@@ -735,6 +736,7 @@ pub(crate) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable 
         causality: None,
         top_level: false,
         protected: false,
+        is_relative: false,
         unit: "".into(),
         display_unit: "".into(),
         description: "".into(),

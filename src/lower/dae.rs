@@ -71,6 +71,8 @@ pub struct Variable {
     pub top_level: bool,
     /// Whether it is protected.
     pub protected: bool,
+    /// A difference, whose unit converts without an offset.
+    pub is_relative: bool,
     /// Unit, empty if none.
     pub unit: Arc<str>,
     /// Unit for people, empty if none.

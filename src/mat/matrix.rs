@@ -4,6 +4,7 @@ use super::errors::{BAD_MAT_FILE, UNKNOWN_MATRIX, UNREADABLE_MATRIX};
 use crate::diag::{Fault, suggest};
 use crate::{bail, fault};
 use indexmap::IndexMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The format a file was read from.
@@ -93,6 +94,17 @@ impl Matrix {
         &self.values[j * self.rows..(j + 1) * self.rows]
     }
 
+    /// Some of the rows.
+    fn rows(&self, rows: Range<usize>) -> Matrix {
+        let values = (0..self.columns).flat_map(|j| self.column(j)[rows.clone()].to_vec());
+        Matrix {
+            rows: rows.len(),
+            columns: self.columns,
+            values: values.collect(),
+            kind: self.kind,
+        }
+    }
+
     /// The values row after row.
     pub fn row_major(&self) -> Vec<f64> {
         self.transposed().values
@@ -174,6 +186,8 @@ pub struct About {
     pub lines: Arc<[usize]>,
     /// What was changed in reading, one sentence each.
     pub notes: Vec<String>,
+    /// Rows of the file before the first value.
+    pub rows_before: usize,
 }
 
 /// Measured values, see [`MatFile::column`].
@@ -208,6 +222,8 @@ pub struct MatFile {
     /// Variables that cannot be read, and why.
     failed: IndexMap<String, Fault>,
     about: IndexMap<String, About>,
+    /// Rows of the file before the first one here, see [`MatFile::rows`].
+    rows_before: usize,
     /// Names of columns without their units, with the columns that they may mean.
     aliases: IndexMap<String, Vec<String>>,
 }
@@ -221,6 +237,7 @@ impl MatFile {
             file_name: String::new(),
             failed: IndexMap::new(),
             about: IndexMap::new(),
+            rows_before: 0,
             aliases: IndexMap::new(),
         }
     }
@@ -268,7 +285,9 @@ impl MatFile {
     pub fn column(&self, name: &str) -> Result<Column, Fault> {
         let (values, about) = match part(name).filter(|_| self.own_name(name) == Ok(name)) {
             Some((matrix, part)) if !self.arrays.contains_key(name) => {
-                (self.numbers(matrix)?.part(matrix, part)?, About::default())
+                let rows_before = self.rows_before;
+                let values = self.numbers(matrix)?.part(matrix, part)?;
+                (values, About { rows_before, ..About::default() })
             }
             _ => {
                 let matrix = self.numbers(name)?;
@@ -281,10 +300,11 @@ impl MatFile {
                     );
                 };
                 let own = self.own_name(name)?;
-                (values.to_vec(), self.about.get(own).cloned().unwrap_or_default())
+                let about = self.about.get(own).cloned().unwrap_or_default();
+                (values.to_vec(), About { rows_before: self.rows_before, ..about })
             }
         };
-        let missing = missing(name, &values);
+        let missing = missing(name, &values, self.rows_before);
         Ok(Column { values, about, missing })
     }
 
@@ -296,6 +316,25 @@ impl MatFile {
                 .help(self.inventory()));
         }
         Ok(matrix)
+    }
+
+    /// The same with these rows alone of all that have `count` rows; messages count the rows as in
+    /// the whole file.
+    pub fn rows(&self, rows: Range<usize>, count: usize) -> MatFile {
+        let mut part = self.clone();
+        for (name, matrix) in &mut part.arrays {
+            *matrix = match (matrix.rows, matrix.columns) {
+                (own, _) if own == count => matrix.rows(rows.clone()),
+                (1, own) if own == count => matrix.transposed().rows(rows.clone()).transposed(),
+                _ => continue,
+            };
+            if let Some(about) = part.about.get_mut(name).filter(|about| about.lines.len() == count)
+            {
+                about.lines = about.lines[rows.clone()].into();
+            }
+        }
+        part.rows_before += rows.start;
+        part
     }
 
     /// The name of a column without its unit, if that means no other one.
@@ -425,43 +464,46 @@ impl Column {
     pub fn place(&self, row: usize) -> String {
         match self.about.lines.get(row) {
             Some(line) => format!("line {line}"),
-            None => format!("row {}", row + 1),
+            None => format!("row {}", self.about.rows_before + row + 1),
         }
     }
 
     /// Sentences about values that fall or occur twice, where they are the X of an experiment.
     pub fn order(&self, name: &str) -> Vec<String> {
-        let known: Vec<(usize, f64)> = self
-            .values
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|(_, value)| value.is_finite())
-            .collect();
-        let mut notes = Vec::new();
+        self.fall(name).into_iter().chain(self.repetition(name)).collect()
+    }
+
+    /// The values that there are, with their rows counted from 0.
+    pub fn known(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.values.iter().copied().enumerate().filter(|(_, value)| value.is_finite())
+    }
+
+    /// A sentence about values that rise and fall.
+    pub fn fall(&self, name: &str) -> Option<String> {
+        let known: Vec<(usize, f64)> = self.known().collect();
         let falling = known.windows(2).find(|pair| pair[1].1 < pair[0].1);
         let rises = known.windows(2).any(|pair| pair[1].1 > pair[0].1);
-        if let Some([before, after]) = falling.filter(|_| rises) {
-            notes.push(format!(
-                "`{name}` decreases from {} to {} at {}: all rows are treated as points of one \
-                 experiment; write consecutive runs to separate files",
-                before.1,
-                after.1,
-                self.place(after.0)
-            ));
-        }
-        let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+        let Some([before, after]) = falling.filter(|_| rises) else { return None };
+        Some(format!(
+            "`{name}` decreases from {} to {} at {}: all rows are treated as points of one \
+             experiment; write consecutive runs to separate files, or cut them with `segments` in a \
+             problem file",
+            before.1,
+            after.1,
+            self.place(after.0)
+        ))
+    }
+
+    /// A sentence about values that occur more than once.
+    pub fn repetition(&self, name: &str) -> Option<String> {
+        let mut sorted: Vec<f64> = self.known().map(|(_, value)| value).collect();
         sorted.sort_by(f64::total_cmp);
         let twice = sorted.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        if twice > 0 {
-            let first =
-                sorted.windows(2).find(|pair| pair[0] == pair[1]).map_or(0.0, |pair| pair[0]);
-            notes.push(format!(
-                "{twice} values of `{name}` repeat an earlier one, such as {first}: each row \
-                 counts as one point"
-            ));
-        }
-        notes
+        let first = sorted.windows(2).find(|pair| pair[0] == pair[1])?[0];
+        Some(format!(
+            "{twice} values of `{name}` repeat an earlier one, such as {first}: each row counts as \
+             one point"
+        ))
     }
 }
 
@@ -490,13 +532,14 @@ fn part(name: &str) -> Option<(&str, Part)> {
 }
 
 /// The sentence about values that are missing.
-fn missing(name: &str, values: &[f64]) -> Option<String> {
+fn missing(name: &str, values: &[f64], rows_before: usize) -> Option<String> {
     const SHOWN: usize = 10;
     let rows: Vec<usize> = (0..values.len()).filter(|&k| !values[k].is_finite()).collect();
     if rows.is_empty() {
         return None;
     }
-    let shown: Vec<String> = rows.iter().take(SHOWN).map(|row| (row + 1).to_string()).collect();
+    let shown: Vec<String> =
+        rows.iter().take(SHOWN).map(|row| (rows_before + row + 1).to_string()).collect();
     let more = if rows.len() > SHOWN { ", …" } else { "" };
     let (what, verb) = if rows.len() == 1 { ("row", "is") } else { ("rows", "are") };
     Some(format!(

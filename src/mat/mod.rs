@@ -16,6 +16,7 @@
 //! References: *MAT-File Format*, The MathWorks, R2024a (version 5: chapter 1; version 4:
 //! appendix).
 
+mod calendar;
 pub mod errors;
 mod matrix;
 mod number;
@@ -31,6 +32,7 @@ mod v5;
 mod v73;
 mod write;
 
+pub use calendar::{Calendar, calendar};
 pub use matrix::{About, Column, Kind, MatFile, Matrix, Version};
 pub use number::Storage;
 pub use table::read_csv;

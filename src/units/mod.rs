@@ -71,6 +71,20 @@ impl Unit {
 }
 
 impl Conversion {
+    /// That of differences of values, in which the zeros of the scales cancel.
+    pub fn of_differences(self) -> Conversion {
+        Conversion { offset: 0.0, ..self }
+    }
+
+    /// What is done with a value, as the end of a sentence: `, times 0.001, plus 273.15`.
+    pub fn in_words(self) -> String {
+        let part = |word: &str, value: f64, neutral: f64| match value == neutral {
+            true => String::new(),
+            false => format!(", {word} {value}"),
+        };
+        part("times", self.factor, 1.0) + &part("plus", self.offset, 0.0)
+    }
+
     /// Whether nothing changes.
     pub fn is_identity(self) -> bool {
         self.factor == 1.0 && self.offset == 0.0

@@ -68,6 +68,7 @@ fn components(model: &mut FlatModel, clause: &ComponentClause) {
             is_final: clause.prefixes.is_final,
             protected: false,
             evaluate: false,
+            is_relative: false,
             structural: false,
             top_level: true,
             attributes: Default::default(),

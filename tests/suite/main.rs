@@ -60,6 +60,7 @@ mod linear_algebra;
 mod linear_loops;
 mod lsp;
 mod mat;
+mod measured_time;
 mod model_files;
 mod modelica;
 mod modelica_models;

@@ -104,7 +104,8 @@ package SI "Types of quantities in units of the International System"
   // Heat
   type ThermodynamicTemperature = Real(final quantity = "ThermodynamicTemperature", final unit = "K", min = 0.0, start = 288.15, nominal = 300, displayUnit = "degC");
   type Temperature = ThermodynamicTemperature;
-  type TemperatureDifference = Real(final quantity = "ThermodynamicTemperature", final unit = "K");
+  type TemperatureDifference = Real(final quantity = "ThermodynamicTemperature", final unit = "K")
+    annotation(absoluteValue = false);
   type TemperatureSlope = Real(final quantity = "TemperatureSlope", final unit = "K/s");
   type LinearTemperatureCoefficient = Real(final quantity = "LinearTemperatureCoefficient", final unit = "1/K");
   type QuadraticTemperatureCoefficient = Real(final quantity = "QuadraticTemperatureCoefficient", final unit = "1/K2");

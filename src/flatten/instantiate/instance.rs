@@ -120,6 +120,8 @@ pub struct Declaration {
     pub is_final: bool,
     pub protected: bool,
     pub evaluate: bool,
+    /// `annotation(absoluteValue = …)` (MLS §18).
+    pub absolute: Option<bool>,
     pub description: Option<Arc<str>>,
     pub span: Span,
 }
@@ -146,6 +148,8 @@ pub struct Expanded {
     pub connector: bool,
     /// The class that the type names, if it is not predefined.
     pub class: Option<ScopeId>,
+    /// `annotation(absoluteValue = …)` of the outermost type that has it.
+    pub absolute: Option<bool>,
 }
 
 /// A variable of the tree.

@@ -230,6 +230,7 @@ impl Tree {
             is_final: inherited.is_final,
             protected: inherited.protected,
             evaluate: declared.evaluate,
+            is_relative: declared.absolute.or(expanded.absolute) == Some(false),
             structural: false,
             top_level,
             attributes: IndexMap::new(),

@@ -13,8 +13,8 @@ use crate::flatten::lookup::elements::MAX_BASES;
 use crate::flatten::lookup::scope::Text;
 use crate::source::Span;
 use crate::syntax::ast::{
-    self, ClassSpecifier, ComponentClause, ComponentDeclaration, Deselection, Element, Restriction,
-    Subscript,
+    self, ClassSpecifier, Comment, ComponentClause, ComponentDeclaration, Deselection, Element,
+    Restriction, Subscript,
 };
 use crate::syntax::print;
 use std::sync::Arc;
@@ -238,7 +238,8 @@ impl Classes<'_> {
             type_prefixes: clause.type_prefixes,
             is_final,
             protected,
-            evaluate: evaluates(component),
+            evaluate: annotated(&component.comment, "Evaluate") == Some(true),
+            absolute: annotated(&component.comment, "absoluteValue"),
             description: component.comment.text.clone(),
             span: component.span,
         };
@@ -332,7 +333,8 @@ fn redeclared(
     own.causality = new.causality.or(own.causality);
     own.connection = new.connection.or(own.connection);
     declaration.is_final |= clause.prefixes.is_final;
-    declaration.evaluate |= evaluates(component);
+    declaration.evaluate |= annotated(&component.comment, "Evaluate") == Some(true);
+    declaration.absolute = annotated(&component.comment, "absoluteValue").or(declaration.absolute);
     if component.comment.text.is_some() {
         declaration.description = component.comment.text.clone();
     }
@@ -340,19 +342,21 @@ fn redeclared(
     Ok(())
 }
 
-/// Whether a declaration carries `annotation(Evaluate = true)` (MLS §18.3).
-fn evaluates(component: &ComponentDeclaration) -> bool {
-    let Some(annotation) = &component.comment.annotation else { return false };
-    annotation.arguments.iter().any(|argument| match argument {
-        ast::Argument::Element(element) => {
-            let binding = element.modification.as_ref().and_then(|m| m.binding.as_ref());
-            element.name.node.to_string() == "Evaluate"
-                && matches!(
-                    binding,
-                    Some(ast::Binding::Expression(value))
-                        if value.kind == ast::ExpressionKind::Boolean(true)
-                )
+/// The Boolean value of an annotation behind a declaration or a short class, such as `Evaluate`
+/// (MLS §18.3).
+pub fn annotated(comment: &Comment, name: &str) -> Option<bool> {
+    let value = |argument: &ast::Argument| {
+        let ast::Argument::Element(element) = argument else { return None };
+        let binding = element.modification.as_ref()?.binding.as_ref()?;
+        match binding {
+            ast::Binding::Expression(value) if element.name.node.to_string() == name => {
+                match value.kind {
+                    ast::ExpressionKind::Boolean(value) => Some(value),
+                    _ => None,
+                }
+            }
+            _ => None,
         }
-        ast::Argument::Redeclaration(_) => false,
-    })
+    };
+    comment.annotation.as_ref()?.arguments.iter().find_map(value)
 }

@@ -1,5 +1,6 @@
 //! What the types of components are made of (MLS §4.6), through short classes.
 
+use super::declarations::annotated;
 use super::modification::Modifier;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -49,6 +50,7 @@ impl Classes<'_> {
             connection: None,
             connector: false,
             class: None,
+            absolute: None,
         };
         for _ in 0..MAX_DEPTH {
             let step = match found {
@@ -105,6 +107,8 @@ impl Classes<'_> {
         let own = Modifier::of_arguments(&short.modification, parent)?;
         let own = scope.defaults.clone().overridden_by(own, self.simple_name(id))?;
         self.modify(id, own, expanded)?;
+        let absolute = annotated(&short.comment, "absoluteValue");
+        expanded.absolute = expanded.absolute.or(absolute);
         expanded.dims.extend(short.subscripts.iter().map(|s| (s.clone(), parent)));
         expanded.causality = expanded.causality.or(short.prefixes.causality);
         expanded.connection = expanded.connection.or(short.prefixes.connection);

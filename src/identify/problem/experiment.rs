@@ -1,9 +1,10 @@
 //! Experiments on models: which variables are compared at which points, and the simulator that
 //! runs all of them for one set of parameters.
 
+use super::event_limits::{Limit, limits};
 use super::{Failed, FailureKind, Portable, PortableExperiment, PortableSettings, Simulate};
 use crate::diag::{Diagnostic, Fault};
-use crate::identify::plan::{Plan, plan, with_driver};
+use crate::identify::plan::{Plan, TIME, plan, with_driver};
 use crate::identify::pointwise::Pointwise;
 use crate::identify::{Instance, Model, Path};
 use crate::sim::{
@@ -45,7 +46,8 @@ pub struct Experiment {
 pub struct Observation {
     /// The variable.
     pub y_name: String,
-    /// X of the points.
+    /// X of the points. Over time, consecutive points with one time are the left and the right limit
+    /// at an event.
     pub x: Vec<f64>,
 }
 
@@ -74,6 +76,8 @@ struct Stage {
     x_name: String,
     /// For each observation the times, or in X the points.
     points: Vec<Vec<f64>>,
+    /// For each observation over time, which of the points are limits at events.
+    limits: Vec<Vec<Option<Limit>>>,
     in_x: bool,
     /// For static curves.
     pointwise: Option<Pointwise>,
@@ -239,6 +243,10 @@ impl Stage {
         let plan = plan(model.as_ref(), &varied, x_name, &all, &mut settings)?;
         let mut observed: Vec<String> = observations.iter().map(|o| o.y_name.clone()).collect();
         let pointwise = matches!(plan, Plan::OneByOne).then(Pointwise::default);
+        let limits = match x_name == TIME {
+            true => observations.iter().map(|o| limits(&o.x)).collect(),
+            false => vec![Vec::new(); observations.len()],
+        };
         let (points, in_x) = match plan {
             Plan::AtTimes(times) => {
                 let time =
@@ -266,6 +274,7 @@ impl Stage {
             settings,
             x_name: x_name.clone(),
             points,
+            limits,
             in_x,
             pointwise,
             failed_at: None,
@@ -413,12 +422,12 @@ impl Stage {
         let observed = self.points.len() + usize::from(self.in_x);
         let mut rows = derivatives.chunks_exact_mut(genes.max(1));
         for (column, points) in self.points.iter().enumerate() {
-            for (point, row) in points.iter().zip(&mut rows) {
+            for ((number, point), row) in points.iter().enumerate().zip(&mut rows) {
                 for (k, place) in self.places.iter().enumerate() {
                     let of = |column: usize| observed * (k + 1) + column;
                     row[*place] += match self.in_x {
                         true => self.derivative_in_x(trajectory, column, *point, of),
-                        false => trajectory.at(of(column), *point),
+                        false => self.at(trajectory, [column, of(column)], (number, *point)),
                     }
                     .ok_or_else(|| missing("the simulation ended early"))?;
                 }
@@ -476,6 +485,19 @@ impl Stage {
         })
     }
 
+    /// The value of a column of the trajectory at point `number` of observation `y`.
+    fn at(
+        &self,
+        trajectory: &Trajectory,
+        [y, of]: [usize; 2],
+        (number, time): (usize, f64),
+    ) -> Option<f64> {
+        match self.limits[y].get(number) {
+            Some(Some(limit)) => limit.value(trajectory, [y, of], time),
+            _ => trajectory.at(of, time),
+        }
+    }
+
     fn read(&self, trajectory: &Trajectory, out: &mut [f64]) -> Result<(), Failed> {
         let mut first = 0;
         for (column, points) in self.points.iter().enumerate() {
@@ -488,8 +510,8 @@ impl Stage {
                 path.interpolate(&self.x_name, y, points, out)
                     .map_err(|fault| missing(&fault.message))?;
             } else {
-                for (value, &time) in out.iter_mut().zip(points) {
-                    let found = trajectory.at(column, time);
+                for (value, (number, &time)) in out.iter_mut().zip(points.iter().enumerate()) {
+                    let found = self.at(trajectory, [column, column], (number, time));
                     *value = found.ok_or_else(|| missing("the simulation ended early"))?;
                 }
             }

@@ -16,6 +16,7 @@ mod effects;
 mod ending;
 mod error_model;
 mod evaluation;
+mod event_limits;
 mod experiment;
 mod failure;
 mod failure_region;
@@ -70,6 +71,7 @@ use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
 pub use portable::{Portable, PortableExperiment, PortableSettings};
 pub use profile::{Profile, Profiles};
+pub use refit::MakeSimulator;
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
 pub use searches::best_of;
@@ -82,7 +84,6 @@ pub use text::modelica_number;
 pub use unpacked::unpacked;
 
 use super::fitness::Fitness;
-use crate::diag::Fault;
 use crate::ga::optimizer::Method;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -230,7 +231,7 @@ pub struct Problem {
     /// What is wanted beyond the estimates.
     pub inference: Inference,
     /// Makes a simulator; one a thread.
-    pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
+    pub simulator: MakeSimulator,
 }
 
 impl Problem {

@@ -1,9 +1,10 @@
 //! Least squares of some parameters from a known point, the others held.
 
-use super::{Best, Evaluation, Free, Problem, Run};
+use super::{Best, Evaluation, Free, Problem, Run, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
+use crate::identify::ranks::Processors;
 use crate::registry::{self, Options};
 
 /// Evaluations of one fit.
@@ -17,6 +18,9 @@ pub struct Refit<'a> {
     /// Simulations so far.
     pub simulations: u64,
 }
+
+/// Makes the simulators of a problem.
+pub type MakeSimulator = Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>;
 
 /// Values of all parameters and their sum of squares.
 pub type Fitted = (Vec<f64>, f64);
@@ -172,6 +176,39 @@ impl Run {
             self.refit()?;
         }
         Ok(is_better)
+    }
+
+    /// The objective that other simulators of the same points reach by least squares from the best
+    /// point, and the simulations that it took; `None` where they cannot simulate that point.
+    ///
+    /// # Errors
+    ///
+    /// Those of the simulators' maker.
+    pub fn objective_with(
+        &mut self,
+        simulator: MakeSimulator,
+        processors: &Processors,
+    ) -> Result<(Option<f64>, u64), Fault> {
+        let own = std::mem::replace(&mut self.problem.simulator, simulator);
+        let found = self.objective_elsewhere(processors);
+        self.problem.simulator = own;
+        found
+    }
+
+    fn objective_elsewhere(&self, processors: &Processors) -> Result<(Option<f64>, u64), Fault> {
+        let Some(best) = &self.best else { return Ok((None, 0)) };
+        let mut evaluation = Evaluation::on(&self.problem, processors)?;
+        evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
+        let (values, simulations) = match Refit::new(&self.problem, &evaluation) {
+            Some(mut refit) => {
+                let found = refit.from(&best.values, None)?;
+                (found.map(|(values, _)| values), refit.simulations)
+            }
+            None => (Some(best.values.clone()), 1),
+        };
+        let simulated = values.and_then(|values| evaluation.simulate(&values).ok());
+        let objective = simulated.map(|row| evaluation.objective(&self.problem, &row));
+        Ok((objective, simulations))
     }
 
     /// Least squares from the best point, which it replaces; without least squares only the objective

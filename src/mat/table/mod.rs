@@ -150,7 +150,7 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
             continue;
         }
         let mut about =
-            About { unit: heading.unit.clone(), lines: lines.clone(), notes: Vec::new() };
+            About { unit: heading.unit.clone(), lines: lines.clone(), ..About::default() };
         match numbers(heading.name, parsed, dates, &mut about) {
             Ok(values) => file.insert_column(name, Matrix::column_vector(values), about),
             Err(fault) => file.fail(name, fault),

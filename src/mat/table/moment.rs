@@ -267,6 +267,7 @@ pub fn seconds(
         before = Some(clock);
         found.push(Some(i128::from(clock) + added));
     }
+    let changes = if is_dated { daylight_saving(&mut found) } else { String::new() };
     let first = found.iter().flatten().next().copied().unwrap_or(0);
     let last = found.iter().flatten().next_back().copied().unwrap_or(0);
     // A log that begins later than it lasts shows the time of day.
@@ -280,7 +281,39 @@ pub fn seconds(
         (false, false) => "hours, minutes and seconds, read as seconds",
     };
     let midnight = if passes_midnight { ", across midnight" } else { "" };
-    Ok(Seconds { values, meaning: format!("{what}{midnight}") })
+    Ok(Seconds { values, meaning: format!("{what}{midnight}{changes}") })
+}
+
+/// Counts on where a local clock is set forward or back by an hour: at night on a Sunday, where the
+/// step is an hour longer or shorter than the median one. Returns where, as the end of a sentence.
+fn daylight_saving(found: &mut [Option<i128>]) -> String {
+    let (hour, day) = (i128::from(3600 * SECOND), i128::from(DAY));
+    let known: Vec<(usize, i128)> =
+        found.iter().enumerate().filter_map(|(row, time)| Some((row, (*time)?))).collect();
+    let mut steps: Vec<i128> = known.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
+    steps.sort_unstable();
+    let Some(&usual) = steps.get(steps.len() / 2).filter(|usual| **usual > 0) else {
+        return String::new();
+    };
+    // 1970-01-01 was a Thursday.
+    let is_sunday_night =
+        |time: i128| (time.div_euclid(day) + 4) % 7 == 0 && time.rem_euclid(day) <= 4 * hour;
+    let (mut added, mut words) = (0, String::new());
+    for pair in known.windows(2) {
+        let [(row, before), (next, after)] = pair else { continue };
+        let excess = after - before - usual;
+        let is_change = (excess.abs() - hour).abs() <= usual / 10;
+        if is_change && is_sunday_night(*before) && is_sunday_night(*after) {
+            added -= excess.signum() * hour;
+            let way = if excess > 0 { "forward" } else { "back" };
+            words += &format!("; the clock is set {way} by an hour after row {}", row + 1);
+        }
+        found[*next] = Some(after + added);
+    }
+    match words.is_empty() {
+        true => words,
+        false => words + " (daylight saving time), and the seconds count on",
+    }
 }
 
 /// A clock of two parts: hours and minutes where it belongs to a date or the head says so.
@@ -366,6 +399,24 @@ mod tests {
         assert_eq!(of(&["10:12:01", "10:12:02.1"]).unwrap().0, [0.0, 1.1]);
         assert!(of(&["10:05", "10:06"]).unwrap_err().contains("hours and minutes"));
         assert_eq!(of(&["1:05.5", "2:00.0"]).unwrap().0, [65.5, 120.0]);
+    }
+
+    #[test]
+    fn seconds_count_on_where_the_clock_is_changed() {
+        // Berlin in quarters of an hour, New York in hours.
+        let back = ["2024-10-27 02:30", "2024-10-27 02:45", "2024-10-27 02:00", "2024-10-27 02:15"];
+        let (values, meaning) = of(&back).unwrap();
+        assert_eq!(values, [0.0, 900.0, 1800.0, 2700.0]);
+        assert!(meaning.contains("the clock is set back by an hour after row 2"), "{meaning}");
+        let forward =
+            ["2024-03-10 00:00", "2024-03-10 01:00", "2024-03-10 03:00", "2024-03-10 04:00"];
+        assert_eq!(of(&forward).unwrap().0, [0.0, 3600.0, 7200.0, 10_800.0]);
+        let twice =
+            ["2024-11-03 00:00", "2024-11-03 01:00", "2024-11-03 01:00", "2024-11-03 02:00"];
+        assert_eq!(of(&twice).unwrap().0, [0.0, 3600.0, 7200.0, 10_800.0]);
+        // On a Monday an hour is missing.
+        let gap = ["2024-04-01 01:30", "2024-04-01 01:45", "2024-04-01 03:00", "2024-04-01 03:15"];
+        assert_eq!(of(&gap).unwrap().0, [0.0, 900.0, 5400.0, 6300.0]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Units in heads: `U [V]`, `U (V)`, `U/V`, `U, V`, or a row of their own.
+//! Units in heads: `U [V]`, `U (V)`, `U/V`, `U, V`, `U in V`, or a row of their own.
 
 use crate::units;
 
@@ -22,7 +22,7 @@ pub fn split(head: &str) -> (Option<&str>, Option<String>) {
         }
         return (Some(name.trim()), known);
     }
-    for mark in ['/', ','] {
+    for mark in ["/", ",", " in "] {
         let Some((name, unit)) = head.split_once(mark) else { continue };
         let unit = known(unit);
         if unit.is_some() && !name.trim().is_empty() {
@@ -80,6 +80,11 @@ mod tests {
             ("i/mA cm^-2", owned("i", "mA cm^-2")),
             ("T/°C", owned("T", "°C")),
             ("U, V", owned("U", "V")),
+            ("Leistung / W", owned("Leistung", "W")),
+            ("Zeit in s", owned("Zeit", "s")),
+            ("Temperatur in \u{b0}C", owned("Temperatur", "\u{b0}C")),
+            ("Zeit in Minuten", owned("Zeit", "Minuten")),
+            ("change in x", (None, None)),
             ("Vf [V vs. Ref.]", owned("Vf", "V")),
             ("U (old)", (Some("U"), None)),
             ("x[2]", (None, None)),

@@ -209,7 +209,7 @@ end Fit;
 
 fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let Rows(simulated) = args.take("DATASim_Int")?;
-    let measured: Vec<f64> = args.take("Yexp")?;
+    let mut measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
     if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
         bail!(BAD_DATA, "measured Y value {} is {}", k + 1, measured[k]; help: "remove this point");
@@ -217,9 +217,11 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if measured.is_empty() {
         bail!(BAD_DATA, "`Yexp` is empty"; help: "read them with `Exp_Adq_SISO`");
     }
+    if let Some(converted) = session.fitted(simulated.row(0), &measured) {
+        measured = converted;
+    }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
-    session.fitted(simulated.row(0), &measured);
     session.identification().recorder.rated(&simulated.elements, &measured);
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
@@ -382,7 +384,7 @@ fn refine(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     };
     let ranges = (0..n_genes).map(range).collect::<Result<_, Fault>>()?;
     let refinement = Refinement { request, measured, ranges };
-    let (refined, simulations) = session.refine(&refinement, &starts)?;
+    let (refined, simulations) = session.refine(refinement, &starts)?;
     let simulations = i64::try_from(simulations).unwrap_or(i64::MAX);
     Ok(Value::Tuple(vec![refined.genome.into(), refined.fitness.into(), simulations.into()]))
 }

@@ -1,6 +1,6 @@
-//! Units of measured columns beside those of the variables that they are compared with. A script
-//! computes with the numbers of its files as they are; where the units differ, that is noted once.
-//! A problem file converts them instead.
+//! Units of measured columns beside those of the variables that they are compared with. The numbers of
+//! a script are those of its files; where `Eval`, `Fit` and `Refine` compare them with a variable in
+//! another unit of the same quantity, they convert them as a problem file does, which is noted once.
 
 use crate::identify::errors::UNITS_DIFFER;
 use crate::identify::{Quantity, Simulated, Study};
@@ -32,6 +32,8 @@ struct Column {
 struct Output {
     row: Vec<f64>,
     study: Arc<Study>,
+    /// Whether the compared variable is a difference, whose unit converts without an offset.
+    is_relative: bool,
 }
 
 impl Session {
@@ -51,42 +53,86 @@ impl Session {
         }
     }
 
-    /// Remembers what a population was simulated of, and notes the unit of X.
+    /// Remembers what a population was simulated of.
     pub(in crate::script) fn population_simulated(
         &mut self,
         study: &Arc<Study>,
-        x: &[f64],
+        points: usize,
         simulated: &Simulated,
+        is_relative: bool,
     ) {
         let units = self.extension::<Units>();
         if units.columns.is_empty() {
             return;
         }
-        let row = simulated.rows.get(..x.len()).unwrap_or_default().to_vec();
-        units.simulated.push_back(Output { row, study: study.clone() });
+        let row = simulated.rows.get(..points).unwrap_or_default().to_vec();
+        units.simulated.push_back(Output { row, study: study.clone(), is_relative });
         if units.simulated.len() > REMEMBERED {
             units.simulated.pop_front();
         }
-        self.compared(x, &study.model, &study.x);
     }
 
-    /// Notes the units of measured and simulated values that a script compares.
-    pub(in crate::script) fn fitted(&mut self, row: &[f64], measured: &[f64]) {
+    /// Measured values in the unit of the simulated ones that a script compares them with; `None`
+    /// where they are in it, or nothing is known of them.
+    pub(in crate::script) fn fitted(&mut self, row: &[f64], measured: &[f64]) -> Option<Vec<f64>> {
         let simulated = &self.extension::<Units>().simulated;
-        let own = simulated.iter().rev().find(|output| same(&output.row, row));
-        if let Some(study) = own.map(|output| output.study.clone()) {
-            self.compared(measured, &study.model, &study.y);
-        }
+        let own = simulated.iter().rev().find(|output| same(&output.row, row))?;
+        let (study, is_relative) = (own.study.clone(), own.is_relative);
+        self.in_unit_of(measured, &study.model, (&study.y, is_relative))
     }
 
-    /// Notes it if these values are a measured column in another unit than that of the variable.
-    pub(in crate::script) fn compared(&mut self, values: &[f64], model: &str, variable: &Quantity) {
-        let units = self.extension::<Units>();
-        let column = units.columns.iter().rev().find(|column| same(&column.values, values));
-        let Some(sentence) = column.and_then(|column| sentence(column, model, variable)) else {
+    /// A measured column in the unit of the variable that it is compared with, which is noted; `None`
+    /// where it is in it, or where these values are not a column with a unit.
+    pub(in crate::script) fn in_unit_of(
+        &mut self,
+        values: &[f64],
+        model: &str,
+        variable: (&Quantity, bool),
+    ) -> Option<Vec<f64>> {
+        let Mismatch { units, conversion } = self.mismatch(values, model, variable)?;
+        let Some(conversion) = conversion else {
+            self.note_units(format!(
+                "{units}, a different quantity: the numbers are compared without conversion"
+            ));
+            return None;
+        };
+        self.note_units(format!(
+            "{units}: for the comparison the column is converted{}",
+            conversion.in_words()
+        ));
+        Some(values.iter().map(|value| conversion.apply(*value)).collect())
+    }
+
+    /// Notes it if a script has compared these values by itself, although they are a measured column
+    /// in another unit than that of the variable.
+    pub(in crate::script) fn compared(
+        &mut self,
+        values: &[f64],
+        model: &str,
+        variable: (&Quantity, bool),
+    ) {
+        let Some(Mismatch { units, conversion }) = self.mismatch(values, model, variable) else {
             return;
         };
-        if units.said.insert(sentence.clone()) {
+        let remedy = conversion.map_or_else(String::new, |conversion| {
+            format!("; to compare in {}, take the column{}", variable.0.unit, conversion.in_words())
+        });
+        self.note_units(format!("{units}: the numbers are compared without conversion{remedy}"));
+    }
+
+    fn mismatch(
+        &mut self,
+        values: &[f64],
+        model: &str,
+        variable: (&Quantity, bool),
+    ) -> Option<Mismatch> {
+        let columns = &self.extension::<Units>().columns;
+        let column = columns.iter().rev().find(|column| same(&column.values, values))?;
+        mismatch(column, model, variable)
+    }
+
+    fn note_units(&mut self, sentence: String) {
+        if self.extension::<Units>().said.insert(sentence.clone()) {
             self.note(UNITS_DIFFER, sentence);
         }
     }
@@ -97,35 +143,33 @@ fn same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(equal)
 }
 
-fn sentence(column: &Column, model: &str, variable: &Quantity) -> Option<String> {
+/// A column in another unit than that of the variable that it is compared with.
+struct Mismatch {
+    /// Both in words.
+    units: String,
+    /// `None` between different quantities.
+    conversion: Option<Conversion>,
+}
+
+/// `None` where both units mean the same, or one of them is not known.
+fn mismatch(
+    column: &Column,
+    model: &str,
+    (variable, is_relative): (&Quantity, bool),
+) -> Option<Mismatch> {
     let Column { file, name, unit, .. } = column;
     if variable.unit.is_empty() || *unit == variable.unit {
         return None;
     }
     let (from, to) = (written(unit)?, written(&variable.unit)?);
-    let both = format!(
+    let conversion = from.to(to).map(|conversion| match is_relative {
+        true => conversion.of_differences(),
+        false => conversion,
+    });
+    let units = format!(
         "the column `{name}` of `{file}` is in {unit}, but the variable `{}` of `{model}` is in {}",
         variable.name, variable.unit
     );
-    let Some(conversion) = from.to(to) else {
-        return Some(format!(
-            "{both}, a different quantity: the numbers are compared without conversion"
-        ));
-    };
-    let change = in_words(conversion)?;
-    Some(format!(
-        "{both}: the numbers are compared without conversion; to compare in {}, {change}",
-        variable.unit
-    ))
-}
-
-/// What to do with the numbers; `None` if nothing is.
-fn in_words(conversion: Conversion) -> Option<String> {
-    let Conversion { factor, offset, .. } = conversion;
-    match (factor == 1.0, offset == 0.0) {
-        (true, true) => None,
-        (false, true) => Some(format!("multiply the column by {factor}")),
-        (true, false) => Some(format!("add {offset} to the column")),
-        (false, false) => Some(format!("multiply the column by {factor} and add {offset}")),
-    }
+    let is_needed = conversion.is_none_or(|conversion| !conversion.is_identity());
+    is_needed.then_some(Mismatch { units, conversion })
 }

@@ -1,13 +1,15 @@
 //! Identification as scripts do it: the measured data, the evaluation of populations, and the
 //! report at the end of a run.
 
+use super::problem::fault_codes;
 use super::tracing;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
 use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
 use crate::identify::{
-    CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
+    CompiledModel, Ending, Evaluator, Measurement, Model as _, Quantity, Question, Recorder,
+    Simulated, Study,
 };
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
@@ -15,7 +17,7 @@ use crate::script::errors::INTERRUPTED;
 use crate::script::models::{simulation, static_curve};
 use crate::script::{Reporting, Session};
 use crate::source::Span;
-use crate::{bail, results};
+use crate::{bail, mat, results};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -77,7 +79,9 @@ impl Session {
         let content = results::read_data(file, &self.read_bytes(Path::new(file))?)?;
         let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
         let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
-        let notes: Vec<String> = notes.collect();
+        let mut notes: Vec<String> = notes.collect();
+        notes.extend(fault_codes::codes(&names[1], &y));
+        notes.extend(fault_codes::cut_off(&names[1], &y));
         let units = [x.about.unit, y.about.unit];
         let [x, y] = [x.values, y.values];
         if x.len() != y.len() {
@@ -162,8 +166,9 @@ impl Session {
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
+        let is_relative = evaluator.model().is_relative(&study.y.name);
         identification.prepared.push(Prepared { request, revision, evaluator });
-        self.population_simulated(&study, &x, &simulated);
+        self.population_simulated(&study, x.len(), &simulated, is_relative);
         self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_run(&study, genomes);
         Ok(simulated)
@@ -215,11 +220,85 @@ impl Session {
         }
     }
 
+    /// Measured X in the unit of the model; `None` where they are in it.
+    fn x_in_unit_of(&mut self, question: &Question, model: &CompiledModel) -> Option<Vec<f64>> {
+        let name = question.x_name.clone();
+        let unit = match name.as_str() {
+            "" | "time" => "s".to_owned(),
+            name => model.unit(name)?,
+        };
+        let is_relative = model.is_relative(&name);
+        let quantity = Quantity { name, unit };
+        self.in_unit_of(&question.x, model.name(), (&quantity, is_relative))
+    }
+
+    /// Measured values in the unit of the variable that a request compares them with.
+    pub(super) fn measured_in_unit_of(
+        &mut self,
+        request: &Request,
+        measured: &[f64],
+    ) -> Result<Option<Vec<f64>>, Failure> {
+        let revision = self.classes.revision();
+        let evaluator = match self.identification().take_prepared(request, revision) {
+            Some(evaluator) => evaluator,
+            None => self.prepare(request)?,
+        };
+        let study = evaluator.study().clone();
+        let is_relative = evaluator.model().is_relative(&study.y.name);
+        let (request, revision) = (request.clone(), self.classes.revision());
+        self.identification().prepared.push(Prepared { request, revision, evaluator });
+        Ok(self.in_unit_of(measured, &study.model, (&study.y, is_relative)))
+    }
+
+    /// Refuses times that count from a date, and notes those that begin far after the simulation.
+    fn check_times(&mut self, question: &Question, model: &CompiledModel) -> Result<(), Fault> {
+        let Question { x_name, x, .. } = question;
+        let low = x.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let start = model.settings().start;
+        if !(x_name.is_empty() || x_name == "time") || start > low / 2.0 || low >= high {
+            return Ok(());
+        }
+        if let Some(calendar) = mat::calendar(x).filter(|calendar| calendar.is_certain) {
+            bail!(
+                BAD_DATA,
+                "the measured times begin at {low}: these are {}, but the simulation begins at \
+                 {start} s", calendar.name;
+                help: "count the times from the first one, in seconds, as in `Xexp := (Xexp .- \
+                       Xexp[1])*{}`", calendar.seconds
+            );
+        }
+        let stamps = x.chunk_by(|a, b| a == b);
+        let (pairs, others): (Vec<&[f64]>, Vec<&[f64]>) = stamps.partition(|own| own.len() > 1);
+        if let Some(pair) = pairs.first().filter(|_| !others.is_empty()) {
+            self.note(mat::errors::DATA_NOTE, format!(
+                "time stamps such as {} are in several consecutive rows: the first row is compared \
+                 with the value before an event there, the others with the value after it",
+                pair[0]
+            ));
+        }
+        if low - start > high - low {
+            self.note(mat::errors::DATA_NOTE, format!(
+                "the measured times begin at {low} s and last {} s, but the simulation begins at \
+                 {start} s; if the initial values are those of {low} s, give the model \
+                 `annotation(experiment(StartTime = {low}))`, or count the times from the first one",
+                high - low
+            ));
+        }
+        Ok(())
+    }
+
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
         self.load_model_of(request)?;
         let model = self.model_of(request)?;
+        let mut question = request.question.clone();
+        self.check_times(&question, &model)?;
+        if let Some(x) = self.x_in_unit_of(&question, &model) {
+            self.identification().recorder.measured_over(&question.x, &x);
+            question.x = x;
+        }
         let processors = self.world.processors();
-        let evaluator = Evaluator::on(Arc::new(model), request.question.clone(), &processors)?;
+        let evaluator = Evaluator::on(Arc::new(model), question, &processors)?;
         self.note_idle_ranks(evaluator.alone());
         Ok(evaluator)
     }
@@ -301,11 +380,6 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     }
     let identification = session.extension::<Identification>();
     let Some(best) = &recorder.best else { return Ok(()) };
-    let compared: Vec<_> = best
-        .compared
-        .iter()
-        .filter_map(|one| Some((one.measured.clone()?, one.study.clone())))
-        .collect();
     let mut noise = NOISE_OF_FORMULAS;
     let mut models = Vec::new();
     for compared in &best.compared {
@@ -318,11 +392,21 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
             own.evaluator.model().clone()
         }));
     }
+    let compared: Vec<_> = best
+        .compared
+        .iter()
+        .zip(&models)
+        .filter_map(|(one, model)| {
+            let study = one.study.clone();
+            let is_relative = model.as_ref().is_some_and(|own| own.is_relative(&study.y.name));
+            Some((one.measured.clone()?, study, is_relative))
+        })
+        .collect();
     let ending = Ending { recorder: &recorder, models, noise, processors, probe, interrupted };
     let Some(solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
-    for (measured, study) in compared {
-        session.compared(&measured, &study.model, &study.y);
+    for (measured, study, is_relative) in compared {
+        session.compared(&measured, &study.model, (&study.y, is_relative));
     }
     session.print(&solution.text());
     let now = session.world.monotonic_seconds();

@@ -40,9 +40,14 @@ impl Session {
     /// The best individual that Levenberg and Marquardt's method finds from each of these.
     pub(in crate::script) fn refine(
         &mut self,
-        refinement: &Refinement,
+        mut refinement: Refinement,
         starts: &Genomes,
     ) -> Result<(Individual, u64), Failure> {
+        let Refinement { request, measured, .. } = &refinement;
+        if let Some(converted) = self.measured_in_unit_of(request, measured)? {
+            refinement.measured = converted;
+        }
+        let refinement = &refinement;
         let n_genes = starts.n_genes();
         let genomes = Genomes::with_capacity(n_genes, 0);
         let mut done = Simulations { genomes, rows: vec![], fitness: vec![] };

@@ -4,10 +4,12 @@
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
 use super::calibration::Calibration;
-use super::data::Notes;
+use super::data::{Note, Notes};
 use super::enclosing_class::Base;
-use super::file::{OneOrMany, ProblemFile, Role};
+use super::file::{ExperimentEntry, OneOrMany, ProblemFile, Role};
+use super::inputs::Undecided;
 use super::operators::{self, Named};
+use super::segments::Segment;
 use super::{experiment, own_fitness};
 use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -15,9 +17,10 @@ use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
 use crate::identify::problem::{
-    Experiment, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Origins, Problem, Series,
-    Simulate, Stop, decide, likelihood,
+    Experiment, Free, Inference, MakeSimulator, ModelSimulator, NOISE_OF_FORMULAS, Origins,
+    Problem, Series, Simulate, Stop, decide, likelihood,
 };
+use crate::mat::MatFile;
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::script::Session;
 use crate::source::Span;
@@ -37,9 +40,21 @@ pub(super) struct Built {
     /// The problem, its data, and every Modelica text that was read for it.
     pub origins: Origins,
     /// What should be known of the data.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// What the file says about the parameters of the model.
     pub calibration: Option<Calibration>,
+    /// Inputs of which it is not known how they continue between samples.
+    pub undecided: Vec<Undecided>,
+}
+
+/// The data of an experiment and the parts of which it consists.
+struct ExperimentData<'f> {
+    entry: &'f ExperimentEntry,
+    label: String,
+    table: MatFile,
+    /// The number of its rows.
+    count: usize,
+    segments: Vec<Segment>,
 }
 
 /// The experiments of a problem.
@@ -51,6 +66,7 @@ struct Experiments {
     /// The relative error of simulated values.
     noise: f64,
     calibration: Option<Calibration>,
+    undecided: Vec<Undecided>,
 }
 
 /// Builds the problem.
@@ -69,13 +85,14 @@ pub(super) fn build(
     let file = &*file;
     check_class(session, file)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    let free = free_parameters(file).map_err(one)?;
     origins.add("the problem", text.as_bytes());
-    let mut read = experiments(session, file, &folder, &free, (&mut notes, &mut origins))?;
+    let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
+    let free = free_parameters(file, &data).map_err(one)?;
+    let mut read = experiments(session, file, &data, &free, &mut notes)?;
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
-    let Experiments { fitted, series, validation, noise, calibration } = read;
+    let Experiments { fitted, series, validation, noise, calibration, undecided } = read;
     let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &fitted);
     // Made once here, so that what is wrong shows before the run.
@@ -92,8 +109,8 @@ pub(super) fn build(
     adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
     session.add_models_read(&mut origins, &mut 0);
-    let notes = notes.into_sentences();
-    Ok(Built { problem, experiments, validation, origins, notes, calibration })
+    let notes = notes.into_notes();
+    Ok(Built { problem, experiments, validation, origins, notes, calibration, undecided })
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -132,21 +149,42 @@ fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diag
     Err(vec![fault.at(place)])
 }
 
-fn experiments(
+/// Reads the data of all experiments, and cuts them where that is wanted.
+fn data_of<'f>(
     session: &mut Session,
-    file: &ProblemFile,
+    file: &'f ProblemFile,
     folder: &Path,
-    free: &[Free],
     (notes, origins): (&mut Notes, &mut Origins),
-) -> Result<Experiments, Vec<Diagnostic>> {
-    let mut all = Experiments { noise: NOISE_OF_FORMULAS, ..Experiments::default() };
+) -> Result<Vec<ExperimentData<'f>>, Vec<Diagnostic>> {
+    let mut all = Vec::new();
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
         let there = |fault: Fault| vec![fault.at(entry.places.data)];
         let bytes = session.read_bytes(&data).map_err(there)?;
         origins.add(format!("`{}`", entry.data.display()), &bytes);
         let table = results::read_data(&data.to_string_lossy(), &bytes).map_err(there)?;
-        let source = experiment::Source { file, entry, number, table: &table, free };
+        let cut = experiment::rows((entry, number), &table, notes);
+        let (count, segments) = cut.map_err(|fault| vec![fault.at(entry.places.x)])?;
+        let label = experiment::label(entry, number);
+        all.push(ExperimentData { entry, label, table, count, segments });
+    }
+    Ok(all)
+}
+
+fn experiments(
+    session: &mut Session,
+    file: &ProblemFile,
+    data: &[ExperimentData<'_>],
+    free: &[Free],
+    notes: &mut Notes,
+) -> Result<Experiments, Vec<Diagnostic>> {
+    let mut all = Experiments { noise: NOISE_OF_FORMULAS, ..Experiments::default() };
+    let parts = data.iter().flat_map(|own| own.segments.iter().map(move |part| (own, part)));
+    for (number, (own, segment)) in parts.enumerate() {
+        let (entry, label) = (own.entry, own.label.as_str());
+        let rows = segment.rows.clone().map(|rows| own.table.rows(rows, own.count));
+        let table = rows.as_ref().unwrap_or(&own.table);
+        let source = experiment::Source { file, entry, label, segment, number, table, free };
         let built = source.build(session, notes)?;
         if built.has_states {
             all.noise = all.noise.max(built.experiment.settings.tolerance);
@@ -154,9 +192,14 @@ fn experiments(
         all.calibration.get_or_insert_with(|| Calibration::of(file, &built.program));
         if entry.validation {
             all.validation.push((built.experiment, built.series));
-        } else {
-            all.fitted.push(built.experiment);
-            all.series.extend(built.series);
+            continue;
+        }
+        all.fitted.push(built.experiment);
+        all.series.extend(built.series);
+        for own in built.undecided {
+            if !all.undecided.contains(&own) {
+                all.undecided.push(own);
+            }
         }
     }
     if all.fitted.is_empty() {
@@ -249,7 +292,7 @@ fn assemble(
     (parameters, series, objectives): (Vec<Free>, Vec<Series>, Vec<Objective>),
     (name, method): Named,
     noise: f64,
-    simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
+    simulator: MakeSimulator,
 ) -> Result<Problem, Fault> {
     let parameters = on_its_scale(file, name, method.in_natural_units(), parameters)?;
     let stop = &file.stop;
@@ -302,21 +345,23 @@ fn on_its_scale(
     Ok(parameters)
 }
 
-/// The free parameters, those of single experiments once for each.
-fn free_parameters(file: &ProblemFile) -> Result<Vec<Free>, Fault> {
-    let mut free = Vec::new();
+/// The free parameters: those of single experiments once for each, initial values once for each part.
+fn free_parameters(file: &ProblemFile, data: &[ExperimentData<'_>]) -> Result<Vec<Free>, Fault> {
+    let mut free: Vec<Free> = Vec::new();
     for (name, entry) in &file.parameters {
         let Role::Free { range, logarithmic } = entry.role(name)? else { continue };
         let unit = entry.unit.clone().unwrap_or_default();
-        let one = |name: String| Free::new(name, unit.clone(), range, logarithmic, entry.start);
-        if entry.per_experiment {
-            for (number, experiment) in file.experiment.iter().enumerate() {
-                if !experiment.validation {
-                    free.push(one(format!("{name}@{}", experiment::label(experiment, number)))?);
-                }
+        let fitted = data.iter().filter(|own| !own.entry.validation);
+        let mut names: Vec<String> = fitted
+            .flat_map(|own| own.segments.iter().map(|part| part.free_name(name, entry, &own.label)))
+            .collect();
+        if !entry.per_experiment && names.is_empty() {
+            names.push(name.clone());
+        }
+        for name in names {
+            if !free.iter().any(|known| known.name == name) {
+                free.push(Free::new(name, unit.clone(), range, logarithmic, entry.start)?);
             }
-        } else {
-            free.push(one(name.clone())?);
         }
     }
     Ok(free)

@@ -4,9 +4,10 @@
 use super::file::{ColumnEntry, SigmaEntry};
 use crate::bail;
 use crate::diag::Fault;
+use crate::identify::problem::{Finding, FindingKind, Severity};
 use crate::mat::{About, Column, MatFile};
 use crate::registry::BAD_OPTION;
-use crate::units::{in_words, written};
+use crate::units::{Conversion, in_words, written};
 
 /// A column in the unit of its variable.
 pub(super) struct Measured {
@@ -16,14 +17,52 @@ pub(super) struct Measured {
     pub factor: f64,
 }
 
+/// The unit of a variable.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct VariableUnit {
+    /// Empty where the model gives none.
+    pub symbol: String,
+    /// Whether the variable is a difference, whose unit converts without an offset.
+    pub is_relative: bool,
+}
+
+impl VariableUnit {
+    /// That of time.
+    pub(super) fn second() -> VariableUnit {
+        VariableUnit { symbol: "s".to_owned(), is_relative: false }
+    }
+}
+
+/// A sentence about the data.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Note {
+    pub sentence: String,
+    pub severity: Severity,
+}
+
+impl Note {
+    pub(super) fn finding(self) -> Finding {
+        Finding::new(FindingKind::Data, self.sentence).severity(self.severity)
+    }
+}
+
 /// Sentences about the data, each once, in the order in which they came up.
 #[derive(Default)]
-pub(super) struct Notes(Vec<String>);
+pub(super) struct Notes(Vec<Note>);
 
 impl Notes {
     pub(super) fn add(&mut self, sentence: String) {
-        if !self.0.contains(&sentence) {
-            self.0.push(sentence);
+        self.push(sentence, Severity::Information);
+    }
+
+    /// Adds what may change the result.
+    pub(super) fn warn(&mut self, sentence: String) {
+        self.push(sentence, Severity::Warning);
+    }
+
+    fn push(&mut self, sentence: String, severity: Severity) {
+        if !self.0.iter().any(|known| known.sentence == sentence) {
+            self.0.push(Note { sentence, severity });
         }
     }
 
@@ -34,7 +73,18 @@ impl Notes {
             .for_each(|sentence| self.add(format!("{}: {sentence}", table.file_name)));
     }
 
-    pub(super) fn into_sentences(self) -> Vec<String> {
+    /// Warnings about a file, with its name.
+    pub(super) fn warn_about(
+        &mut self,
+        table: &MatFile,
+        sentences: impl IntoIterator<Item = String>,
+    ) {
+        sentences
+            .into_iter()
+            .for_each(|sentence| self.warn(format!("{}: {sentence}", table.file_name)));
+    }
+
+    pub(super) fn into_notes(self) -> Vec<Note> {
         self.0
     }
 }
@@ -66,10 +116,11 @@ pub(super) fn column(
 pub(super) fn in_unit(
     column: &Column,
     name: &str,
-    unit: &str,
+    variable: &VariableUnit,
     entry: &ColumnEntry,
     (table, notes): (&MatFile, &mut Notes),
 ) -> Result<Measured, Fault> {
+    let unit = variable.symbol.as_str();
     let scaled = |factor: f64, f: &dyn Fn(f64) -> f64| Measured {
         values: column.values.iter().map(|value| f(*value)).collect(),
         factor,
@@ -94,20 +145,27 @@ pub(super) fn in_unit(
         )]);
         return Ok(unchanged());
     };
-    let Some(conversion) = from.to(to) else { return Err(incompatible(name, unit, given)) };
-    if conversion.is_identity() {
+    let Some(absolute) = from.to(to) else { return Err(incompatible(name, unit, given)) };
+    let conversion = if variable.is_relative { absolute.of_differences() } else { absolute };
+    if absolute.is_identity() {
         return Ok(unchanged());
     }
-    let added = match conversion.offset {
-        0.0 => String::new(),
-        offset => format!(", plus {offset}"),
-    };
-    let times = match conversion.factor {
-        1.0 => String::new(),
-        factor => format!(", times {factor}"),
-    };
-    notes.about(table, [format!("`{own}` is converted from {given} to {unit}{times}{added}")]);
+    let words = conversion.in_words() + zero_of_scale(conversion, absolute);
+    notes.about(table, [format!("`{own}` is converted from {given} to {unit}{words}")]);
     Ok(scaled(conversion.factor, &|value| conversion.apply(value)))
+}
+
+/// What must be known of the zeros of scales that differ, as the end of a sentence; `absolute` is the
+/// conversion of values that are not differences.
+fn zero_of_scale(conversion: Conversion, absolute: Conversion) -> &'static str {
+    match (conversion.offset == 0.0, absolute.offset == 0.0) {
+        (_, true) => "",
+        (true, false) => ", without an offset, as a temperature difference",
+        (false, false) => {
+            "; for a temperature difference, give the variable the type \
+             `Modelica.Units.SI.TemperatureDifference` or the column a `factor`"
+        }
+    }
 }
 
 /// The unit that a variable is shown with: its own, or that of its values where it has none and they
@@ -117,23 +175,6 @@ pub(super) fn shown_unit(own: &str, entry: &ColumnEntry, about: &About) -> Strin
     match of_values.filter(|_| own.is_empty() && entry.factor.is_none()) {
         Some(unit) => unit.clone(),
         None => own.to_owned(),
-    }
-}
-
-/// The times of inputs that follow the rows of X: X itself, in seconds where it is time.
-///
-/// # Errors
-///
-/// As [`in_unit`].
-pub(super) fn as_time(
-    x_name: &str,
-    column: &Column,
-    entry: &ColumnEntry,
-    about: (&MatFile, &mut Notes),
-) -> Result<Vec<f64>, Fault> {
-    match x_name {
-        "time" => Ok(in_unit(column, x_name, "s", entry, about)?.values),
-        _ => Ok(column.values.clone()),
     }
 }
 

@@ -398,7 +398,7 @@ fn check(session: &mut Session, text: &str) -> Option<String> {
     match built {
         Ok(notes) => {
             for note in notes {
-                session.note(mat::errors::DATA_NOTE, note);
+                session.note(mat::errors::DATA_NOTE, note.sentence);
             }
             None
         }

@@ -1,10 +1,12 @@
 //! Inputs of a model that follow the columns of a file in a simulation, as in an experiment of a
 //! problem.
 
+use super::data;
 use super::data::Notes;
 use super::enclosing_class::{Base, EnclosingClass};
 use super::file::{Column, ColumnEntry, ExperimentEntry};
-use super::{data, inputs};
+use super::inputs::{self, Times};
+use super::time_axis::{self, Origin};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::mat::MatFile;
@@ -51,7 +53,7 @@ pub fn driven(
     let table = results::read_data(&path.to_string_lossy(), &bytes).map_err(one)?;
     let flat = simulation::flattened(session, class)?.model;
     let mut notes = Notes::default();
-    let time = times(&table, &mut notes).map_err(one)?;
+    let (time, origin) = times(&table, &mut notes).map_err(one)?;
     let names = flat.variables.values().filter(|variable| {
         variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none()
     });
@@ -76,24 +78,26 @@ pub fn driven(
     });
     let entry = ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() };
     let mut enclosing = EnclosingClass::default();
-    let times = ("time", time.as_slice());
-    inputs::inputs(&entry, &table, times, &flat, &mut enclosing, &mut notes)
+    let times = Times { name: "time", values: &time, origin };
+    inputs::inputs(&entry, &table, &times, &flat, &mut enclosing, &mut notes)
         .map_err(|error| vec![error])?;
     let base = Base::of(class, None).map_err(|error| vec![error])?;
     let class = enclosing.load(session, &base, (0, Span::NONE))?;
-    for note in notes.into_sentences() {
-        session.note(crate::mat::errors::DATA_NOTE, note);
+    for note in notes.into_notes() {
+        session.note(crate::mat::errors::DATA_NOTE, note.sentence);
     }
     let last = time.iter().copied().filter(|t| t.is_finite()).fold(f64::NEG_INFINITY, f64::max);
     Ok(Driven { class, last })
 }
 
-/// The column of time, in seconds.
-fn times(table: &MatFile, notes: &mut Notes) -> Result<Vec<f64>, Fault> {
+/// The column of time in seconds, and the date that it counts from.
+fn times(table: &MatFile, notes: &mut Notes) -> Result<(Vec<f64>, Option<Origin>), Fault> {
     let name = TIMES.into_iter().find(|name| table.column(name).is_ok()).unwrap_or(TIMES[0]);
     let entry = ColumnEntry::named(Some(name.to_owned()));
     let column = data::column(table, &entry, name, notes)?;
-    Ok(data::in_unit(&column, "time", "s", &entry, (table, notes))?.values)
+    let origin = time_axis::origin(name, &column, (&entry, None), (table, notes))?;
+    notes.about(table, time_axis::repeated(name, &column));
+    Ok((time_axis::seconds(&column, &entry, origin, (table, notes))?, origin))
 }
 
 fn no_column(class: &str, names: &[String], table: &MatFile) -> Fault {

@@ -4,13 +4,15 @@
 use super::data::{self, Notes};
 use super::enclosing_class::{Base, EnclosingClass};
 use super::file::{self, ColumnEntry, ExperimentEntry, ProblemFile};
+use super::inputs::{self, Times, Undecided};
+use super::segments::{Rows, Segment, segments};
 use super::series::Comparison;
-use super::{dynamics, enclosing_class, inputs, parameters};
+use super::{dynamics, enclosing_class, parameters, time_axis};
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
 use crate::identify::problem::{Experiment, Free, Series};
-use crate::identify::{CompiledModel, Model};
+use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
@@ -35,13 +37,20 @@ pub(super) struct Built {
     pub has_states: bool,
     /// Its compiled model.
     pub program: Arc<Program>,
+    /// Inputs of which it is not known how they continue between samples.
+    pub undecided: Vec<Undecided>,
 }
 
 /// What an experiment is read from.
 pub(super) struct Source<'a> {
     pub file: &'a ProblemFile,
     pub entry: &'a ExperimentEntry,
+    /// The name of the experiment, of which this may be a part.
+    pub label: &'a str,
+    pub segment: &'a Segment,
+    /// Its place among all parts of all experiments.
     pub number: usize,
+    /// The rows of the part.
     pub table: &'a MatFile,
     pub free: &'a [Free],
 }
@@ -52,7 +61,7 @@ struct Abscissa {
     /// The variable.
     name: String,
     column: Column,
-    /// Times of inputs that follow the rows.
+    /// Times of inputs that follow the rows; X itself where it is not time.
     time: Vec<f64>,
 }
 
@@ -65,6 +74,7 @@ struct Class {
     observed: Vec<String>,
     /// Whether X is a parameter of the class.
     is_driven: bool,
+    undecided: Vec<Undecided>,
 }
 
 /// The name of an experiment.
@@ -72,12 +82,49 @@ pub(super) fn label(entry: &ExperimentEntry, number: usize) -> String {
     entry.name.clone().unwrap_or_else(|| format!("experiment {}", number + 1))
 }
 
+/// The number of rows of an experiment, and the parts into which they are cut.
+///
+/// # Errors
+///
+/// A column of X that there is not, numbers that may be days or seconds, cuts that cannot be made.
+pub(super) fn rows(
+    (entry, number): (&ExperimentEntry, usize),
+    table: &MatFile,
+    notes: &mut Notes,
+) -> Result<(usize, Vec<Segment>), Fault> {
+    let x = entry.x.as_ref().map_or_else(|| ColumnEntry::named(None), file::Column::entry);
+    let (name, own) = names(&x);
+    notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
+    let column = data::column(table, &x, &name, notes)?;
+    let count = column.values.len();
+    if name != "time" {
+        if entry.segments.is_some() {
+            bail!(BAD_OPTION, "`segments` cuts over time, but X is `{name}`"; help: "use `time` as X, or remove it");
+        }
+        return Ok((count, vec![Segment::whole(entry, number, None)]));
+    }
+    let origin = time_axis::origin(&own, &column, (&x, entry.start_time), (table, notes))?;
+    if entry.segments.is_none() {
+        return Ok((count, vec![Segment::whole(entry, number, origin)]));
+    }
+    let seconds = time_axis::seconds(&column, &x, origin, (table, notes))?;
+    let rows = Rows { column: &column, seconds: &seconds, origin };
+    Ok((count, segments((entry, number), table, &rows, notes)?))
+}
+
+/// The variable that X is, and its column. A bare name is both.
+fn names(x: &ColumnEntry) -> (String, String) {
+    let column = x.column.clone().or_else(|| x.variable.clone());
+    let column = column.unwrap_or_else(|| "time".to_owned());
+    (x.variable.clone().unwrap_or_else(|| column.clone()), column)
+}
+
 fn one(fault: Fault) -> Vec<Diagnostic> {
     vec![fault.at(Span::NONE)]
 }
 
 impl Source<'_> {
-    /// Reads the experiment.
+    /// Reads a part of the experiment.
     ///
     /// # Errors
     ///
@@ -87,10 +134,10 @@ impl Source<'_> {
         session: &mut Session,
         notes: &mut Notes,
     ) -> Result<Built, Vec<Diagnostic>> {
-        let name = label(self.entry, self.number);
+        let name = self.segment.name.clone();
         let abscissa = self.abscissa(notes);
         let abscissa = abscissa.map_err(|fault| vec![fault.at(self.entry.places.x)])?;
-        let class = self.class(session, &name, &abscissa, notes)?;
+        let class = self.class(session, &abscissa, notes)?;
         let translated = simulation::translated(session, &class.name)?;
         let program = translated.program.clone();
         self.check(session, &abscissa.name, &class, &translated)?;
@@ -110,19 +157,21 @@ impl Source<'_> {
             model: &*model,
             x_name: &abscissa.name,
             x: Vec::new(),
+            start: 0.0,
         };
-        let unit = comparison.unit(&abscissa.name);
-        let about = (table, &mut *notes);
-        let x = data::in_unit(&abscissa.column, &abscissa.name, &unit, &abscissa.entry, about);
-        comparison.x = x.map_err(one)?.values;
+        comparison.x = abscissa.in_unit(&comparison, notes).map_err(one)?;
         let settings = self.settings(session, &program, &abscissa.name, &comparison.x);
         let settings = settings.map_err(one)?;
+        comparison.start = settings.start;
+        let has_states = !program.sorted().states.is_empty();
+        if has_states {
+            note_start(&comparison, notes);
+        }
         let (observations, series) =
             comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
         if observations.is_empty() {
             return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
         }
-        let has_states = !program.sorted().states.is_empty();
         let experiment = Experiment {
             name,
             model,
@@ -132,7 +181,8 @@ impl Source<'_> {
             observations,
             parameters: class.parameters,
         };
-        Ok(Built { experiment, series, has_states, program })
+        let undecided = class.undecided;
+        Ok(Built { experiment, series, has_states, program, undecided })
     }
 
     /// Refuses names that the model does not have, and values that it cannot be given.
@@ -148,22 +198,27 @@ impl Source<'_> {
         let names: Vec<(&str, Span)> = [(x_name, places.x)].into_iter().chain(outputs).collect();
         parameters::check_variables(&names, model).map_err(|error| vec![error])?;
         parameters::check_free(file, &class.parameters, model).map_err(|error| vec![error])?;
+        self.segment.check_initial_values(file, self.entry, model).map_err(|error| vec![error])?;
         parameters::check_initial(session, file, self.entry, model)
     }
 
     fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
         let (given, table) = (self.entry.x.as_ref(), self.table);
         let entry = given.map_or_else(|| ColumnEntry::named(None), file::Column::entry);
-        let name = match &entry.variable {
-            Some(variable) => variable.clone(),
-            // A bare name is both the column and, where nothing else is said, the variable.
-            None => entry.column.clone().unwrap_or_else(|| "time".to_owned()),
-        };
-        notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
+        let (name, own) = names(&entry);
         let column = data::column(table, &entry, &name, notes)?;
         notes.about(table, column.missing.clone());
-        notes.about(table, column.order(entry.column.as_deref().unwrap_or(&name)));
-        let time = data::as_time(&name, &column, &entry, (table, notes))?;
+        notes.warn_about(table, column.fall(&own));
+        let time = match name.as_str() {
+            "time" => {
+                notes.about(table, time_axis::repeated(&own, &column));
+                time_axis::seconds(&column, &entry, self.segment.origin, (table, notes))?
+            }
+            _ => {
+                notes.about(table, column.repetition(&own));
+                column.values.clone()
+            }
+        };
         Ok(Abscissa { entry, name, column, time })
     }
 
@@ -171,7 +226,6 @@ impl Source<'_> {
     fn class(
         &self,
         session: &mut Session,
-        name: &str,
         x: &Abscissa,
         notes: &mut Notes,
     ) -> Result<Class, Vec<Diagnostic>> {
@@ -179,17 +233,18 @@ impl Source<'_> {
         let base = Base::of(&file.model, file.places.model).map_err(|error| vec![error])?;
         let here = (self.number, entry.places.data);
         let mut enclosing = EnclosingClass::default();
-        let setting = parameters::Setting { file, entry, experiment: name, free: self.free };
+        let (label, segment, free) = (self.label, self.segment, self.free);
+        let setting = parameters::Setting { file, entry, label, segment, free };
         let parameters = setting.parameters(&mut enclosing).map_err(|error| vec![error])?;
         note_used_twice(entry, notes);
-        let mut is_driven = false;
+        let (mut is_driven, mut undecided) = (false, Vec::new());
         if x.name != "time" || !entry.inputs.is_empty() {
             // What the experiment sets may shape the model: sizes, conditions.
             let class = enclosing.load(session, &base, here)?;
             let flat = simulation::flattened(session, &class)?.model;
             is_driven = drive(entry, &flat, (&x.name, &x.column.values), &mut enclosing);
-            let times = (x.name.as_str(), x.time.as_slice());
-            inputs::inputs(entry, self.table, times, &flat, &mut enclosing, notes)
+            let times = Times { name: &x.name, values: &x.time, origin: segment.origin };
+            undecided = inputs::inputs(entry, self.table, &times, &flat, &mut enclosing, notes)
                 .map_err(|error| vec![error])?;
         }
         let mut observed = Vec::new();
@@ -205,7 +260,7 @@ impl Source<'_> {
             dynamics::steady(file, entry, plain.sorted(), &mut enclosing).map_err(one)?;
         }
         let name = enclosing.load(session, &base, here)?;
-        Ok(Class { name, parameters, observed, is_driven })
+        Ok(Class { name, parameters, observed, is_driven, undecided })
     }
 
     fn settings(
@@ -217,7 +272,10 @@ impl Source<'_> {
     ) -> Result<Settings, Fault> {
         let (entry, annotated) = (self.entry, program.experiment());
         let tolerance = annotated.tolerance.map_or(TOLERANCE, |tolerance| tolerance.min(TOLERANCE));
+        let first = x.iter().copied().find(|x| x.is_finite());
+        let begin = first.filter(|_| self.segment.number > 0);
         let options = SimulationOptions {
+            start: begin.or(entry.start_time),
             stop: stop_time(entry, x_name, x, annotated.stop_time),
             tolerance: entry.tolerance.or(Some(tolerance)),
             method: entry.integrator.clone(),
@@ -226,6 +284,34 @@ impl Source<'_> {
         let mut settings = simulation::settings(&annotated, &options)?;
         limit(session, entry, &mut settings)?;
         Ok(settings)
+    }
+}
+
+impl Abscissa {
+    /// X in the unit of the model.
+    fn in_unit(&self, comparison: &Comparison<'_>, notes: &mut Notes) -> Result<Vec<f64>, Fault> {
+        if self.name == "time" {
+            return Ok(self.time.clone());
+        }
+        let (unit, about) = (comparison.unit(&self.name), (comparison.table, notes));
+        Ok(data::in_unit(&self.column, &self.name, &unit, &self.entry, about)?.values)
+    }
+}
+
+/// Says where the simulation begins, if that is far from the data.
+fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
+    let finite = || comparison.x.iter().copied().filter(|x| x.is_finite());
+    let first = finite().fold(f64::INFINITY, f64::min);
+    let last = finite().fold(f64::NEG_INFINITY, f64::max);
+    let start = comparison.start;
+    if comparison.x_name == "time" && first - start > last - first && last > first {
+        notes.warn(format!(
+            "{}: the data begin at {first} s and last {} s, but the simulation begins at \
+             {start} s; if the initial values are those of {first} s, write `start_time = \
+             {first}` in the experiment",
+            comparison.experiment,
+            significant(last - first, 6)
+        ));
     }
 }
 

@@ -120,7 +120,11 @@ pub(super) struct ExperimentEntry {
     /// Before it all derivatives were zero.
     #[serde(default)]
     pub steady_state: bool,
+    /// When its simulation begins, in seconds; its initial values are those of this time.
+    pub start_time: Option<f64>,
     pub stop_time: Option<f64>,
+    /// Where its rows are cut into parts with separate initial values.
+    pub segments: Option<SegmentsEntry>,
     pub tolerance: Option<f64>,
     pub integrator: Option<String>,
     /// Steps after which a simulation is given up.
@@ -130,6 +134,15 @@ pub(super) struct ExperimentEntry {
     /// Where its entries are written.
     #[serde(skip)]
     pub places: ExperimentPlaces,
+}
+
+/// Where an experiment is cut.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum SegmentsEntry {
+    /// At gaps, and where time starts again.
+    Auto,
+    /// At these times, in seconds.
+    Times(Vec<f64>),
 }
 
 /// A column of the data: its name, several names of replicate measurements, or names with more.

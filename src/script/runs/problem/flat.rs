@@ -1,5 +1,6 @@
 //! Variables of flat models by names with subscripts.
 
+use super::data::VariableUnit;
 use crate::flatten::{FlatModel, Variable};
 use crate::syntax::ast::{Expression, ExpressionKind};
 
@@ -25,6 +26,12 @@ pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
         Some(ExpressionKind::String(unit)) => unit.to_string(),
         _ => String::new(),
     }
+}
+
+/// The unit of a variable, and whether it is a difference.
+pub(super) fn variable_unit(flat: &FlatModel, name: &str) -> VariableUnit {
+    let is_relative = variable_of(flat, name).is_some_and(|variable| variable.is_relative);
+    VariableUnit { symbol: unit_in(flat, name), is_relative }
 }
 
 /// The value of an attribute for an element of an array, whose name ends with its subscript.

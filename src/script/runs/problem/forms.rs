@@ -3,7 +3,8 @@
 
 use super::file::{
     BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, OneOrMany, OperatorEntry,
-    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SigmaEntry, ValueEntry,
+    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry, SigmaEntry,
+    ValueEntry,
 };
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
@@ -129,6 +130,37 @@ in_forms!(
         ..Forms::new("a number of seconds or the name of a parameter")
     }
 );
+
+impl<'de> Deserialize<'de> for SegmentsEntry {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<SegmentsEntry, D::Error> {
+        reader.deserialize_any(SegmentsVisitor)
+    }
+}
+
+struct SegmentsVisitor;
+
+impl<'de> Visitor<'de> for SegmentsVisitor {
+    type Value = SegmentsEntry;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("\"auto\", or the times of the cuts in seconds, such as [3600, 7200]")
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<SegmentsEntry, E> {
+        match word {
+            "auto" => Ok(SegmentsEntry::Auto),
+            _ => Err(E::invalid_value(Unexpected::Str(word), &self)),
+        }
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<SegmentsEntry, A::Error> {
+        let mut times = Vec::new();
+        while let Some(time) = list.next_element()? {
+            times.push(time);
+        }
+        Ok(SegmentsEntry::Times(times))
+    }
+}
 
 in_forms!(
     SigmaEntry,

@@ -1,14 +1,17 @@
 //! Inputs of a model that follow recorded columns.
 //!
-//! Between its samples a recorded input was constant, kept by a switch or a controller, or it went on steadily:
-//! the file does not say which, and a step read as a ramp shifts time constants. An entry says
-//! `interpolation = "hold"` or `"linear"`; else inputs that move in steps are kept constant (zero-order hold) and others joined by
-//! lines, and a note says so.
+//! Between its samples a recorded input was constant, kept by a switch or a controller, or it changed
+//! steadily: most files do not say which, and a step read as a ramp shifts time constants. An entry
+//! says `interpolation = "hold"` or `"linear"`; else inputs that move in steps are kept constant
+//! (zero-order hold) and others are interpolated linearly, a note says so, and after the fit the other
+//! way is tried as well. Two rows with one time stamp are the values before and after a jump.
 
 use super::data::{self, Notes};
 use super::enclosing_class::{self, EnclosingClass};
+use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry};
-use super::flat::{unit_in, variable_of};
+use super::flat::{variable_of, variable_unit};
+use super::time_axis::{self, Origin};
 use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
@@ -19,35 +22,96 @@ use crate::source::Span;
 use crate::syntax::ast::CausalityPrefix;
 use std::fmt::Write;
 
-/// How an input goes on between its samples.
+/// How an input continues between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Between {
+pub(super) enum Between {
     Constant,
     Linear,
 }
 
-/// Tables for the inputs that follow columns; `x` are the times unless the entry names other ones.
+impl Between {
+    /// What a problem file calls it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Between::Constant => "hold",
+            Between::Linear => "linear",
+        }
+    }
+
+    pub(super) fn other(self) -> Between {
+        match self {
+            Between::Constant => Between::Linear,
+            Between::Linear => Between::Constant,
+        }
+    }
+
+    /// What happens to an input where samples are missing.
+    fn in_gaps(self) -> &'static str {
+        match self {
+            Between::Constant => "holds its last value",
+            Between::Linear => "is interpolated linearly",
+        }
+    }
+}
+
+/// Where the times of inputs are from: those of X, by the name of its column, and the number that
+/// these count from.
+pub(super) struct Times<'a> {
+    pub name: &'a str,
+    pub values: &'a [f64],
+    pub origin: Option<Origin>,
+}
+
+/// An input of which neither the file nor the problem says how it continues between samples.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Undecided {
+    pub name: String,
+    pub assumed: Between,
+}
+
+/// An input that follows a column.
+struct Followed {
+    /// Times and values.
+    samples: Vec<(f64, f64)>,
+    column: Column,
+    /// The rows of the samples in it.
+    rows: Vec<usize>,
+    between: Between,
+    is_decided: bool,
+}
+
+/// Tables for the inputs that follow columns, and those of which it is not known how they continue
+/// between samples.
 pub(super) fn inputs(
     entry: &ExperimentEntry,
     table: &MatFile,
-    x: (&str, &[f64]),
+    x: &Times<'_>,
     flat: &FlatModel,
     enclosing: &mut EnclosingClass,
     notes: &mut Notes,
-) -> Result<(), Diagnostic> {
-    let times = match &entry.input_time {
-        Some(name) => own_times(name, table, notes).at(entry.places.data)?,
-        None => (x.0, x.1.to_vec()),
+) -> Result<Vec<Undecided>, Diagnostic> {
+    let own = match &entry.input_time {
+        Some(name) => Some(own_times(name, x.origin, table, notes).at(entry.places.data)?),
+        None => None,
     };
+    let times = match (&entry.input_time, &own) {
+        (Some(name), Some(values)) => (name.as_str(), values.as_slice()),
+        _ => (x.name, x.values),
+    };
+    let (mut undecided, mut torn) = (Vec::new(), Vec::new());
     for (name, wanted) in &entry.inputs {
         let place = entry.places.column(name);
         let input = (name.as_str(), &wanted.entry());
         let base = type_of_input(name, flat).at(place)?;
-        let (pairs, between) =
-            followed(input, table, (times.0, &times.1), (flat, &base), notes).at(place)?;
-        declare((name, &base, place), &pairs, between, enclosing).at(place)?;
+        let followed = followed(input, table, times, (flat, &base), notes).at(place)?;
+        declare((name, &base, place), &followed, enclosing).at(place)?;
+        if !followed.is_decided {
+            undecided.push(Undecided { name: name.clone(), assumed: followed.between });
+        }
+        torn.extend(in_gaps(name, &followed));
     }
-    Ok(())
+    note_gaps(torn, table, notes);
+    Ok(undecided)
 }
 
 /// The type of an input of the model.
@@ -82,59 +146,93 @@ fn type_of_input(name: &str, flat: &FlatModel) -> Result<BaseType, Fault> {
     }
 }
 
-/// The column of time of the inputs, in seconds.
-fn own_times<'a>(
-    name: &'a str,
-    table: &MatFile,
-    notes: &mut Notes,
-) -> Result<(&'a str, Vec<f64>), Fault> {
-    let named = ColumnEntry::named(Some(name.to_owned()));
-    let column = data::column(table, &named, name, notes)?;
-    let time = data::in_unit(&column, "time", "s", &named, (table, notes))?;
-    Ok((name, time.values))
+/// The gaps of an input in words, and what it does there.
+fn in_gaps(name: &str, followed: &Followed) -> Option<(String, Between, String)> {
+    let times: Vec<f64> = followed.samples.iter().map(|(time, _)| *time).collect();
+    let gaps = time_axis::gaps(&times);
+    let words = time_axis::listed(&gaps, |place| followed.column.place(followed.rows[place]));
+    (!gaps.is_empty()).then(|| (words, followed.between, name.to_owned()))
 }
 
-/// The samples of an input, times and values, and how it goes on between them.
+/// Warns of gaps, once for all inputs that have the same.
+fn note_gaps(mut torn: Vec<(String, Between, String)>, table: &MatFile, notes: &mut Notes) {
+    while let Some((words, between, _)) = torn.first().cloned() {
+        let (same, others): (Vec<_>, Vec<_>) =
+            torn.into_iter().partition(|own| own.0 == words && own.1 == between);
+        torn = others;
+        let names: Vec<String> = same.iter().map(|(.., name)| format!("`{name}`")).collect();
+        let inputs = match names.as_slice() {
+            [one] => format!("the input {one} has"),
+            several => format!("the inputs {} have", several.join(", ")),
+        };
+        let each = if names.len() == 1 { "it" } else { "each" };
+        notes.warn_about(
+            table,
+            [format!(
+                "{inputs} {words}, in which {each} {}; to fit the parts between gaps with separate \
+             initial values, write `segments = \"auto\"` in the experiment",
+                between.in_gaps()
+            )],
+        );
+    }
+}
+
+/// The column of time of the inputs, in seconds.
+fn own_times(
+    name: &str,
+    origin: Option<Origin>,
+    table: &MatFile,
+    notes: &mut Notes,
+) -> Result<Vec<f64>, Fault> {
+    let named = ColumnEntry::named(Some(name.to_owned()));
+    let column = data::column(table, &named, name, notes)?;
+    time_axis::seconds(&column, &named, origin, (table, notes))
+}
+
+/// The samples of an input, and how it continues between them.
 fn followed(
     (name, wanted): (&str, &ColumnEntry),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
     (flat, base): (&FlatModel, &BaseType),
     notes: &mut Notes,
-) -> Result<(Vec<(f64, f64)>, Between), Fault> {
+) -> Result<Followed, Fault> {
     let column = data::column(table, wanted, name, notes)?;
-    notes.about(table, column.missing.clone());
+    notes.warn_about(table, fault_codes::codes(wanted.column.as_deref().unwrap_or(name), &column));
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
     check_type(name, base, &column)?;
-    let unit = unit_in(flat, name);
+    let unit = variable_unit(flat, name);
     let values = data::in_unit(&column, name, &unit, wanted, (table, notes))?.values;
-    let pairs: Vec<(f64, f64)> = time
-        .iter()
-        .copied()
-        .zip(values)
-        .filter(|(time, value)| time.is_finite() && value.is_finite())
-        .collect();
-    if pairs.is_empty() {
+    let rows: Vec<usize> =
+        (0..time.len()).filter(|&row| time[row].is_finite() && values[row].is_finite()).collect();
+    if rows.is_empty() {
         bail!(BAD_OPTION, "the input `{name}` has no points");
     }
-    if let Some(row) = pairs.windows(2).position(|pair| pair[1].0 < pair[0].0) {
+    if let Some(pair) = rows.windows(2).find(|pair| time[pair[1]] < time[pair[0]]) {
         bail!(
             BAD_OPTION,
             "the time values of the input `{name}` decrease from {} to {} at {}",
-            pairs[row].0, pairs[row + 1].0, column.place(row + 1);
-            help: "sort the rows, or write consecutive runs to separate files"
+            time[pair[0]], time[pair[1]], column.place(pair[1]);
+            help: "sort the rows, or write `segments = \"auto\"` in the experiment: it cuts the data \
+                   there into parts with separate initial values"
         );
     }
-    let between = match base {
-        BaseType::Real => between(name, wanted, &pairs, notes)?,
+    let samples: Vec<(f64, f64)> = rows.iter().map(|&row| (time[row], values[row])).collect();
+    let (between, is_decided) = match base {
+        BaseType::Real => between(name, wanted, &samples, notes)?,
         _ if wanted.interpolation.as_deref() == Some("linear") => bail!(
             BAD_OPTION,
             "the input `{name}` is not Real and cannot be interpolated linearly";
             help: "remove `interpolation`: each value is held until the next sample"
         ),
-        _ => Between::Constant,
+        _ => (Between::Constant, true),
     };
-    Ok((pairs, between))
+    let missing = column.missing.iter();
+    notes.warn_about(
+        table,
+        missing.map(|sentence| format!("{sentence}; there the input {}", between.in_gaps())),
+    );
+    Ok(Followed { samples, column, rows, between, is_decided })
 }
 
 /// Refuses values that an input of this type cannot have.
@@ -158,13 +256,12 @@ fn check_type(name: &str, base: &BaseType, column: &Column) -> Result<(), Fault>
 
 fn declare(
     (name, base, place): (&str, &BaseType, Span),
-    pairs: &[(f64, f64)],
-    between: Between,
+    followed: &Followed,
     enclosing: &mut EnclosingClass,
 ) -> Result<(), Fault> {
-    let rows: Vec<String> = pairs.iter().map(|(t, v)| format!("{t:e},{v:e}")).collect();
+    let rows: Vec<String> = followed.samples.iter().map(|(t, v)| format!("{t:e},{v:e}")).collect();
     let table = enclosing_class::own_name("data of", name);
-    let smoothness = match between {
+    let smoothness = match followed.between {
         Between::Constant => "ConstantSegments",
         Between::Linear => "LinearSegments",
     };
@@ -185,16 +282,17 @@ fn declare(
     Ok(())
 }
 
-/// What an entry says of the values between samples, or what the values look like.
+/// What an entry says of the values between samples, or what the values look like; and whether
+/// nothing else can be meant.
 fn between(
     name: &str,
     entry: &ColumnEntry,
-    pairs: &[(f64, f64)],
+    samples: &[(f64, f64)],
     notes: &mut Notes,
-) -> Result<Between, Fault> {
+) -> Result<(Between, bool), Fault> {
     match entry.interpolation.as_deref() {
-        Some("hold") => return Ok(Between::Constant),
-        Some("linear") => return Ok(Between::Linear),
+        Some("hold") => return Ok((Between::Constant, true)),
+        Some("linear") => return Ok((Between::Linear, true)),
         Some(other) => bail!(
             BAD_OPTION,
             "the interpolation of the input `{name}` is `{other}`";
@@ -202,21 +300,30 @@ fn between(
         ),
         None => {}
     }
-    if pairs.windows(2).all(|pair| pair[0].1 == pair[1].1) {
-        return Ok(Between::Constant);
+    let jumps = |pair: &[(f64, f64)]| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1;
+    if samples.windows(2).all(|pair| pair[0].1 == pair[1].1 || jumps(pair)) {
+        return Ok((Between::Constant, true));
     }
-    if moves_in_steps(pairs) {
+    if samples.windows(2).any(jumps) {
         notes.add(format!(
-            "the input `{name}` is piecewise constant: each value is held until the next sample; \
-             for linear interpolation write `interpolation = \"linear\"`"
+            "the input `{name}` jumps where two rows have one time stamp, and is interpolated \
+             linearly between other rows; if each value holds until the next, write \
+             `interpolation = \"hold\"` in its entry of `inputs`"
         ));
-        return Ok(Between::Constant);
+        return Ok((Between::Linear, false));
     }
-    notes.add(format!(
-        "the input `{name}` is interpolated linearly between samples; if each value holds until \
-         the next, write `interpolation = \"hold\"`"
-    ));
-    Ok(Between::Linear)
+    let assumed = if moves_in_steps(samples) { Between::Constant } else { Between::Linear };
+    notes.add(match assumed {
+        Between::Constant => format!(
+            "the input `{name}` is piecewise constant: each value is held until the next sample; \
+             for linear interpolation write `interpolation = \"linear\"` in its entry of `inputs`"
+        ),
+        Between::Linear => format!(
+            "the input `{name}` is interpolated linearly between samples; if each value holds \
+             until the next, write `interpolation = \"hold\"` in its entry of `inputs`"
+        ),
+    });
+    Ok((assumed, false))
 }
 
 /// Whether values change like those of a switch: at most half of the intervals change anything, and

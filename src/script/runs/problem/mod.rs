@@ -16,11 +16,13 @@ mod dynamics;
 mod enclosing_class;
 mod experiment;
 mod failing;
+pub(super) mod fault_codes;
 mod file;
 mod flat;
 mod forms;
 mod inference;
 mod inputs;
+mod interpolation;
 mod live;
 pub(in crate::script) mod operators;
 mod own_fitness;
@@ -31,15 +33,16 @@ mod record;
 mod refusal;
 mod search;
 mod searches;
+mod segments;
 mod series;
 mod shards;
 mod sigma;
+mod time_axis;
 
 use super::checkpoint::{self, Checkpoint, keep_old};
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::problem::{
-    self as solving, Finding, FindingKind, Importance, ModelSimulator, Origins, Run, Severity,
-    Simulate, Solution, SolvedSeries,
+    self as solving, Importance, ModelSimulator, Origins, Run, Simulate, Solution, SolvedSeries,
 };
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
@@ -53,8 +56,9 @@ pub use driven::{Driven, driven};
 pub use shards::{Division, read_shards};
 
 use build::Built;
+use data::Note;
 use search::Search;
-use searches::Searched;
+use searches::{Change, Searched};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -166,7 +170,7 @@ fn solve_text(
     let mut file = file::read(source, &text).map_err(|error| vec![error])?;
     let built = built_for(session, &mut file, (path, &text), options)?;
     for note in &built.notes {
-        session.note(crate::mat::errors::DATA_NOTE, note.clone());
+        session.note(crate::mat::errors::DATA_NOTE, note.sentence.clone());
     }
     let every =
         (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
@@ -177,9 +181,19 @@ fn solve_text(
         ));
     }
     let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
-    let mut again = |session: &mut Session, seed| {
-        file.seed = Some(seed);
-        let built = built_for(session, &mut file, (path, &text), &options);
+    let mut again = |session: &mut Session, change: Change<'_>| {
+        let built = match change {
+            Change::Seed(seed) => {
+                file.seed = Some(seed);
+                built_for(session, &mut file, (path, &text), &options)
+            }
+            Change::Interpolation(names, between) => {
+                let before = interpolation::set(&mut file, names, between);
+                let built = built_for(session, &mut file, (path, &text), &options);
+                interpolation::restore(&mut file, before);
+                built
+            }
+        };
         built.map_err(|errors| {
             let first = errors.first().map(|error| error.message.clone()).unwrap_or_default();
             fault!(BAD_OPTION, "the problem cannot be read again: {first}")
@@ -220,7 +234,7 @@ fn solve_built(
     again: &mut searches::Again<'_>,
     why: &mut Option<Diagnostic>,
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, origins, notes, calibration } = built;
+    let Built { problem, experiments, validation, origins, notes, calibration, undecided } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::on(problem, &session.world.processors())?;
     run.evaluation.parts = options.division.parts();
@@ -260,8 +274,8 @@ fn solve_built(
     }
     solution.add_searches(all, searched);
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
-    let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
-    solution.findings.extend(notes.into_iter().map(finding));
+    solution.findings.extend(notes.into_iter().map(Note::finding));
+    interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
     let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());

@@ -6,6 +6,7 @@ use super::dynamics;
 use super::enclosing_class::{self, EnclosingClass, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role};
 use super::flat::attribute;
+use super::segments::Segment;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, FlatModel, Variability};
@@ -23,7 +24,9 @@ pub(super) struct Setting<'a> {
     pub file: &'a ProblemFile,
     pub entry: &'a ExperimentEntry,
     /// The name of the experiment.
-    pub experiment: &'a str,
+    pub label: &'a str,
+    /// The part of the experiment.
+    pub segment: &'a Segment,
     pub free: &'a [Free],
 }
 
@@ -68,15 +71,12 @@ impl Setting<'_> {
 
     /// The place of a free parameter among all of them.
     fn free_place(&self, name: &str, parameter: &ParameterEntry) -> Result<usize, Fault> {
-        let full = match parameter.per_experiment {
-            true => format!("{name}@{}", self.experiment),
-            false => name.to_owned(),
-        };
+        let full = self.segment.free_name(name, parameter, self.label);
         self.free.iter().position(|free| free.name == full).ok_or_else(|| {
             fault!(
                 BAD_OPTION,
                 "`{name}` is estimated separately for each experiment, but {} has no value for it",
-                self.experiment;
+                self.label;
                 help: "fix it there with `set`"
             )
         })
@@ -116,7 +116,7 @@ impl Setting<'_> {
         for (name, value) in &entry.set {
             let place = entry.places.value(name);
             if parameters.contains_key(name) {
-                let experiment = self.experiment;
+                let experiment = self.label;
                 let fault = fault!(
                     BAD_OPTION,
                     "`{name}` is set both in {experiment} and in `[parameters]`";
@@ -133,7 +133,7 @@ impl Setting<'_> {
                 let fault = fault!(
                     BAD_OPTION,
                     "the initial value of `{name}` is given both in {} and in `[parameters]`",
-                    self.experiment;
+                    self.label;
                     help: "remove one of the two"
                 );
                 return Err(fault.at(place));

@@ -2,6 +2,7 @@
 //! becomes the run that statistics are made of.
 
 use super::build::Built;
+use super::inputs::Between;
 use super::search::{Ending, Search};
 use super::{Journalled, RunOptions, open};
 use crate::diag::Fault;
@@ -20,8 +21,16 @@ pub(super) const MOST: usize = 100_000;
 /// What the parts of shards are called.
 const KIND: &str = "searches";
 
-/// Makes the problem again, with another seed.
-pub(super) type Again<'a> = dyn FnMut(&mut Session, [f64; 6]) -> Result<Built, Fault> + 'a;
+/// Makes the problem again, with a change.
+pub(super) type Again<'a> = dyn FnMut(&mut Session, Change<'_>) -> Result<Built, Fault> + 'a;
+
+/// What is changed where a problem is made again.
+pub(super) enum Change<'a> {
+    /// The seed, for all that is made from then on.
+    Seed([f64; 6]),
+    /// How these inputs continue between samples, this once.
+    Interpolation(&'a [&'a str], Between),
+}
 
 /// A finished search with its journal, from which it can be made again.
 #[derive(Serialize, Deserialize)]
@@ -100,7 +109,7 @@ pub(super) fn search_on(
     let mut finished = Vec::new();
     for part in missing {
         let number = part + 1;
-        let built = again(session, seed(&own, number)?)?;
+        let built = again(session, Change::Seed(seed(&own, number)?))?;
         let path = journal(files.folder, number + 1);
         session.print(&format!("search {} of {count}\n", number + 1));
         let run = Run::on(built.problem, &session.world.processors())?;
@@ -156,7 +165,7 @@ fn go_to_best(
     else {
         return Ok(searched);
     };
-    let built = again(session, search.seed)?;
+    let built = again(session, Change::Seed(search.seed))?;
     let mut run = Run::on(built.problem, &session.world.processors())?;
     run.evaluation.parts = std::mem::take(&mut searched.run.evaluation.parts);
     let journal = decode(journal);

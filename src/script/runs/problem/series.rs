@@ -1,7 +1,8 @@
 //! Measured outputs of one experiment beside the simulation: values in the unit of the model, their
 //! standard deviations, and the rows that are complete.
 
-use super::data::{self, Measured, Notes};
+use super::data::{self, Measured, Notes, VariableUnit};
+use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::sigma;
 use crate::bail;
@@ -22,14 +23,19 @@ pub(super) struct Comparison<'a> {
     pub x_name: &'a str,
     /// X in the unit of the model; NaN where it is missing.
     pub x: Vec<f64>,
+    /// When the simulation begins.
+    pub start: f64,
 }
 
 impl Comparison<'_> {
-    /// The unit of a variable; empty where it has none.
-    pub(super) fn unit(&self, name: &str) -> String {
+    /// The unit of a variable.
+    pub(super) fn unit(&self, name: &str) -> VariableUnit {
         match name {
-            "time" => "s".to_owned(),
-            name => self.model.unit(name).unwrap_or_default(),
+            "time" => VariableUnit::second(),
+            name => VariableUnit {
+                symbol: self.model.unit(name).unwrap_or_default(),
+                is_relative: self.model.is_relative(name),
+            },
         }
     }
 
@@ -61,7 +67,9 @@ impl Comparison<'_> {
     ) -> Result<Series, Fault> {
         let (table, unit) = (self.table, self.unit(y_name));
         let column = data::column(table, wanted, y_name, notes)?;
+        note_suspicious(wanted.column.as_deref().unwrap_or(y_name), &column, (table, notes));
         let measured = data::in_unit(&column, y_name, &unit, wanted, (table, notes))?;
+        let unit = unit.symbol;
         note_unit_of_sigma(y_name, wanted, (&measured, &unit), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
@@ -78,6 +86,8 @@ impl Comparison<'_> {
         let (rows, missing): (Vec<usize>, Vec<usize>) = (0..count).partition(complete);
         let without_sigma = missing.iter().copied().filter(measured_in);
         note_missing_sigma(y_name, without_sigma.collect(), &column, notes);
+        let rows = self.comparable(rows, (y_name, &column), notes);
+        let first_row = column.about.rows_before + 1;
         let sigma = self.of_rows(sigma, y_name, &rows, count)?;
         if rows.is_empty() {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
@@ -89,16 +99,65 @@ impl Comparison<'_> {
             y_name: y_name.to_owned(),
             y_unit: data::shown_unit(&unit, wanted, &column.about),
             x_name: self.x_name.to_owned(),
-            x_unit: self.unit(self.x_name),
+            x_unit: self.unit(self.x_name).symbol,
             file: self.entry.data.display().to_string(),
             x: rows.iter().map(|row| self.x[*row]).collect(),
             y: rows.iter().map(|row| measured.values[*row]).collect(),
             weight,
             sigma,
             column: wanted.column.clone().unwrap_or_else(|| y_name.to_owned()),
-            rows: rows.iter().map(|row| row + 1).collect(),
-            missing: missing.iter().map(|row| row + 1).collect(),
+            rows: rows.iter().map(|row| first_row + row).collect(),
+            missing: missing.iter().map(|row| first_row + row).collect(),
         })
+    }
+
+    /// Over time, the rows that can be compared with the simulation: those since it begins, and of
+    /// values before an event those that are followed by the ones after it.
+    fn comparable(
+        &self,
+        rows: Vec<usize>,
+        (y_name, column): (&str, &Column),
+        notes: &mut Notes,
+    ) -> Vec<usize> {
+        if self.x_name != "time" {
+            return rows;
+        }
+        let (early, rows): (Vec<usize>, Vec<usize>) =
+            rows.into_iter().partition(|row| self.x[*row] < self.start);
+        if let (Some(first), Some(last)) = (early.first(), early.last()) {
+            notes.add(format!(
+                "{}: `{y_name}` is not compared before the simulation begins at {} s ({} to {})",
+                self.experiment,
+                self.start,
+                column.place(*first),
+                column.place(*last)
+            ));
+        }
+        let mut skipped = Vec::new();
+        let mut kept = Vec::with_capacity(rows.len());
+        for (place, &row) in rows.iter().enumerate() {
+            let stamp = self.x[row];
+            let is_twice =
+                self.x.get(row + 1) == Some(&stamp) && (row == 0 || self.x[row - 1] != stamp);
+            let lacks_partner = is_twice && rows.get(place + 1) != Some(&(row + 1));
+            // Nothing is simulated before the inputs jump at the start.
+            let is_at_start = is_twice && stamp == self.start && !self.entry.inputs.is_empty();
+            let list = if lacks_partner || is_at_start { &mut skipped } else { &mut kept };
+            list.push(row);
+        }
+        for row in skipped {
+            notes.add(format!(
+                "{}: `{y_name}` in {} is not compared: it precedes an event at {} s, {}",
+                self.experiment,
+                column.place(row),
+                self.x[row],
+                match self.x[row] == self.start {
+                    true => "where the simulation begins",
+                    false => "after which there is no value",
+                }
+            ));
+        }
+        kept
     }
 
     /// Given deviations of the rows that are complete, of so many in all.
@@ -156,6 +215,12 @@ fn note_missing_sigma(y_name: &str, rows: Vec<usize>, column: &Column, notes: &m
         rows.len(),
         places.join(", ")
     ));
+}
+
+/// Warns of values that may not be measurements.
+fn note_suspicious(name: &str, column: &Column, (table, notes): (&MatFile, &mut Notes)) {
+    notes.warn_about(table, fault_codes::codes(name, column));
+    notes.warn_about(table, fault_codes::cut_off(name, column));
 }
 
 /// Where values were converted, a number for sigma is taken in the unit of the model.

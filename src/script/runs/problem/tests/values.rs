@@ -2,6 +2,7 @@
 //! number is that of the exact solution.
 
 use super::*;
+use crate::identify::problem::Finding;
 
 const CLASSES: &str = "model Cell
   parameter Real k = 1;

@@ -1,0 +1,142 @@
+//! Values that a logger or an instrument writes instead of a measurement: codes such as -999, and the
+//! end of a range that a signal has left.
+
+use crate::mat::Column;
+
+/// What loggers write where a sensor fails.
+const CODES: [f64; 14] = [
+    -99.0, -999.0, -9999.0, -99_999.0, 999.0, 9999.0, 99_999.0, 999_999.0, -999.9, -999.99,
+    32_767.0, -32_768.0, 65_535.0, 1e30,
+];
+/// A code lies this many spans of the other values beyond them.
+const BEYOND: f64 = 3.0;
+/// Rows that are named.
+const NAMED: usize = 5;
+/// The end of a range occurs this often, and so many times as often as any value within it. Noise that
+/// is clipped at 4.095 V in one of ten rows of a record with 12 bits does.
+const REPEATED: usize = 6;
+const TIMES_AS_OFTEN: usize = 3;
+/// So many of these are consecutive,
+const CONSECUTIVE: usize = 3;
+/// between steps larger than this part of the median one.
+const ABRUPT: f64 = 0.5;
+
+/// Sentences about codes that are used as numbers, in the rows of a column.
+pub(in crate::script::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
+    let sentence = |code: f64| {
+        let (coded, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| *v == code);
+        let [low, high] = ends(&others)?;
+        let distance = (code - high).max(low - code);
+        let is_far = !coded.is_empty() && others.len() > 1 && distance > BEYOND * (high - low);
+        is_far.then(|| {
+            format!(
+                "{code} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
+                 the fault code of an instrument, leave the cells empty; it is used as a value",
+                places(column, &coded)
+            )
+        })
+    };
+    CODES.iter().filter_map(|code| sentence(*code)).collect()
+}
+
+/// A sentence about each end of the values at which a measured signal may have been cut off.
+pub(in crate::script::runs) fn cut_off(name: &str, column: &Column) -> Vec<String> {
+    let known: Vec<(usize, f64)> = column.known().collect();
+    let Some(ends) = ends(&known) else { return Vec::new() };
+    let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+    sorted.sort_by(f64::total_cmp);
+    let within = sorted.chunk_by(|a, b| a == b).filter(|group| !ends.contains(&group[0]));
+    let usual = within.map(<[f64]>::len).max().unwrap_or(0);
+    let sentence = |(end, what): (f64, &str)| {
+        let (cut, _): (Vec<_>, Vec<_>) = known.iter().copied().partition(|(_, v)| *v == end);
+        let is_cut = usual > 0
+            && end != 0.0
+            && cut.len() >= REPEATED.max(TIMES_AS_OFTEN * usual)
+            && stops_abruptly(&known, end);
+        is_cut.then(|| {
+            format!(
+                "the {what} value of `{name}`, {end}, occurs {} times, in {}: if the instrument \
+                 measures no further, these values are not measurements; they are used as such",
+                cut.len(),
+                places(column, &cut)
+            )
+        })
+    };
+    [(ends[0], "smallest"), (ends[1], "largest")].into_iter().filter_map(sentence).collect()
+}
+
+/// Whether consecutive values at an end begin and end in steps of usual size; a signal that approaches
+/// a steady state does so in ever smaller ones.
+fn stops_abruptly(known: &[(usize, f64)], end: f64) -> bool {
+    let step = |pair: &[(usize, f64)]| (pair[1].1 - pair[0].1).abs();
+    let mut steps: Vec<f64> = known.windows(2).map(step).filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(usual) = steps.get(steps.len() / 2) else { return false };
+    let runs: Vec<&[(usize, f64)]> = known.chunk_by(|a, b| a.1 == b.1).collect();
+    let is_far = |value: f64| (value - end).abs() > ABRUPT * usual;
+    runs.windows(3).any(|three| {
+        let [before, run, after] = three else { return false };
+        let is_run = run[0].1 == end && run.len() >= CONSECUTIVE;
+        is_run && is_far(before[before.len() - 1].1) && is_far(after[0].1)
+    })
+}
+
+fn ends(known: &[(usize, f64)]) -> Option<[f64; 2]> {
+    let values = || known.iter().map(|(_, value)| *value);
+    let first = values().next()?;
+    Some([values().fold(first, f64::min), values().fold(first, f64::max)])
+}
+
+fn places(column: &Column, rows: &[(usize, f64)]) -> String {
+    let named: Vec<String> = rows.iter().take(NAMED).map(|(row, _)| column.place(*row)).collect();
+    let more = match rows.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more rows"),
+    };
+    format!("{}{more}", named.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mat::About;
+
+    fn column(values: Vec<f64>) -> Column {
+        Column { values, about: About::default(), missing: None }
+    }
+
+    fn wave(change: impl Fn(usize, f64) -> f64) -> Column {
+        let value = |k: usize| change(k, 20.0 + 3.0 * (0.1 * k as f64).sin());
+        column((0..200).map(value).collect())
+    }
+
+    #[test]
+    fn codes_far_from_the_values_are_named_with_their_rows() {
+        let found = codes("T", &wave(|k, v| if k % 90 == 7 { -999.0 } else { v }));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].starts_with("-999 in row 8, row 98, row 188 of `T`"), "{}", found[0]);
+        // A resistance of 999 Ohm among such of 500 to 1500.
+        assert!(
+            codes("R", &wave(|k, _| if k == 9 { 999.0 } else { 500.0 + 5.0 * k as f64 }))
+                .is_empty()
+        );
+        assert!(codes("T", &column(vec![-999.0; 5])).is_empty(), "nothing to compare with");
+    }
+
+    #[test]
+    fn the_end_of_a_range_is_named_where_a_signal_stays_there() {
+        let found = cut_off("U", &wave(|_, v| v.min(22.0)));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].starts_with("the largest value of `U`, 22, occurs "), "{}", found[0]);
+        for uncut in [
+            wave(|_, v| v),
+            wave(|_, v| v.round()),
+            wave(|k, v| if k % 2 == 0 { 0.0 } else { v }),
+            wave(|k, _| if k < 100 { 0.0 } else { 1.0 }),
+            // Steady states in three digits, left by a step.
+            wave(|k, _| 1.0 - (1000.0 * (-0.1 * (k % 100) as f64).exp()).round() / 1000.0),
+        ] {
+            assert_eq!(cut_off("U", &uncut), [""; 0]);
+        }
+    }
+}
