@@ -199,6 +199,7 @@ impl Source<'_> {
         parameters::check_variables(&names, model).map_err(|error| vec![error])?;
         parameters::check_free(file, &class.parameters, model).map_err(|error| vec![error])?;
         self.segment.check_initial_values(file, self.entry, model).map_err(|error| vec![error])?;
+        parameters::check_taken(file, self.entry, model).map_err(|error| vec![error])?;
         parameters::check_initial(session, file, self.entry, model)
     }
 

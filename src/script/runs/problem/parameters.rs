@@ -4,9 +4,10 @@
 use super::data::Notes;
 use super::dynamics;
 use super::enclosing_class::{self, EnclosingClass, own_name};
-use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role};
+use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
 use super::flat::attribute;
 use super::segments::Segment;
+use crate::codegen::Access;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, FlatModel, Variability};
@@ -165,6 +166,53 @@ pub(super) fn check_free(
         return Err(not_free(name, base, model).at(file.places.parameter(name)));
     }
     Ok(())
+}
+
+/// Refuses values that the model does not take: a record that has a value as a whole keeps it
+/// (MLS §7.2.4), whatever its components are modified by.
+///
+/// # Errors
+///
+/// The first such value, at its place.
+pub(super) fn check_taken(
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    model: &Translated,
+) -> Result<(), Diagnostic> {
+    let fixed = file.parameters.iter().filter_map(|(name, parameter)| {
+        let is_value = !parameter.initial && !dynamics::is_delay(file, name);
+        let value = parameter.fixed.filter(|_| is_value)?;
+        Some((name, value, file.places.parameter(name)))
+    });
+    let set = entry.set.iter().map(|(name, value)| (name, *value, entry.places.value(name)));
+    for (name, value, place) in fixed.chain(set) {
+        let wanted = match value {
+            ValueEntry::Number(number) => number,
+            ValueEntry::Truth(truth) => f64::from(truth),
+        };
+        let Some(taken) = value_of(model, name).filter(|taken| *taken != wanted) else { continue };
+        let fault = fault!(
+            BAD_OPTION,
+            "`{name}` cannot be set to {wanted}: it keeps its value {taken}, which a component of \
+             the model has as a whole"
+        );
+        return Err(fault
+            .help("give the record that contains it another value in `model`")
+            .at(place));
+    }
+    Ok(())
+}
+
+/// The value that a model gives to a parameter; `None` where that is not known before a simulation.
+fn value_of(model: &Translated, name: &str) -> Option<f64> {
+    let program = &model.program;
+    if let Ok(at) = program.find_parameter(name) {
+        return Some(program.parameters()[at].default).filter(|value| !value.is_nan());
+    }
+    match program.variables().iter().find(|variable| &*variable.name == name)?.access {
+        Access::Constant(value) => Some(value),
+        _ => None,
+    }
 }
 
 /// Says which free parameters the model computes from others: they no longer depend on these.

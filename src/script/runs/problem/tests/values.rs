@@ -47,6 +47,16 @@ model Mixer
 equation
   der(y) = K*(u[1] + 2*u[2]) - y;
 end Mixer;
+record Size
+  parameter Real a = 1;
+  parameter Real b = 1;
+end Size;
+model Sized
+  parameter Size own = Size(a = 2, b = 3);
+  Size free;
+  parameter Real k = 1;
+  output Real y = own.a*free.a*(1 - exp(-k*time));
+end Sized;
 model Early
   parameter Real a = 1;
   output Real y = 1/(a*time);
@@ -203,6 +213,18 @@ fn what_cannot_be_estimated_is_refused_before_the_first_simulation() {
     );
     let model = found(&format!("model = \"Rods.mo\"\n[parameters]\n{k}"), outputs, &data);
     says(&model, &["`Rods.mo`", "`Rods`"]);
+}
+
+#[test]
+fn values_that_a_record_keeps_are_refused() {
+    let data = table("time,y", |t| (6.0 * (1.0 - (-0.5 * t).exp())).to_string());
+    let head = "model = \"Sized\"\n[parameters]\nk = { min = 0.1, max = 10 }\n";
+    let outputs = "outputs = { y = \"y\" }";
+    value(&found(&format!("{head}\"free.a\" = {{ fixed = 3 }}"), outputs, &data), "k", 0.5);
+    let kept = found(&format!("{head}\"own.a\" = {{ fixed = 6 }}"), outputs, &data);
+    says(&kept, &["`own.a` cannot be set to 6", "its value 2", "{ fixed = 6 }"]);
+    let kept = found(head, &format!("{outputs}\nset = {{ \"own.a\" = 6 }}"), &data);
+    says(&kept, &["`own.a` cannot be set to 6", "| 6"]);
 }
 
 /// y of the valve with K = 2, T = 1.5, open from 1 to 3.
