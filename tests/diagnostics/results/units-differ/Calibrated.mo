@@ -1,0 +1,4 @@
+model Calibrated "Identified parameters of Source"
+  extends Source(
+    k = 1);
+end Calibrated;
