@@ -52,7 +52,7 @@ use crate::syntax::ast::{
     self, Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind,
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
-use errors::{NOT_A_MODEL, TOO_LARGE};
+use errors::{INVALID_CONNECTION, NOT_A_MODEL, TOO_LARGE};
 use lookup::modification::Modifier;
 use std::collections::BTreeSet;
 
@@ -183,10 +183,17 @@ fn flattened(
         model.functions.extend(function.map(|function| (name, function)));
     }
     let imbalance = balance::check(&model, &classes).err();
+    let imbalance = imbalance.map(|error| of_two_sources(&warnings).unwrap_or(error));
     warnings.extend(balance::warnings(&classes));
     warnings.extend(unit_warnings);
     let balance = classes.into_iter().find(|class| class.path.is_empty());
     Ok((Flattened { model, balance, warnings: distinct(warnings) }, imbalance))
+}
+
+/// Two sources of one signal, of which a warning says so: they are too many equations.
+fn of_two_sources(warnings: &[Diagnostic]) -> Option<Diagnostic> {
+    let found = warnings.iter().find(|warning| warning.code == INVALID_CONNECTION);
+    found.cloned().map(Diagnostic::error)
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

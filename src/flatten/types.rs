@@ -13,7 +13,7 @@ use crate::functions::{self, ArgumentShapes, ShapeRule, TypeRule, VariabilityRul
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex, Subscript,
     UnaryOperator,
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_reference};
@@ -101,7 +101,7 @@ impl Types<'_> {
 
     /// The variable in an expression that changes most often, with its variability.
     fn most_variable(&self, e: &Expression) -> Option<(String, Variability)> {
-        let mut search = MostVariable { types: self, most: None };
+        let mut search = MostVariable { types: self, iterators: Vec::new(), most: None };
         search.expression(e);
         search.most
     }
@@ -326,7 +326,24 @@ impl ArgumentShapes for Ranks<'_, '_> {
 /// Searches the variable that changes most often.
 struct MostVariable<'i, 'a> {
     types: &'i Types<'a>,
+    /// Iterators around, which may have the name of a variable.
+    iterators: Vec<Ident>,
     most: Option<(String, Variability)>,
+}
+
+impl MostVariable<'_, '_> {
+    /// Expressions with iterators, in whose ranges those after them are known.
+    fn iterated<'e>(
+        &mut self,
+        indices: &[ForIndex],
+        elements: impl IntoIterator<Item = &'e Expression>,
+    ) {
+        let outside = self.iterators.len();
+        indices.iter().filter_map(|index| index.range.as_ref()).for_each(|e| self.expression(e));
+        self.iterators.extend(indices.iter().map(|index| index.name.node));
+        elements.into_iter().for_each(|element| self.expression(element));
+        self.iterators.truncate(outside);
+    }
 }
 
 impl Visit for MostVariable<'_, '_> {
@@ -334,12 +351,20 @@ impl Visit for MostVariable<'_, '_> {
         match &e.kind {
             ExpressionKind::Call { function, .. }
                 if function.as_ident().is_some_and(reads_sizes) => {}
+            ExpressionKind::Call { arguments, .. } if !arguments.iterators.is_empty() => {
+                self.iterated(&arguments.iterators, &arguments.positional);
+            }
+            ExpressionKind::Comprehension { element, indices } => {
+                self.iterated(indices, [&**element]);
+            }
             _ => walk_expression(self, e),
         }
     }
 
     fn reference(&mut self, reference: &ComponentReference) {
-        if let Some(found) = self.types.variability_of(reference)
+        let is_iterator = reference.as_ident().is_some_and(|name| self.iterators.contains(&name));
+        if !is_iterator
+            && let Some(found) = self.types.variability_of(reference)
             && self.most.as_ref().is_none_or(|(_, known)| found > *known)
         {
             self.most = Some((path(reference).into_owned(), found));

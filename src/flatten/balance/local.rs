@@ -129,10 +129,12 @@ impl Instantiation<'_> {
                 None => count.unclear = true,
             }
         }
-        let errors = self.classes.count_connections(connections, model, &mut counts, &owners);
+        let found = self.classes.count_connections(connections, model, &mut counts, &owners);
+        let (errors, warnings): (Vec<_>, Vec<_>) = found.into_iter().partition(|d| d.is_error());
         if !errors.is_empty() {
             return Err(errors);
         }
+        self.warnings.extend(warnings);
         for path in determined_from_inside(model) {
             if let Some(count) = counts.iter_mut().find_map(|(node, count)| {
                 (self.classes.tree.nodes[node.0].path == path).then_some(count)
@@ -413,13 +415,14 @@ impl Classes<'_> {
         let (one, other) = (sources.next()?, sources.next()?);
         let edge = edges.iter().find(|edge| edge.sides.contains(other))?;
         let [one, other] = [one, other].map(|side| &self.tree.nodes[side.leaf.0].path);
-        Some(
+        let error =
             fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
                 help: "connect an output of a component, or an input of the class, to inputs; \
                        outputs of several states of a state machine are not supported: let the \
                        states have an `outer output`")
-            .at(edge.span),
-        )
+            .at(edge.span);
+        // One of them may have no equation of its own: the balance of the model decides.
+        Some(if self.library.is_strict() { error } else { error.warning() })
     }
 }
 

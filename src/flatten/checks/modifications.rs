@@ -166,21 +166,21 @@ fn incompatible(
     let candidates = [given, own];
     candidates.into_iter().flatten().find_map(|candidate| {
         let Lack(reason) = lack(candidate, expected)?;
-        let error = unfit(name, expected, &reason, span);
-        // Media are exchanged for others that have not all of the constants and functions of the
-        // first one: what is used is looked for where it is used.
-        Some(match expected.restriction() {
-            Restriction::Package => error.warning(),
-            _ => error,
-        })
+        Some(unfit(name, expected, &reason, span))
     })
 }
 
+/// Media are exchanged for others that have not all of the constants and functions of the first one,
+/// or of their own constraint: what is used is looked for where it is used.
 fn unfit(name: Ident, expected: Scope<'_>, reason: &str, span: Span) -> Diagnostic {
-    fault!(ILLEGAL_REDECLARATION, "`{name}` does not satisfy its constraining type `{}`: \
-                                   {reason}", expected.name();
+    let error = fault!(ILLEGAL_REDECLARATION, "`{name}` does not satisfy its constraining type \
+                                               `{}`: {reason}", expected.name();
         help: "use a class with the public components of the constraining type")
-    .at(span)
+    .at(span);
+    match expected.restriction() {
+        Restriction::Package => error.warning(),
+        _ => error,
+    }
 }
 
 /// What a replaceable element is declared as fits its own constraint.

@@ -136,6 +136,7 @@ fn operators_lie_in_records(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 
 /// The variables of the public connectors of a block are inputs or outputs.
 fn block(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    extends_models(class, errors);
     for component in class.components() {
         let is_public = component.visibility == Visibility::Public;
         if !is_public || component.clause.type_prefixes.causality.is_some() {
@@ -149,6 +150,23 @@ fn block(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
                     help: "make the class a model, or declare the variables of the connector \
                            `input` or `output`")
                 .at(component.declaration.name.span),
+            );
+        }
+    }
+}
+
+/// A block that extends a model (MLS §7.1.3): libraries do it, and it is a block nevertheless.
+fn extends_models(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    for (_, element) in class.elements() {
+        let Element::Extends(extends) = element else { continue };
+        let Some(base) = class.class_named(&extends.base.name) else { continue };
+        if base.restriction() == Restriction::Model {
+            errors.push(
+                fault!(CLASS_RESTRICTION, "the block `{}` extends the model `{}`",
+                    class.name(), base.name();
+                    help: "make `{}` a block, or `{}` a model", base.name(), class.name())
+                .at(extends.base.span)
+                .warning(),
             );
         }
     }
@@ -186,9 +204,14 @@ fn only_public_elements(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnosti
 
 fn no_behaviour(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {
     for section in class.sections() {
+        // Editors leave sections behind in which there is nothing.
         let (kind, span) = match section {
-            Section::Equations { span, .. } => ("equations", *span),
-            Section::Algorithm { span, .. } => ("an algorithm", *span),
+            Section::Equations { equations, span, .. } if !equations.is_empty() => {
+                ("equations", *span)
+            }
+            Section::Algorithm { statements, span, .. } if !statements.is_empty() => {
+                ("an algorithm", *span)
+            }
             _ => continue,
         };
         errors.push(

@@ -188,6 +188,7 @@ impl Instantiation<'_> {
                 value: Some(literal(&value, connect.span)),
                 context: ScopeId::TOP,
                 each: true,
+                each_left: 1,
                 indices: Vec::new(),
                 of_class: false,
             };

@@ -4,7 +4,7 @@
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
-use crate::flatten::errors::NOT_SUPPORTED;
+use crate::flatten::errors::{NOT_SUPPORTED, UNKNOWN_CLASS};
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -121,6 +121,9 @@ impl Instantiation<'_> {
         {
             return Ok(Some(Expression::new(ExpressionKind::String(name.into()), span)));
         }
+        if let Some(folder) = self.class_directory(span, function, context)? {
+            return Ok(Some(Expression::new(ExpressionKind::String(folder.into()), span)));
+        }
         if self.classes.is_array_constructor(function, arguments, context)? {
             if let ([element], false) =
                 (arguments.positional.as_slice(), arguments.iterators.is_empty())
@@ -133,6 +136,31 @@ impl Instantiation<'_> {
             return Ok(Some(Expression::new(ExpressionKind::Array(elements), span)));
         }
         Ok(None)
+    }
+
+    /// `classDirectory()` of other tools: the folder of the file that the class is in, with a slash at
+    /// its end. `None` for other calls.
+    fn class_directory(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        context: ScopeId,
+    ) -> Result<Option<String>, Diagnostic> {
+        let Some(name) = function.as_ident().filter(|name| *name == "classDirectory") else {
+            return Ok(None);
+        };
+        let is_declared = self.classes.lookup(context, &Name::from(name))?.is_some();
+        if is_declared || context == ScopeId::TOP || self.classes.library.is_strict() {
+            return Ok(None);
+        }
+        let class = &self.classes.text(context).name;
+        let folder = self.classes.library.resources().path(&format!("modelica://{class}/"));
+        let folder = folder.map_err(|fault| fault.at(span))?;
+        let warning = fault!(UNKNOWN_CLASS, "`classDirectory` is not a function of Modelica: it \
+            gives the folder of this class";
+            help: "write `Modelica.Utilities.Files.loadResource(\"modelica://{class}/…\")`");
+        self.warn_once(warning.at(span));
+        Ok(Some(folder))
     }
 
     /// The full name of the function that a call means.

@@ -178,17 +178,21 @@ impl Instantiation<'_> {
         let mut inner = local.clone();
         let mut resolved = Vec::with_capacity(indices.len());
         for index in indices {
+            let mut named = None;
             let range = match &index.range {
-                Some(range) => match self.classes.type_range(range, context, &inner)? {
-                    Some(values) => Some(values),
-                    None => Some(self.resolve(range, context, &inner)?),
-                },
+                Some(range) => {
+                    named = self.classes.type_of_range(range, context, &inner)?;
+                    match self.classes.type_range(range, context, &inner)? {
+                        Some(values) => Some(values),
+                        None => Some(self.resolve(range, context, &inner)?),
+                    }
+                }
                 None => None,
             };
-            if range.as_ref().and_then(|range| self.types().type_of(range))
-                == Some(BaseType::Boolean)
-            {
-                Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
+            let found = range.as_ref().and_then(|range| self.types().type_of(range));
+            let is_boolean = found == Some(BaseType::Boolean);
+            if let Some(found) = named.or(is_boolean.then_some(ValueType::Boolean)) {
+                Rc::make_mut(&mut inner.types).push((index.name.node, found));
             }
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));

@@ -32,6 +32,24 @@ impl Classes<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Option<Expression>, Diagnostic> {
+        let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), e.span);
+        Ok(match self.type_of_range(e, context, local)? {
+            Some(ValueType::Boolean) => Some(all_booleans(e.span)),
+            Some(ValueType::Enumeration(definition)) => {
+                let ordinals = (1..=definition.literals.len()).map(integer).collect();
+                Some(Expression::new(ExpressionKind::Array(ordinals), e.span))
+            }
+            _ => None,
+        })
+    }
+
+    /// Boolean or the enumeration that an expression names; `None` if it names none.
+    pub fn type_of_range(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<ValueType>, Diagnostic> {
         let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
         let first = reference.parts[0].name;
         if local.names.iter().any(|(name, _)| *name == first)
@@ -41,12 +59,9 @@ impl Classes<'_> {
         }
         let Some(found) = self.lookup(context, &reference.name())? else { return Ok(None) };
         if self.is_boolean(found)? {
-            return Ok(Some(all_booleans(e.span)));
+            return Ok(Some(ValueType::Boolean));
         }
-        let Some(definition) = self.enumeration(found, e.span)? else { return Ok(None) };
-        let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), e.span);
-        let ordinals = (1..=definition.literals.len()).map(integer).collect();
-        Ok(Some(Expression::new(ExpressionKind::Array(ordinals), e.span)))
+        Ok(self.enumeration(found, e.span)?.map(ValueType::Enumeration))
     }
 
     /// The type whose values are the subscripts of one dimension of a component, as its values; `None`
@@ -172,14 +187,18 @@ impl Instantiation<'_> {
         let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
         let span = argument.span;
         let resolved = self.resolve(argument, context, local)?;
-        let definition = match self.types().type_of(&resolved) {
-            Some(BaseType::Enumeration(definition)) => definition,
-            Some(BaseType::Integer) => {
+        let first = reference.parts[0].name;
+        let has_type = local.types.iter().any(|(name, _)| *name == first);
+        if local.get(first).is_some() && !has_type {
+            return Ok(None);
+        }
+        let definition = match self.types().value_type_of(&resolved, local) {
+            Some(ValueType::Enumeration(definition)) => definition,
+            Some(ValueType::Integer) => {
                 let prefix = crate::name::Name {
                     parts: reference.name().parent().parts,
                     global: reference.global,
                 };
-                let first = reference.parts[0].name;
                 if prefix.parts.is_empty() || self.classes.has_component(context, first)? {
                     return Ok(None);
                 }

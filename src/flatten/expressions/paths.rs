@@ -4,7 +4,8 @@
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::errors::{
-    NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, UNKNOWN_NAME,
+    CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH,
+    UNKNOWN_NAME,
 };
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::{at_end, flat_reference, literal, subscripted};
@@ -54,7 +55,7 @@ impl Instantiation<'_> {
                 self.walk_elements(&dims, &nodes, parts, whole, context, local)
             }
             MemberState::Absent => Err(fault!(
-                UNKNOWN_NAME,
+                CONDITIONAL_COMPONENT,
                 "`{}` does not exist: its condition is false or its declaration has an error",
                 name
             )

@@ -3,7 +3,9 @@
 
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
-use crate::flatten::errors::{NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::errors::{
+    CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
+};
 use crate::flatten::expressions::comprehensions::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
@@ -183,15 +185,17 @@ impl Instantiation<'_> {
             }
             match self.resolve(value, context, local) {
                 Ok(value) => resolved.push((condition, value)),
-                Err(error) if error.code != SIZE_MISMATCH => return Err(error),
-                Err(_) if self.known_condition(&condition, local) == Some(false) => {}
-                Err(error) => return self.up_to_taken(resolved, span, local).ok_or(error),
+                Err(error) if !self.may_be_left_out(&error) => return Err(error),
+                Err(error) if self.known_condition(&condition, local) == Some(false) => {
+                    self.warn_of_absent(error);
+                }
+                Err(error) => return self.up_to_taken(resolved, error, span, local),
             }
         }
         let otherwise = match self.resolve(otherwise, context, local) {
             Ok(otherwise) => otherwise,
-            Err(error) if error.code != SIZE_MISMATCH => return Err(error),
-            Err(error) => return self.up_to_taken(resolved, span, local).ok_or(error),
+            Err(error) if !self.may_be_left_out(&error) => return Err(error),
+            Err(error) => return self.up_to_taken(resolved, error, span, local),
         };
         if resolved.is_empty() {
             return Ok(otherwise);
@@ -200,24 +204,45 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, span))
     }
 
+    /// Whether an error in a branch counts only if the branch is taken: an element beyond the end of an
+    /// array, or a conditional component that is absent.
+    fn may_be_left_out(&self, error: &Diagnostic) -> bool {
+        let is_absent = error.code == CONDITIONAL_COMPONENT;
+        error.code == SIZE_MISMATCH || is_absent && !self.classes.library.is_strict()
+    }
+
+    /// Conditional components belong into connections only (MLS §4.4.5).
+    fn warn_of_absent(&mut self, error: Diagnostic) {
+        if error.code == CONDITIONAL_COMPONENT {
+            let help = "only `connect` equations may name it: parameters exclude this branch, which \
+                        is left out";
+            self.warn_once(error.help(help));
+        }
+    }
+
     /// An if-expression whose later branches name what does not exist, up to the branch whose
     /// condition parameters make true: the element of an empty array is no error where nothing
-    /// reads it. `None` if parameters do not choose a branch. The parameters cannot be set any more.
+    /// reads it. The parameters cannot be set any more.
+    ///
+    /// # Errors
+    /// Parameters do not choose a branch.
     fn up_to_taken(
         &mut self,
         mut branches: Vec<(Expression, Expression)>,
+        error: Diagnostic,
         span: Span,
         local: &Local,
-    ) -> Option<Expression> {
+    ) -> Result<Expression, Diagnostic> {
         let is_taken = |(condition, _): &_| self.known_condition(condition, local) == Some(true);
-        let taken = branches.iter().position(is_taken)?;
-        branches.truncate(taken + 1);
-        let (_, otherwise) = branches.pop()?;
+        let Some(taken) = branches.iter().position(is_taken) else { return Err(error) };
+        self.warn_of_absent(error);
+        let (_, otherwise) = branches.swap_remove(taken);
+        branches.truncate(taken);
         if branches.is_empty() {
-            return Some(otherwise);
+            return Ok(otherwise);
         }
         let kind = ExpressionKind::If { branches, otherwise: Box::new(otherwise) };
-        Some(Expression::new(kind, span))
+        Ok(Expression::new(kind, span))
     }
 
     /// The value that constants and parameters give a resolved condition.

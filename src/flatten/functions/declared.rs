@@ -400,6 +400,10 @@ impl Instantiation<'_> {
                     self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?
                 }
             };
+            let binding = match binding {
+                None if !is_function => self.value_of_defaults(&value_type, &dims, declared.span),
+                binding => binding,
+            };
             Rc::make_mut(&mut local.types).push((declared.name, value_type.clone()));
             let causality = declared.type_prefixes.causality.or(expanded.causality);
             if is_function && !declared.protected && causality.is_none() {
@@ -507,6 +511,32 @@ impl Instantiation<'_> {
         let function = ComponentReference::from_name(record, span);
         let arguments = Box::new(Arguments { named, ..Arguments::default() });
         Ok(Some(Expression::new(ExpressionKind::Call { function, arguments }, span)))
+    }
+
+    /// The value of a component of a record whose type has defaults for all of its components (MLS
+    /// §12.6): what its constructor makes of no arguments.
+    fn value_of_defaults(
+        &self,
+        value_type: &ValueType,
+        dims: &[Subscript],
+        span: Span,
+    ) -> Option<Expression> {
+        let ValueType::Record(record, fields) = value_type else { return None };
+        if !fields.values().all(|field| field.binding.is_some()) {
+            return None;
+        }
+        let function = ComponentReference::from_name(record, span);
+        let kind = ExpressionKind::Call { function, arguments: Box::default() };
+        dims.iter().rev().try_fold(Expression::new(kind, span), |element, size| {
+            let Subscript::Index(size) = size else { return None };
+            let one = Box::new(Expression::new(ExpressionKind::Integer(1), span));
+            let range =
+                ExpressionKind::Range { start: one, step: None, stop: Box::new(size.clone()) };
+            let name = Spanned { node: Ident::new("'element'"), span };
+            let index = ForIndex { name, range: Some(Expression::new(range, span)) };
+            let (element, indices) = (Box::new(element), vec![index]);
+            Some(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
+        })
     }
 
     fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {

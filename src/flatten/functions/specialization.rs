@@ -281,6 +281,34 @@ impl Writing<'_> {
         function.inputs.iter().map(|input| input.name).filter(is_free).collect()
     }
 
+    /// Writes a call of a passed function, and passes on the functions among its arguments.
+    fn call(&mut self, function: &mut ComponentReference, arguments: &mut Arguments, span: Span) {
+        if let Some(one) = self.input(function) {
+            let bound = self.bound(one, span);
+            let free = self.free_inputs(one);
+            *function = ComponentReference::from_name(&one.function, span);
+            // Arguments in order are those of the inputs that are left.
+            let given = arguments.positional.drain(..free.len().min(arguments.positional.len()));
+            let given = free.into_iter().zip(given).map(|(node, value)| NamedArgument {
+                name: Spanned { node, span: value.span },
+                value,
+            });
+            arguments.named.extend(given.collect::<Vec<_>>());
+            arguments.named.extend(bound);
+            let given = arguments.clone();
+            *arguments = self.functions.with_defaults(&one.function, given, None, span);
+        }
+        let called =
+            self.functions.specialized(function.name(), arguments.clone(), span, self.depth + 1);
+        match called {
+            Ok((name, left)) => {
+                *function = ComponentReference::from_name(&name, span);
+                *arguments = left;
+            }
+            Err(error) => self.error = Some(error),
+        }
+    }
+
     fn input(&self, reference: &ComponentReference) -> Option<&Passed> {
         let name = reference.as_ident()?;
         self.passed.iter().find(|one| one.input == name)
@@ -318,33 +346,7 @@ impl Rewrite for Writing<'_> {
                 None
             }
             ExpressionKind::Call { function, arguments } => {
-                if let Some(one) = self.input(function) {
-                    let bound = self.bound(one, span);
-                    let free = self.free_inputs(one);
-                    *function = ComponentReference::from_name(&one.function, span);
-                    // Arguments in order are those of the inputs that are left.
-                    let given =
-                        arguments.positional.drain(..free.len().min(arguments.positional.len()));
-                    let given = free.into_iter().zip(given).map(|(node, value)| NamedArgument {
-                        name: Spanned { node, span: value.span },
-                        value,
-                    });
-                    arguments.named.extend(given.collect::<Vec<_>>());
-                    arguments.named.extend(bound);
-                }
-                let called = self.functions.specialized(
-                    function.name(),
-                    (**arguments).clone(),
-                    span,
-                    self.depth + 1,
-                );
-                match called {
-                    Ok((name, left)) => {
-                        *function = ComponentReference::from_name(&name, span);
-                        **arguments = left;
-                    }
-                    Err(error) => self.error = Some(error),
-                }
+                self.call(function, arguments, span);
                 None
             }
             _ => None,

@@ -6,7 +6,8 @@ use super::own_sizes::with_own_sizes;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{
-    CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH, VALUE_NEEDED,
+    CYCLIC_CLASS, NOT_CONSTANT, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT,
+    VALUE_NEEDED,
 };
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::NodeId;
@@ -84,7 +85,8 @@ impl Instantiation<'_> {
         node: NodeId,
         declared: &Declaration,
     ) -> Result<MemberState, Diagnostic> {
-        let expanded = self.classes.expand(declared)?;
+        let mut expanded = self.classes.expand(declared)?;
+        self.take_value(declared, &mut expanded);
         let dims = self.dimensions(declared, &expanded)?;
         match expanded.shape.base() {
             Some(base) => self
@@ -94,6 +96,20 @@ impl Instantiation<'_> {
                 .map(MemberState::Single),
             None => self.classes.components(node, declared, expanded, dims),
         }
+    }
+
+    /// `y(value = 3)`, which other tools take as `y = 3`; no attribute of the language has this name.
+    fn take_value(&mut self, declared: &Declaration, expanded: &mut Expanded) {
+        let is_variable = expanded.shape.base().is_some() && expanded.modifier.binding.is_none();
+        if !is_variable || self.classes.library.is_strict() {
+            return;
+        }
+        let name = Ident::new("value");
+        let Some(modifier) = expanded.modifier.elements.shift_remove(&name) else { return };
+        expanded.modifier.binding = modifier.binding;
+        let warning = fault!(UNKNOWN_ELEMENT, "`{}` has no attribute `value`: it is taken as its \
+            value", declared.name; help: "write `{} = …`", declared.name);
+        self.warn_once(warning.at(modifier.span.unwrap_or(declared.span)));
     }
 
     /// The sizes of a component, those of its type included.

@@ -198,6 +198,7 @@ impl Classes<'_> {
                 // The value was that of every element of an array of records; of one record each
                 // component has its own.
                 each: false,
+                each_left: 0,
                 indices: Vec::new(),
                 of_class: false,
             });

@@ -141,6 +141,7 @@ impl Classes<'_> {
             // Libraries do it; the table of the specification does not have it.
             (R::Connector, R::Model | R::Block | R::Class) => !self.library.is_strict(),
             (R::Package, R::Model | R::Block | R::Class) => !self.library.is_strict(),
+            (R::Model, R::Block) => !self.library.is_strict(),
             (R::ExpandableConnector, R::ExpandableConnector) => true,
             (one, other) => one == other,
         };
@@ -212,10 +213,10 @@ impl Classes<'_> {
         let mut own = match (&redeclaration, &clause.constraint) {
             (Some(_), Some(_)) => defaults,
             // Without a constraining clause the declaration's own modifiers are that of one.
-            (Some(_), None) => Modifier::new(component.modification.as_ref(), false, context)?
+            (Some(_), None) => Modifier::new(component.modification.as_ref(), 0, context)?
                 .overridden_by(defaults, name)?,
             (None, _) => {
-                let own = Modifier::new(component.modification.as_ref(), false, context)?;
+                let own = Modifier::new(component.modification.as_ref(), 0, context)?;
                 defaults.overridden_by(own, name)?
             }
         };

@@ -10,7 +10,7 @@ use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
     Argument, Binding, ClassElement, ComponentClause, ComponentDeclaration, ElementRedeclaration,
-    Expression, Modification, RedeclaredElement,
+    Expression, ExpressionKind, Modification, RedeclaredElement,
 };
 use crate::syntax::print;
 use indexmap::IndexMap;
@@ -66,6 +66,8 @@ pub struct Bound {
     pub context: ScopeId,
     /// `each`: holds for every element of an array.
     pub each: bool,
+    /// How many arrays of components, the outermost first, have `each` and no element picked yet.
+    pub each_left: usize,
     /// For modifiers of arrays of components: the element of the value that is meant, one index a
     /// dimension, from 1.
     pub indices: Vec<usize>,
@@ -78,7 +80,7 @@ impl Modifier {
     /// The modifier that a declaration's or an argument's modification writes.
     pub fn new(
         modification: Option<&Modification>,
-        each: bool,
+        each: usize,
         context: ScopeId,
     ) -> Result<Modifier, Diagnostic> {
         let Some(modification) = modification else { return Ok(Modifier::default()) };
@@ -88,20 +90,21 @@ impl Modifier {
                 Binding::Expression(value) => Some(value.clone()),
                 Binding::Break(_) => None,
             };
-            Bound { value, context, each, indices: Vec::new(), of_class: false }
+            let indices = Vec::new();
+            Bound { value, context, each: each > 0, each_left: each, indices, of_class: false }
         });
         Ok(modifier)
     }
 
     /// The modifier that stands in parentheses.
     pub fn of_arguments(arguments: &[Argument], context: ScopeId) -> Result<Modifier, Diagnostic> {
-        Modifier::of_each(arguments, false, context)
+        Modifier::of_each(arguments, 0, context)
     }
 
-    /// As [`Modifier::of_arguments`], inside an argument that may be marked `each`.
+    /// As [`Modifier::of_arguments`], inside arguments so many of which are marked `each`.
     fn of_each(
         arguments: &[Argument],
-        each: bool,
+        each: usize,
         context: ScopeId,
     ) -> Result<Modifier, Diagnostic> {
         let mut merged = Modifier::default();
@@ -113,7 +116,7 @@ impl Modifier {
                     continue;
                 }
             };
-            let each = each || element.each;
+            let each = each + usize::from(element.each);
             let mut inner = Modifier::new(element.modification.as_ref(), each, context)?;
             inner.is_final = element.is_final;
             inner.span = Some(element.name.span);
@@ -148,10 +151,10 @@ impl Modifier {
     fn add_redeclaration(
         &mut self,
         element: &ElementRedeclaration,
-        each: bool,
+        each: usize,
         context: ScopeId,
     ) -> Result<(), Diagnostic> {
-        let each = each || element.each;
+        let each = each + usize::from(element.each);
         let (name, replacement, mut modifier, is_final) = match &element.element {
             RedeclaredElement::Class(class) => {
                 let replacement = Replacement::Class(Arc::new((**class).clone()));
@@ -185,7 +188,7 @@ impl Modifier {
         component: &ComponentDeclaration,
         context: ScopeId,
     ) -> Result<(), Diagnostic> {
-        let mut modifier = Modifier::new(component.modification.as_ref(), false, context)?;
+        let mut modifier = Modifier::new(component.modification.as_ref(), 0, context)?;
         let one = ComponentClause { components: vec![component.clone()], ..clause.clone() };
         let replacement = Replacement::Component(Arc::new(one));
         modifier.redeclaration = Some(Redeclaration::new(replacement, context));
@@ -327,10 +330,16 @@ impl Modifier {
         }
     }
 
+    /// `each` is about one array: in one within it, an array constructor is a value for all elements.
     fn picked(&self, indices: &[usize]) -> Modifier {
         let picked = |bound: &Bound| {
             let mut bound = bound.clone();
-            if !bound.each && !std::mem::take(&mut bound.of_class) {
+            let is_whole = match bound.each_left {
+                0 => bound.each && !bound.value.as_ref().is_some_and(constructs_array),
+                _ => true,
+            };
+            bound.each_left = bound.each_left.saturating_sub(usize::from(!indices.is_empty()));
+            if !is_whole && !std::mem::take(&mut bound.of_class) {
                 bound.indices.extend(indices);
             }
             bound
@@ -367,6 +376,11 @@ impl Modifier {
         Err(fault!(UNKNOWN_ELEMENT, "`{name}` has no element `[{}]`: {sizes}", numbers(indices))
             .at(modifier.place().unwrap_or(Span::NONE)))
     }
+}
+
+/// Whether an expression is an array by its form.
+fn constructs_array(value: &Expression) -> bool {
+    matches!(value.kind, ExpressionKind::Array(_) | ExpressionKind::Comprehension { .. })
 }
 
 impl Redeclaration {
