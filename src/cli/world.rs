@@ -254,6 +254,10 @@ impl Environment for SystemWorld {
         std::env::var(name).ok()
     }
 
+    fn variables(&self) -> Option<fn(&str) -> Option<String>> {
+        Some(|name| std::env::var(name).ok())
+    }
+
     fn monotonic_seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }

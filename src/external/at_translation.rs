@@ -75,6 +75,10 @@ impl Outside for AtTranslation {
         self.resources.full_path(path)
     }
 
+    fn environment_variable(&mut self, name: &str) -> Result<Option<String>, Fault> {
+        self.resources.environment_variable(name)
+    }
+
     fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
         self.resources.c_function(request)
     }

@@ -119,6 +119,11 @@ pub trait Outside {
         Err(refused("to read the clock"))
     }
 
+    /// The content of an environment variable; `None` if it is not set.
+    fn environment_variable(&mut self, name: &str) -> Result<Option<String>, Fault> {
+        Err(refused(&format!("to read the environment variable `{name}`")))
+    }
+
     /// A function in C that a library brings along, compiled and loaded.
     fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
         Err(refused(&format!("to compile the C function `{}`", request.wanted().function)))

@@ -20,6 +20,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::impure("ModelicaInternal_fullPathName", "t->t", full_path),
     Entry::writing("ModelicaInternal_removeFile", "t", remove),
     Entry::writing("ModelicaInternal_mkdir", "t", make_folder),
+    Entry::impure("ModelicaInternal_getenv", "tnTN", environment_variable),
     Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
@@ -93,6 +94,19 @@ fn full_path(call: &mut Call<'_>) -> Result<(), Fault> {
     let path = call.text(0).to_owned();
     let full = call.outside.full_path(&path)?;
     call.give_text(&full)
+}
+
+/// `(name, convertToSlash, content, exist)`
+fn environment_variable(call: &mut Call<'_>) -> Result<(), Fault> {
+    let name = call.text(0).to_owned();
+    let content = call.outside.environment_variable(&name)?;
+    call.set(3, f64::from(u8::from(content.is_some())));
+    let content = content.unwrap_or_default();
+    match call.truth(1) {
+        false => call.set_text(2, &content),
+        true => call.set_text(2, &content.replace('\\', "/")),
+    }
+    Ok(())
 }
 
 /// `(ms, sec, min, hour, day, mon, year)`

@@ -50,7 +50,7 @@ pub use call::{Call, Callable, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
-pub(crate) use parts::{COMPOSE, PRINT};
+pub(crate) use parts::{COMPOSE, FAIL, PRINT};
 pub use resources::{Contents, Provide, Resources};
 pub use tables::names_a_file;
 pub use xorshift::Random;
@@ -101,7 +101,7 @@ pub(crate) mod by_name {
 
     pub fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<&'static Entry, D::Error> {
         let (name, stands_for) = <(String, String)>::deserialize(source)?;
-        let own = [&super::COMPOSE, &super::PRINT];
+        let own = [&super::COMPOSE, &super::FAIL, &super::PRINT];
         let mut entries = FAMILIES.iter().copied().flatten().chain(own);
         entries
             .find(|entry| entry.name == name && entry.stands_for == stands_for)

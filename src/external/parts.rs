@@ -1,17 +1,21 @@
 //! Strings in parts, some of which are known when a function runs: what `String` and `+` make of them.
 //!
-//! A part is a text, or a number as `String` writes it (MLS §3.7.1): a row of its value, whether it
-//! is a Real (0), an Integer (1) or a Boolean (2), and significant digits, minimum length, left
-//! justified; or a row of its value and type, and its format as the next part.
+//! A part is a text, or a number as `String` writes it (MLS §3.7.1) in a row: see
+//! [`written`]; a format is the next part.
 
 use super::Entry;
 use super::call::{Call, Kind, Slot};
+use super::errors::EXTERNAL_FAILED;
 use crate::diag::Fault;
-use crate::value::Value;
-use crate::value::format::{formatted, text};
+use crate::fault;
+use crate::value::format::written;
 
 /// The text of all arguments.
 pub static COMPOSE: Entry = Entry { stands_for: OWN, ..Entry::pure("String", "", compose) };
+
+/// Fails with a text: the first argument is the text as far as it is known at translation, the others
+/// are the parts.
+pub static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "", fail) };
 
 /// As `ModelicaInternal_print`: the file, then the text in parts.
 pub static PRINT: Entry =
@@ -23,6 +27,11 @@ const OWN: &str = "strings in parts";
 fn compose(call: &mut Call<'_>) -> Result<(), Fault> {
     let words = joined(call, call.arguments)?;
     call.give_text(&words)
+}
+
+fn fail(call: &mut Call<'_>) -> Result<(), Fault> {
+    let words = joined(call, &call.arguments[1..])?;
+    Err(fault!(EXTERNAL_FAILED, "{}", words.trim_end()))
 }
 
 fn print(call: &mut Call<'_>) -> Result<(), Fault> {
@@ -42,22 +51,10 @@ fn joined(call: &Call<'_>, parts: &[Slot]) -> Result<String, Fault> {
             (Kind::Text, _) => words += &call.strings[first],
             (_, [2]) => {
                 let format = parts.next().map_or("", |slot| &call.strings[slot.first as usize]);
-                words += &formatted(&value(&call.numbers[first..]), format)?;
+                words += &written(&call.numbers[first..first + 2], Some(format))?;
             }
-            _ => {
-                let row = &call.numbers[first..first + 5];
-                words += &text(&value(row), row[2] as i64, row[3] as i64, row[4] != 0.0)?;
-            }
+            _ => words += &written(&call.numbers[first..first + 5], None)?,
         }
     }
     Ok(words)
-}
-
-/// A number and its type.
-fn value(row: &[f64]) -> Value {
-    match row[1] as i64 {
-        1 => Value::Integer(row[0] as i64),
-        2 => Value::Boolean(row[0] != 0.0),
-        _ => Value::Real(row[0]),
-    }
 }

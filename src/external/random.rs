@@ -16,6 +16,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaRandom_xorshift64star", "aAN", xorshift64_star),
     Entry::pure("ModelicaRandom_xorshift128plus", "aAN", xorshift128_plus),
     Entry::pure("ModelicaRandom_xorshift1024star", "aAN", xorshift1024_star),
+    Entry::pure("ModelicaRandom_convertRealToIntegers", "nA", real_to_integers),
     Entry::pure("ModelicaRandom_automaticGlobalSeed", "n->n", automatic_global_seed),
     Entry::stateful("ModelicaRandom_setInternalState_xorshift1024star", "ann", set_state),
     Entry::stateful("ModelicaRandom_impureRandom_xorshift1024star", "n->n", impure_random),
@@ -92,6 +93,22 @@ fn xorshift1024_star(call: &mut Call<'_>) -> Result<(), Fault> {
     let bits = state.next();
     call.array_mut(1)[32] = state.at as f64;
     done(call, &state.words, bits)
+}
+
+/// `(x, y)`: the halves of the 64 bits of a Real, the lower one first.
+fn real_to_integers(call: &mut Call<'_>) -> Result<(), Fault> {
+    let bits = call.number(0).to_bits();
+    let half = |bits: u64| f64::from(bits as u32 as i32);
+    match call.array_mut(1) {
+        [low, high] => {
+            (*low, *high) = (half(bits), half(bits >> 32));
+            Ok(())
+        }
+        other => {
+            let n = other.len();
+            Err(call.fault(format!("two Integers are written, not {n}")))
+        }
+    }
 }
 
 fn automatic_global_seed(call: &mut Call<'_>) -> Result<(), Fault> {

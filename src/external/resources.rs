@@ -22,6 +22,10 @@ pub trait Provide: fmt::Debug + Send + Sync {
     }
     /// Whether there is a file (`Some(false)`) or a folder (`Some(true)`) of this name.
     fn is_folder(&self, name: &str) -> Option<bool>;
+    /// The content of an environment variable; `None` if it is not set.
+    fn environment_variable(&self, name: &str) -> Result<Option<String>, Fault> {
+        ().environment_variable(name)
+    }
 }
 
 /// The files that a model may use; none by default.
@@ -80,6 +84,13 @@ impl Outside for Resources {
 
     fn full_path(&mut self, path: &str) -> Result<String, Fault> {
         self.provider(path)?.path(path)
+    }
+
+    fn environment_variable(&mut self, name: &str) -> Result<Option<String>, Fault> {
+        match &self.0 {
+            Some(provider) => provider.environment_variable(name),
+            None => ().environment_variable(name),
+        }
     }
 
     fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {

@@ -40,8 +40,22 @@ const LENIENT: &[&str] = &[
 /// What the compiler or the linker says then.
 const UNDECLARED: &[&str] = &["implicit declaration of function", "undefined reference"];
 
+/// What all compilers took with a warning until 2022, and code of that time is written for: functions
+/// that nobody declares, which return int, and conversions between pointers and integers.
+const TOLERANT: &[&str] = &[
+    "-Wno-error=implicit-function-declaration",
+    "-Wno-error=int-conversion",
+    "-Wno-error=incompatible-pointer-types",
+];
+/// What the compiler says of it.
+const TOLERATED: &[&str] =
+    &["implicit-function-declaration", "int-conversion", "incompatible-pointer-types"];
+
 /// Families of functions of the standard library in C whose sources stand alone.
-const STANDARD: &[&str] = &["ModelicaStrings", "ModelicaInternal", "ModelicaFFT"];
+const STANDARD: &[&str] = &["ModelicaStrings", "ModelicaInternal", "ModelicaFFT", "ModelicaRandom"];
+/// The library that other tools have built from these; where a model does not bring it along, the
+/// sources take its place.
+const STANDARD_LIBRARY: &str = "ModelicaExternalC";
 
 /// Longest part of a compiler's complaints that is shown, in lines.
 const SHOWN: usize = 12;
@@ -165,7 +179,8 @@ fn compiled(unit: &Unit) -> Result<(Vec<FileState>, Loaded), Fault> {
 }
 
 /// Compiles and links `unit.so`. Code that calls what it does not declare gets the headers of C, and
-/// the standard library's functions, which other tools link to every model.
+/// the standard library's functions, which other tools link to every model; what is then accepted
+/// with a warning alone is old code.
 fn build(
     compiler: &Compiler,
     folder: &Path,
@@ -176,7 +191,8 @@ fn build(
     let mut arguments = vec!["-shared", "-o", "unit.so", "unit.c", "utilities.c"];
     arguments.extend(linking.iter().map(String::as_str));
     let Err(fault) = run(compiler, folder, unit, &arguments) else { return Ok(()) };
-    if !UNDECLARED.iter().any(|words| fault.message.contains(words)) {
+    let says = |list: &[&str]| list.iter().any(|words| fault.message.contains(words));
+    if !says(UNDECLARED) && !says(TOLERATED) {
         return Err(fault);
     }
     let mut lenient: Vec<String> = LENIENT.iter().map(|&word| word.to_owned()).collect();
@@ -189,6 +205,10 @@ fn build(
         lenient.extend(["-include".to_owned(), header, object.display().to_string()]);
     }
     arguments.splice(0..0, lenient.iter().map(String::as_str));
+    if run(compiler, folder, unit, &arguments).is_ok() {
+        return Ok(());
+    }
+    arguments.splice(0..0, TOLERANT.iter().copied());
     run(compiler, folder, unit, &arguments).map(drop).map_err(|_| fault)
 }
 
@@ -237,7 +257,14 @@ fn linking(unit: &Unit) -> Vec<String> {
         let directory = directory.display();
         arguments.extend([format!("-L{directory}"), format!("-Wl,-rpath,{directory}")]);
     }
+    let is_there = |library: &str| {
+        let names = library_files(library);
+        unit.library_directories.iter().any(|d| names.iter().any(|name| d.join(name).is_file()))
+    };
     for library in &unit.libraries {
+        if library == STANDARD_LIBRARY && unit.standard_sources.is_some() && !is_there(library) {
+            continue;
+        }
         let is_file = Path::new(library).is_absolute();
         arguments.push(if is_file { library.clone() } else { format!("-l{library}") });
     }
@@ -249,6 +276,11 @@ fn linking(unit: &Unit) -> Vec<String> {
     arguments
 }
 
+/// The names that the file of a library may have.
+fn library_files(library: &str) -> [String; 3] {
+    ["so", "a", "dylib"].map(|ending| format!("lib{library}.{ending}"))
+}
+
 /// Files of the library that are linked.
 fn linked_files(unit: &Unit) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -257,7 +289,7 @@ fn linked_files(unit: &Unit) -> Vec<PathBuf> {
             found.push(PathBuf::from(library));
         }
         for directory in &unit.library_directories {
-            let names = ["so", "a", "dylib"].map(|ending| format!("lib{library}.{ending}"));
+            let names = library_files(library);
             found
                 .extend(names.map(|name| directory.join(name)).into_iter().filter(|p| p.is_file()));
         }

@@ -40,9 +40,9 @@ impl Table1D {
         ordered(call, &x, "the first column", jumps)?;
         let mut curves = Vec::new();
         for column in call.array(columns) {
-            if *column < 2.0 || *column > matrix.columns as f64 {
+            if *column < 1.0 || *column > matrix.columns as f64 {
                 return Err(call.fault(format!(
-                    "there is no column {column} of values in a table with {} columns",
+                    "there is no column {column} in a table with {} columns",
                     matrix.columns
                 )));
             }

@@ -63,6 +63,6 @@ impl Session {
         &self,
         name: &str,
     ) -> Result<Option<String>, Fault> {
-        self.process.variable(&*self.world, self.options.permissions, name)
+        self.process.variable(|name| self.world.env(name), self.options.permissions, name)
     }
 }

@@ -14,7 +14,7 @@ const SECRETIVE: &[&str] =
     &["AUTH", "COOKIE", "CREDENTIAL", "KEY", "PASS", "PRIVATE", "SECRET", "TOKEN"];
 
 /// The environment variables that scripts set, before those of the process.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Process {
     variables: BTreeMap<String, String>,
 }
@@ -31,7 +31,7 @@ impl Process {
     /// The variable may hold a secret.
     pub fn variable(
         &self,
-        world: &dyn Environment,
+        of_system: impl Fn(&str) -> Option<String>,
         permissions: Permissions,
         name: &str,
     ) -> Result<Option<String>, Fault> {
@@ -47,7 +47,7 @@ impl Process {
                 help: "allow it with `--allow-system`"
             );
         }
-        Ok(world.env(name))
+        Ok(of_system(name))
     }
 
     /// Runs a command of the operating system; its exit status and what it printed.

@@ -203,6 +203,10 @@ impl Outside for Session {
         Ok(())
     }
 
+    fn environment_variable(&mut self, name: &str) -> Result<Option<String>, Fault> {
+        Session::environment_variable(self, name)
+    }
+
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
         Ok(self.world.unix_seconds())
     }

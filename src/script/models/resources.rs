@@ -1,13 +1,15 @@
 //! The files that a model may use while it is compiled: tables above all.
 
 use super::c_functions;
-use super::stored::Watched;
+use super::stored::{Reads, Watched};
 use crate::diag::Fault;
 use crate::external::c::{CCompiler, Request};
 use crate::external::{Entry, Provide, Resources};
 use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::faults::{cannot, plain};
+use crate::script::access::permissions::Permissions;
+use crate::script::access::process::Process;
 use crate::script::errors::FILE_ERROR;
 use crate::script::world::{FileReader, normalized};
 use std::collections::BTreeMap;
@@ -24,6 +26,12 @@ struct ModelFiles {
     packages: BTreeMap<Ident, PathBuf>,
     /// Who compiles C, if that is allowed.
     compiler: Option<Arc<dyn CCompiler>>,
+    /// What a translation that is kept depends on.
+    reads: Reads,
+    /// The environment variables that the session has set, and those of the system.
+    process: Process,
+    permissions: Permissions,
+    variables: Option<fn(&str) -> Option<String>>,
 }
 
 impl Session {
@@ -51,7 +59,16 @@ impl Session {
         let files: Arc<dyn FileReader> =
             Arc::new(Watched::new(self.world.reader(), self.classes.reads.clone()));
         let compiler = self.world.c_compiler();
-        Resources::new(Arc::new(ModelFiles { files, folders, packages, compiler }))
+        Resources::new(Arc::new(ModelFiles {
+            files,
+            folders,
+            packages,
+            compiler,
+            reads: self.classes.reads.clone(),
+            process: self.process.clone(),
+            permissions: self.options.permissions,
+            variables: self.world.variables(),
+        }))
     }
 }
 
@@ -122,6 +139,13 @@ impl Provide for ModelFiles {
     fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault> {
         let path = |name: &str| self.found(name).ok();
         c_functions::compiled(request, self.compiler.as_deref(), &*self.files, &path)
+    }
+
+    fn environment_variable(&self, name: &str) -> Result<Option<String>, Fault> {
+        let of_system = |name: &str| self.variables.and_then(|variable| variable(name));
+        let content = self.process.variable(of_system, self.permissions, name)?;
+        self.reads.note_variable(name, content.as_deref());
+        Ok(content)
     }
 
     fn is_folder(&self, name: &str) -> Option<bool> {

@@ -21,6 +21,10 @@ pub trait Store: Send + Sync {
 pub trait Environment {
     /// An environment variable that scripts may see.
     fn env(&self, name: &str) -> Option<String>;
+    /// The environment variables for models, which cannot ask the world, if there are some.
+    fn variables(&self) -> Option<fn(&str) -> Option<String>> {
+        None
+    }
     /// Seconds since an arbitrary moment, never decreasing.
     fn monotonic_seconds(&self) -> f64;
     /// Seconds since an arbitrary moment for work that cannot ask the world, if there is a clock.

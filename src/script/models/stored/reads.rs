@@ -26,6 +26,8 @@ pub(super) enum Question {
     List(PathBuf),
     /// Whether there is a file.
     IsFile(PathBuf),
+    /// What is in an environment variable.
+    Variable(String),
 }
 
 /// The digest of what was found, if there was anything.
@@ -64,6 +66,11 @@ impl Reads {
         (!notes.has_changed).then(|| notes.answers.clone())
     }
 
+    /// An environment variable was read.
+    pub fn note_variable(&self, name: &str, content: Option<&str>) {
+        self.note(Question::Variable(name.to_owned()), of_content(content));
+    }
+
     fn note(&self, question: Question, answer: Answer) {
         let mut notes = self.notes();
         let former = notes.answers.insert(question, answer);
@@ -87,6 +94,10 @@ impl Watched {
 
 fn of_names(names: &io::Result<Vec<String>>) -> Answer {
     names.as_ref().ok().map(|names| digest(names.join("\n").as_bytes()))
+}
+
+fn of_content(content: Option<&str>) -> Answer {
+    content.map(|content| digest(content.as_bytes()))
 }
 
 fn of_whether(is_there: bool) -> Answer {
@@ -115,7 +126,11 @@ impl FileReader for Watched {
 }
 
 /// Asks a question again; with the bytes of a file that was read.
-pub(super) fn ask(files: &dyn FileReader, question: &Question) -> (Answer, Option<Vec<u8>>) {
+pub(super) fn ask(
+    files: &dyn FileReader,
+    variable: &dyn Fn(&str) -> Option<String>,
+    question: &Question,
+) -> (Answer, Option<Vec<u8>>) {
     match question {
         Question::Read(path) => {
             let bytes = files.read(path).ok();
@@ -123,6 +138,7 @@ pub(super) fn ask(files: &dyn FileReader, question: &Question) -> (Answer, Optio
         }
         Question::List(path) => (of_names(&files.list_dir(path)), None),
         Question::IsFile(path) => (of_whether(files.is_file(path)), None),
+        Question::Variable(name) => (of_content(variable(name).as_deref()), None),
     }
 }
 
