@@ -3,10 +3,13 @@
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use super::run_time_texts::Texts;
-use crate::external::{Callable, Contents, Effect, Entry, Kind, Objects, Slot};
+use crate::external::{Callable, Contents, Effect, Entry, FAIL, Kind, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
+
+/// Stands for a message that is put together where it fails.
+const UNKNOWN: &str = "…";
 
 /// A register of a frame.
 pub type Register = u32;
@@ -147,6 +150,11 @@ impl ExternalCall {
         ExternalCall { entry, arguments, result, in_modelica: None }
     }
 
+    /// Whether it does nothing but to fail with a message.
+    pub(super) fn only_fails(&self) -> bool {
+        std::ptr::eq(self.entry, &FAIL)
+    }
+
     /// Whether what it says when it fails is kept.
     pub(super) fn keeps_words(&self) -> bool {
         self.entry.c.is_some() || self.in_modelica.is_some()
@@ -231,10 +239,12 @@ impl Functions {
             }
             (Reason::External, Instruction::External { external }) => {
                 let call = &code.externals[*external as usize];
-                let is_known = |text: &&Slot| text.kind == Kind::Text;
-                let text = call.arguments.first().filter(is_known);
-                let text = text.filter(|_| call.entry.name == "ModelicaError")?;
-                code.texts.get(text.first as usize).map(|text| text.trim_end())
+                let is_message = call.only_fails() || call.entry.name == "ModelicaError";
+                let text = call.arguments.first().filter(|_| is_message)?;
+                match text.kind {
+                    Kind::Text => code.texts.get(text.first as usize).map(|text| text.trim_end()),
+                    _ => Some(UNKNOWN),
+                }
             }
             _ => None,
         }

@@ -8,6 +8,7 @@ use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 2_000;
@@ -75,6 +76,11 @@ impl Machine {
     /// What the external function said that failed last.
     pub fn message(&self) -> &str {
         &self.externals.message
+    }
+
+    /// A text of the program or of the simulation, by its number.
+    pub fn text(&self, functions: &Functions, number: f64) -> Option<Arc<str>> {
+        self.externals.texts.text(&functions.texts, number)
     }
 
     /// Functions that were called, and where zero was taken for variables that nothing was assigned to.

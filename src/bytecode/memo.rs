@@ -100,7 +100,10 @@ pub(super) fn worth_keeping(functions: &Functions) -> Box<[bool]> {
         calls.collect()
     };
     let callees: Vec<Vec<usize>> = codes.iter().map(callees).collect();
-    let is_plain = |code: &Code| !code.impure && !code.writes && code.externals.is_empty();
+    let is_plain = |code: &Code| {
+        let has_values = code.externals.iter().all(|call| call.only_fails());
+        !code.impure && !code.writes && has_values
+    };
     let mut pure: Vec<bool> = codes.iter().map(is_plain).collect();
     // What calls an impure function is impure, at any depth.
     loop {

@@ -71,10 +71,12 @@ pub(crate) struct Outputs {
     pub(crate) machine_code: MachineCode,
 }
 
-/// The condition that must hold, and the numbers in the message.
+/// A message with the condition that must not hold.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LogAssertion {
     /// Its number among all assertions, those at events behind the others.
     pub(crate) assertion: u32,
-    pub(crate) code: Outputs,
+    pub(crate) condition: Outputs,
+    /// The values in its text, computed where the condition does not hold.
+    pub(crate) values: Outputs,
 }

@@ -11,7 +11,10 @@ use super::instruction::Register;
 use super::iteration_variables::IterationVariables;
 use super::jacobian::differentiate_sequence;
 use super::memory::Memory;
-use super::program::{Access, Literal, ParameterInfo, Program, VariableInfo, number_of_equations};
+use super::oscillations::oscillations;
+use super::program::{
+    Access, Literal, ParameterInfo, Program, Unread, VariableInfo, number_of_equations,
+};
 use super::registers::Registers;
 use super::relation_groups::{memoryless, relations_of_blocks};
 use super::sequence::{
@@ -19,13 +22,14 @@ use super::sequence::{
 };
 use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
+use super::unread::unread;
 use crate::bytecode::Functions;
-use crate::causalize::{Assignment, CausalizedDae};
+use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
-use crate::lower::{Assertion, Kind, Level, Variable};
+use crate::lower::{Kind, Level, Variable};
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
@@ -43,13 +47,12 @@ impl Program {
         let relations = compilation.relations();
         let selections = compilation.selections();
         let observe = compilation.observation();
-        let assertions = compilation.assertions();
-        let log_assertions = compilation.log_assertions();
+        let [assertions, log_assertions] = [true, false].map(|e| compilation.assertions(e));
         let initial_checks = compilation.initial_checks();
         let mut events = compilation.events();
-        events.steps = blocks.at_events;
-        events.roundings = relations.roundings;
+        (events.steps, events.roundings) = (blocks.at_events, relations.roundings);
         let values = compilation.values();
+        let unread = compilation.unread(blocks.unread);
         let Compilation { mut causalized, pool, registers, sequence, observed, .. } = compilation;
         let relations_of_blocks = relations_of_blocks(&pool, &causalized);
         let memoryless = memoryless(&pool, &causalized, &relations.relations);
@@ -66,6 +69,7 @@ impl Program {
             iteration: continuous.iteration,
             n_auxiliary: continuous.n_auxiliary,
             observed,
+            unread,
             parameter_tapes: values.parameters,
             starts: values.starts,
             solved: values.solved,
@@ -83,6 +87,7 @@ impl Program {
             crossing_relations: relations.crossing_relations,
             crossings_vary_in_time: relations.crossings_vary_in_time,
             crossings: relations.crossings,
+            oscillations: relations.oscillations,
             relations_of_blocks,
             memoryless,
             selections,
@@ -131,6 +136,7 @@ struct Blocks {
     between_events: Vec<Step>,
     initial: Vec<Step>,
     at_events: Vec<Step>,
+    unread: Vec<VarId>,
 }
 
 /// What the integrator evaluates: right sides, residuals, and their Jacobian.
@@ -155,6 +161,7 @@ struct Relations {
     crossing_relations: Vec<usize>,
     crossings_vary_in_time: bool,
     crossings: Outputs,
+    oscillations: Outputs,
 }
 
 /// Code for single values: parameters, start values, nominal values.
@@ -186,15 +193,17 @@ impl Compilation {
 
     fn blocks(&mut self) -> Blocks {
         let Compilation { causalized, pool, registers, next, .. } = self;
-        let between_events = compile_steps(pool, registers, &causalized.blocks, next);
-        let initial = compile_steps(pool, registers, &causalized.initial_blocks, next);
-        let mut at_events = compile_steps(pool, registers, &causalized.event_blocks, next);
+        let unread = unread(pool, causalized);
+        let mut steps = |blocks: &[Block]| compile_steps(pool, registers, blocks, &unread, next);
+        let between_events = steps(&causalized.blocks);
+        let initial = steps(&causalized.initial_blocks);
+        let mut at_events = steps(&causalized.event_blocks);
         for step in &mut at_events {
             if let Step::Solve(newton) = step {
                 newton.block += causalized.blocks.len() as u32;
             }
         }
-        Blocks { between_events, initial, at_events }
+        Blocks { between_events, initial, at_events, unread }
     }
 
     /// The derivatives of the states, in order.
@@ -301,9 +310,12 @@ impl Compilation {
             }
         }
         let rescheduled_rests = (!rescheduled.is_empty()).then_some(later.tape);
-        let crossings_vary_in_time = depend_on_time(pool, sequence, &differences);
+        let needed = slice(pool, sequence, &differences);
+        let crossings_vary_in_time = depend_on_time(pool, &needed, &differences);
         let crossings =
             compile_continuous(pool, registers, sequence, &differences, Hoisting::Total);
+        let rates = oscillations(pool, causalized, &needed, &differences);
+        let oscillations = compile_outputs(pool, registers, &[], &rates);
         let time_rests = time_rests.tape;
         Relations {
             relations,
@@ -314,6 +326,7 @@ impl Compilation {
             crossing_relations,
             crossings_vary_in_time,
             crossings,
+            oscillations,
         }
     }
 
@@ -347,40 +360,32 @@ impl Compilation {
     }
 
     fn observation(&mut self) -> Outputs {
-        let expressions: Vec<Expr> = self.observed.iter().map(|v| self.pool.variable(*v)).collect();
+        let observed = self.observed.clone();
+        self.values_of(&observed)
+    }
+
+    fn unread(&mut self, variables: Vec<VarId>) -> Unread {
+        let values = self.values_of(&variables);
+        Unread { variables, values }
+    }
+
+    fn values_of(&mut self, variables: &[VarId]) -> Outputs {
+        let expressions: Vec<Expr> = variables.iter().map(|v| self.pool.variable(*v)).collect();
         self.total(&expressions)
     }
 
-    fn assertions(&mut self) -> Vec<(usize, Outputs)> {
-        let conditions = self.numbered(
-            |assertion| assertion.level == Level::Error,
-            |assertion| vec![assertion.condition],
-        );
-        conditions.into_iter().map(|(at, condition)| (at, self.total(&condition))).collect()
-    }
-
-    fn log_assertions(&mut self) -> Vec<LogAssertion> {
-        let outputs = self.numbered(
-            |assertion| assertion.level != Level::Error,
-            |assertion| std::iter::once(assertion.condition).chain(assertion.values()).collect(),
-        );
-        let assertion = |(at, outputs): (usize, Vec<Expr>)| LogAssertion {
-            assertion: at as u32,
-            code: self.total(&outputs),
-        };
-        outputs.into_iter().map(assertion).collect()
-    }
-
-    /// What is computed for the assertions of a kind, with their numbers among all.
-    fn numbered(
-        &self,
-        kind: impl Fn(&Assertion) -> bool,
-        outputs: impl Fn(&Assertion) -> Vec<Expr>,
-    ) -> Vec<(usize, Vec<Expr>)> {
+    /// The assertions that end the simulation, or the others, with their numbers among all.
+    fn assertions(&mut self, are_errors: bool) -> Vec<LogAssertion> {
         let all = self.causalized.dae.assertions.iter().enumerate();
-        all.filter(|(_, assertion)| kind(assertion))
-            .map(|(at, assertion)| (at, outputs(assertion)))
-            .collect()
+        let of_level = all.filter(|(_, a)| (a.level == Level::Error) == are_errors);
+        let found = of_level.map(|(at, a)| (at as u32, a.condition, a.values()));
+        let found: Vec<(u32, Expr, Vec<Expr>)> = found.collect();
+        let assertion = |(assertion, condition, values): (u32, Expr, Vec<Expr>)| LogAssertion {
+            assertion,
+            condition: self.total(&[condition]),
+            values: self.total(&values),
+        };
+        found.into_iter().map(assertion).collect()
     }
 
     fn initial_checks(&mut self) -> Vec<Outputs> {
@@ -478,8 +483,7 @@ impl ResultsOfCalls {
     }
 }
 
-fn depend_on_time(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> bool {
-    let needed = slice(pool, sequence, outputs);
+fn depend_on_time(pool: &Pool, needed: &[Assignment], outputs: &[Expr]) -> bool {
     let mut values = needed.iter().map(|a| a.value).chain(outputs.iter().copied());
     values.any(|value| pool.depends_on(value, VarId(0)))
 }

@@ -59,12 +59,13 @@ pub(super) fn compile_events(
         reinitialized: events.reinits.iter().map(|r| resolve(r.state)).collect(),
         reinits: outputs(&pairs(events.reinits.iter().map(|r| (r.condition, r.value)))),
         assertions: outputs(&errors().map(|(_, a)| a.condition).collect::<Vec<_>>()),
-        asserted: errors().map(|(at, _)| at as u32).collect(),
+        asserted: errors().map(|(at, a)| (at as u32, outputs(&a.values()))).collect(),
         log_assertions: numbered()
             .filter(|(_, assertion)| assertion.level != Level::Error)
-            .map(|(at, assertion)| {
-                let values = std::iter::once(assertion.condition).chain(assertion.values());
-                LogAssertion { assertion: at as u32, code: outputs(&values.collect::<Vec<_>>()) }
+            .map(|(at, assertion)| LogAssertion {
+                assertion: at as u32,
+                condition: outputs(&[assertion.condition]),
+                values: outputs(&assertion.values()),
             })
             .collect(),
         terminations: outputs(&events.terminations.iter().map(|t| t.condition).collect::<Vec<_>>()),
@@ -134,10 +135,15 @@ pub(super) fn scheduled_in_time(
     sorted: &CausalizedDae,
     e: Expr,
 ) -> Option<(f64, Expr)> {
-    let is_kept = |kind| {
-        matches!(kind, Kind::Parameter { .. } | Kind::Solved | Kind::Discrete | Kind::Previous(_))
-    };
-    linear_with(pool, e, |v| is_kept(sorted.dae.variable(v).kind))
+    linear_with(pool, e, |v| changes_at_events_only(sorted, v))
+}
+
+/// Whether a variable keeps its value between events.
+pub(super) fn changes_at_events_only(sorted: &CausalizedDae, variable: VarId) -> bool {
+    matches!(
+        sorted.dae.variable(variable).kind,
+        Kind::Parameter { .. } | Kind::Solved | Kind::Discrete | Kind::Previous(_)
+    )
 }
 
 fn linear_with(

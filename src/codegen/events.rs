@@ -33,8 +33,8 @@ pub(crate) struct Events {
     pub(crate) reinits: Outputs,
     /// Conditions of the assertions at events.
     pub(crate) assertions: Outputs,
-    /// Their numbers among all.
-    pub(crate) asserted: Vec<u32>,
+    /// Their numbers among all, and the values in their texts.
+    pub(crate) asserted: Vec<(u32, Outputs)>,
     /// Warnings and texts that are printed.
     pub(crate) log_assertions: Vec<LogAssertion>,
     /// Conditions of `terminate`.

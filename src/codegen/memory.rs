@@ -98,6 +98,11 @@ impl Calls {
         self.machine.message()
     }
 
+    /// A text by its number.
+    pub(crate) fn text(&self, number: f64) -> Option<Arc<str>> {
+        self.machine.text(&self.functions, number)
+    }
+
     /// What calls have written since the last [`Calls::restart`].
     pub(crate) fn journal(&self) -> &Journal {
         self.machine.journal()

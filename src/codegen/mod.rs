@@ -29,13 +29,14 @@ mod machine_code;
 pub(crate) mod memory;
 pub(crate) mod noevent_relations;
 #[cfg(feature = "jit")]
+mod oscillations;
 mod pieces;
 mod places;
 pub(crate) mod program;
 mod queries;
 #[cfg(feature = "jit")]
 mod regions;
-mod registers;
+pub(crate) mod registers;
 mod relation_groups;
 mod routines;
 pub(crate) mod sensitivity;
@@ -45,6 +46,7 @@ pub(crate) mod tape;
 pub(crate) mod tape_builder;
 #[cfg(feature = "jit")]
 mod translation;
+mod unread;
 #[cfg(feature = "jit")]
 mod upcalls;
 

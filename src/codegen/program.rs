@@ -107,13 +107,22 @@ pub(crate) struct Differences {
     pub(crate) code: Outputs,
 }
 
+/// Variables that nothing reads and that may have no value.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Unread {
+    /// Ascending.
+    pub(crate) variables: Vec<VarId>,
+    /// Their values.
+    pub(crate) values: Outputs,
+}
+
 /// A compiled model.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct Program {
     pub(crate) sorted: CausalizedDae,
     pub(crate) registers: Registers,
     /// Everything in solving order, iteration variables of loops given.
-    pub(super) sequence: Vec<Assignment>,
+    pub(crate) sequence: Vec<Assignment>,
     /// The same where all algebraic unknowns of the integrator are given.
     pub(crate) integrated: Vec<Assignment>,
     /// What must be zero there.
@@ -127,6 +136,8 @@ pub struct Program {
     pub(super) parameters: Vec<ParameterInfo>,
     pub(super) variables: Vec<VariableInfo>,
     pub(crate) observed: Vec<VarId>,
+    /// Of these, those that are computed for results alone and may have no value.
+    pub(crate) unread: Unread,
     /// Every parameter's own tape, in order.
     pub(crate) parameter_tapes: Vec<(VarId, Tape)>,
     /// Start value of every unknown that has one.
@@ -151,6 +162,8 @@ pub struct Program {
     pub(crate) crossings: Outputs,
     /// Whether these depend on time otherwise than through states and unknowns of loops.
     pub(crate) crossings_vary_in_time: bool,
+    /// How fast they oscillate in time by themselves, in radians per second.
+    pub(crate) oscillations: Outputs,
     /// The relations that have crossing functions.
     pub(crate) crossing_relations: Vec<usize>,
     /// For every block that is solved at once, the relations in it.
@@ -159,7 +172,7 @@ pub struct Program {
     pub(crate) memoryless: Vec<bool>,
     pub(crate) selections: Vec<CompiledSelection>,
     pub(crate) observe: Outputs,
-    pub(crate) assertions: Vec<(usize, Outputs)>,
+    pub(crate) assertions: Vec<LogAssertion>,
     /// Warnings: they do not end a simulation.
     pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,

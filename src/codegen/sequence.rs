@@ -72,17 +72,19 @@ pub(crate) fn compile_continuous(
     Outputs { tape: builder.finish(), outputs: registers, ..Outputs::default() }
 }
 
-/// The steps of solving blocks one after another.
+/// The steps of solving blocks one after another, without what nothing reads.
 pub(super) fn compile_steps(
     pool: &mut Pool,
     registers: &mut Registers,
     blocks: &[Block],
+    unread: &[VarId],
     next: &mut u32,
 ) -> Vec<Step> {
     let mut steps = Vec::new();
     let mut run: Vec<Assignment> = Vec::new();
     for (number, block) in blocks.iter().enumerate() {
         let torn = match block {
+            Block::Assignment(a) if unread.binary_search(&a.variable).is_ok() => continue,
             Block::Assignment(_) | Block::Linear(_) => {
                 run.extend(block.assignments());
                 continue;

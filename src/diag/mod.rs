@@ -167,6 +167,13 @@ impl Diagnostic {
         self
     }
 
+    /// The same with another message.
+    #[must_use]
+    pub fn reworded(mut self, message: String) -> Diagnostic {
+        self.0.message = message;
+        self
+    }
+
     /// The same with this place where it has none.
     #[must_use]
     pub fn or_at(self, span: Span) -> Diagnostic {

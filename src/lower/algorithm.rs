@@ -12,9 +12,7 @@ use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_DISCRETE, NOT_SUPPORTED, UNBALANCED_MODEL,
     UNRESOLVED_REFERENCE,
 };
-use super::events::Termination;
 use super::execution::Loops;
-use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
 use super::shape::UNKNOWN_TEXT;
 use super::statement_function::may_be_a_function;
@@ -439,9 +437,9 @@ impl Builder<'_> {
             return self.statements(body, loops);
         };
         let mut broken = self.not_broken();
-        for value in self.statement_lowering(loops).loop_values(index)? {
+        for variable in self.statement_lowering(loops).loop_variables(index)? {
             self.count_statement(index.name.span)?;
-            loops.push((index.name.node, value));
+            loops.push(variable);
             let turn = self
                 .unless(broken, loops, |builder, loops| builder.for_statement(inner, body, loops));
             loops.pop();
@@ -459,12 +457,8 @@ impl Builder<'_> {
         match (function.name().to_string().as_str(), self.place.in_when) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", true) => {
-                let message = arguments.positional.first();
-                let message = message_text(&mut self.statement_lowering(loops), message);
-                let condition = self.guard();
-                let termination =
-                    Termination { condition, message: message.into(), span: call.span };
-                self.dae.events.terminations.push(termination);
+                let guard = self.guard();
+                self.terminate(arguments, guard, call.span, loops);
                 Ok(())
             }
             _ => self.call_statement(call, loops, self.place.in_when || self.place.initial),

@@ -75,13 +75,13 @@ impl Builder<'_> {
         };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
-        let Ok(values) = lowering.loop_values(index) else {
+        let Ok(variables) = lowering.loop_variables(index) else {
             // Whatever the loop variable is: all elements.
             self.targets(&without_subscripts(body), loops, found);
             return;
         };
-        for value in values {
-            loops.push((index.name.node, value));
+        for variable in variables {
+            loops.push(variable);
             self.targets_of_loop(inner, body, loops, found);
             loops.pop();
         }

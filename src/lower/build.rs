@@ -2,15 +2,15 @@
 
 use super::builder::{Builder, Folding};
 use super::dae::{Dae, Kind, StateSelect, Variable};
-use super::equation;
 use super::equation::{Assertion, Equation, Instance, Level};
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
 };
-use super::expressions::message_text;
+use super::execution::Loops;
+use super::expressions::message_parts;
 use super::expressions::{Array, Lowered, Lowering, size_fault};
 use super::function::Inverts;
-use super::message::message_parts;
+use super::loops::LoopVariable;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
@@ -295,11 +295,7 @@ impl<'a> Builder<'a> {
         Err(size_fault(dims, &array.dims).at(e.span))
     }
 
-    fn equation(
-        &mut self,
-        equation: &ast::Equation,
-        loops: &mut Vec<(crate::name::Ident, Expr)>,
-    ) -> Result<(), Diagnostic> {
+    fn equation(&mut self, equation: &ast::Equation, loops: &mut Loops) -> Result<(), Diagnostic> {
         if self.dae.equations.len() > MAX_EQUATIONS {
             return Err(
                 fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations").at(equation.span)
@@ -345,7 +341,7 @@ impl<'a> Builder<'a> {
         left: &Expression,
         right: &Expression,
         span: Span,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<Vec<Equation>, Diagnostic> {
         if let ExpressionKind::Tuple(targets) = &left.kind {
             return self.tuple_equal(targets, right, span, loops);
@@ -399,7 +395,7 @@ impl<'a> Builder<'a> {
         targets: &[Option<Expression>],
         right: &Expression,
         span: Span,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<Vec<Equation>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &right.kind else {
             return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
@@ -434,15 +430,15 @@ impl<'a> Builder<'a> {
         &mut self,
         indices: &[ast::ForIndex],
         body: &[ast::Equation],
-        loops: &mut Vec<(crate::name::Ident, Expr)>,
+        loops: &mut Loops,
     ) -> Result<(), Diagnostic> {
         let Some((index, inner)) = indices.split_first() else {
             return body.iter().try_for_each(|equation| self.equation(equation, loops));
         };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
-        for value in lowering.loop_values(index)? {
-            loops.push((index.name.node, value));
+        for variable in lowering.loop_variables(index)? {
+            loops.push(variable);
             let result = self.for_equation(inner, body, loops);
             loops.pop();
             result?;
@@ -457,7 +453,7 @@ impl<'a> Builder<'a> {
         branches: &[(Expression, Vec<ast::Equation>)],
         otherwise: &[ast::Equation],
         span: Span,
-        loops: &mut Vec<(crate::name::Ident, Expr)>,
+        loops: &mut Loops,
     ) -> Result<Vec<Equation>, Diagnostic> {
         let Some(((condition, body), rest)) = branches.split_first() else {
             return self.collect(otherwise, loops);
@@ -527,7 +523,7 @@ impl<'a> Builder<'a> {
     pub(super) fn collect(
         &mut self,
         body: &[ast::Equation],
-        loops: &mut Vec<(crate::name::Ident, Expr)>,
+        loops: &mut Loops,
     ) -> Result<Vec<Equation>, Diagnostic> {
         let list = |builder: &mut Self| match builder.place.initial {
             true => std::mem::take(&mut builder.dae.initial_equations),
@@ -546,7 +542,7 @@ impl<'a> Builder<'a> {
     fn call_equation(
         &mut self,
         call: &Expression,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
             return Err(fault!(NOT_SUPPORTED, "this is not an equation").at(call.span));
@@ -582,7 +578,7 @@ impl<'a> Builder<'a> {
         &mut self,
         arguments: &ast::Arguments,
         span: Span,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         let find = |position: usize, name: &str| {
             let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
@@ -600,13 +596,10 @@ impl<'a> Builder<'a> {
             _ => Level::Error,
         };
         let condition = up_to_rounding(&mut lowering.target.dae.pool, condition);
-        // What ends a simulation is told with what was known when compiling.
-        let parts = match level {
-            Level::Error => {
-                vec![equation::Part::Text(message_text(&mut lowering, find(1, "message")).into())]
-            }
-            _ => message_parts(&mut lowering, find(1, "message")),
-        };
+        // What a message reads need not hold where the condition does.
+        let asserted = lowering.target.dae.assertions.len();
+        let parts = message_parts(&mut lowering, find(1, "message"));
+        self.dae.assertions.truncate(asserted);
         self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())
     }

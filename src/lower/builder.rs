@@ -78,6 +78,8 @@ pub(super) struct Calls {
     pub(super) inlined: usize,
     /// How many statements of algorithms may still be carried out.
     pub(super) statements: usize,
+    /// Whether parameters that texts depend on are evaluated.
+    pub(super) settles_texts: bool,
     /// Statements that became functions so far.
     pub(super) statement_functions: usize,
     /// Functions that cannot be expressions.
@@ -133,6 +135,7 @@ impl Calls {
             depth: 0,
             inlined: 0,
             statements: MAX_STATEMENTS,
+            settles_texts: false,
             statement_functions: 0,
             functions: Instances::new(strict),
             results: CallResults::default(),

@@ -5,6 +5,7 @@
 
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::expressions::{Lowered, Lowering, Target};
+use super::loops::LoopVariable;
 use super::shape::Shape;
 use super::shape::UNKNOWN_TEXT;
 use super::text_array::Texts;
@@ -167,7 +168,8 @@ impl<T: Target> Declaration<'_, '_, T> {
             if let (Some(Lowered::Array(array)), true) = (&own, dims.is_empty())
                 && let ([number], true) = (array.elements.as_slice(), is_number(field))
             {
-                self.lowering.loops.push((*name, *number));
+                let (name, value, value_type) = (*name, *number, field.value_type.clone());
+                self.lowering.loops.push(LoopVariable { name, value, value_type });
             }
             let unknown = self.unknown_name(field, fields, outside);
             let declared = match unknown {
@@ -224,7 +226,7 @@ impl<T: Target> Declaration<'_, '_, T> {
     }
 
     fn is_known(&self, name: Ident, outside: usize) -> bool {
-        self.lowering.loops[outside..].iter().any(|(known, _)| *known == name)
+        self.lowering.loops[outside..].iter().any(|known| known.name == name)
     }
 }
 

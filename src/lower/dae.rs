@@ -190,6 +190,11 @@ impl Dae {
         &self.variables[id.0 as usize]
     }
 
+    /// An assertion by its number: those at events follow the others.
+    pub fn assertion(&self, number: u32) -> Option<&Assertion> {
+        self.assertions.iter().chain(&self.events.assertions).nth(number as usize)
+    }
+
     /// Whether its value is found by the equations between events.
     pub fn is_unknown(&self, id: VarId) -> bool {
         matches!(self.variable(id).kind, Kind::Unknown | Kind::Derivative(_))

@@ -1,5 +1,6 @@
 //! Equations and assertions: scalar, with their places. Data only.
 
+use super::text_part::TextPart;
 use crate::source::Span;
 use crate::symbolic::Expr;
 use std::sync::Arc;
@@ -41,17 +42,6 @@ pub enum Level {
     Effect,
 }
 
-/// A part of a text for people.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Part {
-    /// Known when compiling.
-    Text(Arc<str>),
-    /// A number of this value.
-    Number(Expr),
-    /// `true` or `false`.
-    Boolean(Expr),
-}
-
 /// `assert(condition, message, level)`, or a text that is printed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Assertion {
@@ -60,7 +50,7 @@ pub struct Assertion {
     /// The text for people as far as it is known when compiling.
     pub message: Arc<str>,
     /// The same in parts.
-    pub parts: Vec<Part>,
+    pub parts: Vec<TextPart<Expr>>,
     /// What a violation means.
     pub level: Level,
     /// Where it is written.

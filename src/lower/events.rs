@@ -3,7 +3,6 @@
 use super::equation::{Assertion, Equation};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
-use std::sync::Arc;
 
 /// The part of a system that acts at events alone.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -152,13 +151,11 @@ pub struct Reinit {
     pub span: Span,
 }
 
-/// `terminate(message)`, carried out when the condition holds.
+/// `terminate(message)`, carried out when the condition holds; its message is an assertion's.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Termination {
     /// When.
     pub condition: Expr,
-    /// The text for people.
-    pub message: Arc<str>,
     /// Where it is written.
     pub span: Span,
 }

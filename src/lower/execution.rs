@@ -1,12 +1,11 @@
 //! Statements of algorithms while they are carried out on expressions.
 
-use crate::name::Ident;
 use crate::symbolic::{Expr, VarId};
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
 
 /// The variables of the loops around a statement, innermost last.
-pub(super) type Loops = Vec<(Ident, Expr)>;
+pub(super) type Loops = super::loops::Loops<Expr>;
 
 /// Values of the variables that an algorithm assigns, while its statements are carried out.
 #[derive(Debug, Default)]

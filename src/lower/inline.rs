@@ -7,9 +7,10 @@
 
 use super::builder::{Builder, MAX_STATEMENTS};
 use super::component_shape::{Declared, declared};
-use super::equation::{Assertion, Level, Part};
+use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
-use super::expressions::message_text;
+use super::execution::Loops;
+use super::expressions::message_parts;
 use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
 use super::function::{component_type, local_value};
 use super::shape::UNKNOWN_TEXT;
@@ -78,8 +79,6 @@ struct Call<'a, 'b> {
     /// Whether a decision depended on a variable without value.
     unassigned: bool,
 }
-
-type Loops = Vec<(Ident, Expr)>;
 
 impl Call<'_, '_> {
     fn run(
@@ -251,8 +250,8 @@ impl Call<'_, '_> {
         let Some((index, inner)) = indices.split_first() else {
             return self.statements(body, loops);
         };
-        for value in self.lowering(loops).loop_values(index)? {
-            loops.push((index.name.node, value));
+        for variable in self.lowering(loops).loop_variables(index)? {
+            loops.push(variable);
             let flow = self.repeat(inner, body, loops);
             loops.pop();
             match flow? {
@@ -300,8 +299,10 @@ impl Call<'_, '_> {
             _ => Level::Error,
         };
         let condition = self.lowering(loops).scalar(condition)?;
-        let text = message_text(&mut self.lowering(loops), find(1, "message")).into();
-        let assertion = Assertion::new(condition, vec![Part::Text(text)], level, call.span);
+        let asserted = self.builder.dae.assertions.len();
+        let parts = message_parts(&mut self.lowering(loops), find(1, "message"));
+        self.builder.dae.assertions.truncate(asserted);
+        let assertion = Assertion::new(condition, parts, level, call.span);
         self.builder.dae.assertions.push(assertion);
         Ok(())
     }

@@ -1,85 +1,46 @@
 //! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
 
 use super::builder::Builder;
-use super::equation::{Assertion, Level, Part};
+use super::equation::{Assertion, Level};
 use super::errors::NOT_SUPPORTED;
-use super::expressions::message_text;
-use super::expressions::{Lowered, Lowering, Target};
-use super::function::{confirms, prints};
+use super::events::Termination;
+use super::expressions::{Lowered, Lowering, Target, TextPart};
+use super::expressions::{message_parts, message_text, nth};
+use super::function::{confirms, fails, prints};
+use super::loops::LoopVariable;
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
-use crate::flatten::BaseType;
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, RelationOperator};
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, Comment, Expression, ExpressionKind, Statement, StatementKind,
+    Arguments, Comment, Expression, ExpressionKind, Statement, StatementKind,
 };
 use std::sync::Arc;
 
-/// The parts of a text: what is known when compiling, and numbers that are not.
-pub(super) fn message_parts(
-    lowering: &mut Lowering<'_, Builder<'_>>,
-    e: Option<&Expression>,
-) -> Vec<Part> {
-    let mut parts = Vec::new();
-    if let Some(e) = e {
-        collect(lowering, e, &mut parts);
-    }
-    parts
-}
-
-fn collect(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression, parts: &mut Vec<Part>) {
-    if let ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } = &e.kind {
-        collect(lowering, left, parts);
-        collect(lowering, right, parts);
-        return;
-    }
-    let text = message_text(lowering, Some(e));
-    let part = match text.contains(UNKNOWN_TEXT) {
-        true => number(lowering, e).unwrap_or_else(|| Part::Text(text.into())),
-        false => Part::Text(text.into()),
-    };
-    parts.push(part);
-}
-
-/// `String(x)` of a number that is not known yet.
-fn number(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression) -> Option<Part> {
-    let ExpressionKind::Call { function, arguments } = &e.kind else { return None };
-    let [argument] = arguments.positional.as_slice() else { return None };
-    if function.as_ident()? != "String" || !arguments.named.is_empty() {
-        return None;
-    }
-    let value = lowering.scalar(argument).ok()?;
-    let variable = lowering.target.dae.pool.as_variable(value);
-    match variable.map(|v| &lowering.target.dae.variable(v).base) {
-        Some(BaseType::Boolean) => Some(Part::Boolean(value)),
-        Some(BaseType::Real | BaseType::Integer) | None => Some(Part::Number(value)),
-        Some(_) => None,
-    }
-}
-
 /// What is printed ends its line once, whether or not the text does.
-fn end_line(parts: &mut [Part]) {
-    if let Some(Part::Text(last)) = parts.last_mut() {
+fn end_line(parts: &mut [TextPart<Expr>]) {
+    if let Some(TextPart::Text(last)) = parts.last_mut() {
         *last = last.trim_end_matches('\n').into();
     }
 }
 
 impl Builder<'_> {
-    /// A call of a function that prints to the screen; `None` for other calls. It is a message that
-    /// is told wherever it is carried out.
+    /// A call of a function that prints to the screen, or ends the simulation with a message; `None` for
+    /// other calls.
     pub(super) fn printing(
         &mut self,
         call: &Expression,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<Option<()>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
         let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
-        if !prints(&user) {
-            return Ok(None);
-        }
+        let level = match (prints(&user), fails(&user)) {
+            (true, _) => Level::Message,
+            (_, true) => Level::Error,
+            _ => return Ok(None),
+        };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = true;
@@ -91,8 +52,29 @@ impl Builder<'_> {
         let mut parts = message_parts(&mut lowering, nth(arguments, 0, "string"));
         end_line(&mut parts);
         let condition = self.dae.pool.constant(0.0);
-        self.dae.assertions.push(Assertion::new(condition, parts, Level::Message, call.span));
+        self.dae.assertions.push(Assertion::new(condition, parts, level, call.span));
         Ok(Some(()))
+    }
+
+    /// `terminate(message)` where a guard holds: the simulation ends, and says why.
+    pub(super) fn terminate(
+        &mut self,
+        arguments: &Arguments,
+        guard: Expr,
+        span: Span,
+        loops: &[LoopVariable<Expr>],
+    ) {
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        let mut parts = vec![TextPart::Text("the model ends the simulation: ".into())];
+        let asserted = lowering.target.dae.assertions.len();
+        parts.extend(message_parts(&mut lowering, nth(arguments, 0, "message")));
+        self.dae.assertions.truncate(asserted);
+        let condition = self.dae.pool.not(guard);
+        let message = Assertion::new(condition, parts, Level::Message, span);
+        self.dae.events.assertions.push(message);
+        self.dae.events.terminations.push(Termination { condition: guard, span });
     }
 
     /// Says when a function prints that is called as an equation (not allowed by MLS §12.3, but the
@@ -109,7 +91,7 @@ impl Builder<'_> {
     pub(super) fn confirmed(
         &mut self,
         value: &Expression,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<Option<Expr>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &value.kind else { return Ok(None) };
         let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
@@ -125,7 +107,7 @@ impl Builder<'_> {
     pub(super) fn call_statement(
         &mut self,
         call: &Expression,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
         acts: bool,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
@@ -181,7 +163,7 @@ impl Builder<'_> {
         user: &Arc<Function>,
         arguments: &Arguments,
         span: Span,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         self.calls.written.clear();
         self.calls.functions.may_write = true;
@@ -199,11 +181,7 @@ impl Builder<'_> {
     }
 
     /// Whether numbers of the simulation are in a text.
-    fn has_numbers(
-        &mut self,
-        text: Option<&Expression>,
-        loops: &[(crate::name::Ident, Expr)],
-    ) -> bool {
+    fn has_numbers(&mut self, text: Option<&Expression>, loops: &[LoopVariable<Expr>]) -> bool {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = true;
@@ -215,7 +193,7 @@ impl Builder<'_> {
     fn writing(
         &mut self,
         call: &Expression,
-        loops: &[(crate::name::Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         let kind = StatementKind::Call(call.clone());
         let statement = Statement { kind, comment: Comment::default(), span: call.span };
@@ -230,7 +208,7 @@ impl Builder<'_> {
 
     /// What was found to write is carried out where its statement is.
     fn carry_out(&mut self, span: Span) {
-        let parts: Vec<Part> = self.calls.written.drain(..).map(Part::Number).collect();
+        let parts: Vec<_> = self.calls.written.drain(..).map(TextPart::Numbered).collect();
         if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
@@ -238,20 +216,11 @@ impl Builder<'_> {
     }
 }
 
-pub(super) fn nth<'a>(
-    arguments: &'a Arguments,
-    position: usize,
-    name: &str,
-) -> Option<&'a Expression> {
-    let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
-    arguments.positional.get(position).or(named)
-}
-
 impl Assertion {
     /// An assertion of this text.
-    pub fn new(condition: Expr, parts: Vec<Part>, level: Level, span: Span) -> Assertion {
-        let known = |part: &Part| match part {
-            Part::Text(text) => text.to_string(),
+    pub fn new(condition: Expr, parts: Vec<TextPart<Expr>>, level: Level, span: Span) -> Assertion {
+        let known = |part: &TextPart<Expr>| match part {
+            TextPart::Text(text) => text.to_string(),
             _ => UNKNOWN_TEXT.to_owned(),
         };
         let message = parts.iter().map(known).collect::<String>().into();
@@ -261,19 +230,11 @@ impl Assertion {
     /// Visits every expression.
     pub fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
         visit(&mut self.condition);
-        for part in &mut self.parts {
-            if let Part::Number(value) | Part::Boolean(value) = part {
-                visit(value);
-            }
-        }
+        self.parts.iter_mut().flat_map(TextPart::scalars_mut).for_each(visit);
     }
 
-    /// The numbers in its text.
+    /// The values in its text.
     pub fn values(&self) -> Vec<Expr> {
-        let value = |part: &Part| match part {
-            Part::Number(value) | Part::Boolean(value) => Some(*value),
-            Part::Text(_) => None,
-        };
-        self.parts.iter().filter_map(value).collect()
+        self.parts.iter().flat_map(TextPart::scalars).copied().collect()
     }
 }

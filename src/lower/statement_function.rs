@@ -7,6 +7,7 @@ use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::execution::Loops;
 use super::expressions::{Array, Lowered, Lowering, Target};
 use super::function::call_of_any_size;
+use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -51,8 +52,8 @@ impl Builder<'_> {
         }
         let assigned = assigned(&statement);
         let (mut inputs, mut outputs, mut arguments) = (Vec::new(), Vec::new(), Vec::new());
-        for (name, value) in loops {
-            inputs.push(component(*name, ValueType::Real, &[], None, s.span));
+        for LoopVariable { name, value, value_type } in loops {
+            inputs.push(component(*name, value_type.clone(), &[], None, s.span));
             arguments.push(Lowered::scalar(*value));
         }
         for (Read { path, is_previous }, name) in &known {
@@ -174,7 +175,7 @@ impl Naming<'_, '_> {
     fn rename(&mut self, reference: &mut ComponentReference, is_previous: bool) {
         rewrite_reference(self, reference);
         let is_loop = |name: Ident| {
-            self.own.contains(&name) || self.loops.iter().any(|(known, _)| *known == name)
+            self.own.contains(&name) || self.loops.iter().any(|known| known.name == name)
         };
         if reference.as_ident().is_some_and(is_loop) {
             return;

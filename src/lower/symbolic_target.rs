@@ -4,7 +4,7 @@ use super::build::derivative_of;
 use super::build::scalar_of_nothing;
 use super::builder::{Builder, Folding};
 use super::dae::{Homotopy, Kind, Relation};
-use super::equation::{Assertion, Level, Part};
+use super::equation::{Assertion, Level};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{
     Array, Binary, Branch, ClockedCall, Lowered, Lowering, Target, TextPart, Unary,
@@ -277,6 +277,16 @@ impl Target for Builder<'_> {
         true
     }
 
+    fn string_binding(&self, path: &str) -> Option<Expression> {
+        let variable = self.flat.variables.get(path)?;
+        let is_scalar = variable.base == BaseType::String && variable.dims.is_empty();
+        variable.binding.clone().filter(|_| is_scalar)
+    }
+
+    fn settles_texts(&mut self) -> Option<&mut bool> {
+        Some(&mut self.calls.settles_texts)
+    }
+
     fn wants_texts(&mut self, wanted: bool) {
         self.calls.functions.wants_texts = wanted;
     }
@@ -438,7 +448,7 @@ impl Builder<'_> {
         let condition = pool.and(above, below);
         if self.dae.assertions.last().is_none_or(|last| last.condition != condition) {
             let message = "a subscript lies outside its array".into();
-            let parts = vec![Part::Text(message)];
+            let parts = vec![TextPart::Text(message)];
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         }
     }

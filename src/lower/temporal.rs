@@ -3,10 +3,10 @@
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
 use super::dae::Kind;
-use super::equation::{Assertion, Equation, Level, Part};
+use super::equation::{Assertion, Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
-use super::expressions::{Array, Target, size_fault};
+use super::expressions::{Array, Target, TextPart, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -129,6 +129,7 @@ impl Builder<'_> {
         if let Some(variable) = self.scalars.conditions.get(&b) {
             return Ok(self.dae.pool.variable(*variable));
         }
+        // Relations in when-clauses before it are evaluated at their events alone.
         if self.varies(b) && self.varies_between_events(b) {
             return Err(fault!(NOT_DISCRETE, "this condition can change between events";
                 help: "do not use relations inside `noEvent` or inside functions")
@@ -212,7 +213,7 @@ impl Builder<'_> {
         }
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, interval, zero);
-        let parts = vec![Part::Text("the interval of `sample` must be positive".into())];
+        let parts = vec![TextPart::Text("the interval of `sample` must be positive".into())];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
         self.dae.events.samples.push(Sample { variable, start, since_start, interval, span });
@@ -239,7 +240,7 @@ impl Builder<'_> {
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
         let message = "the delay time of `delay` must be positive".into();
-        let parts = vec![Part::Text(message)];
+        let parts = vec![TextPart::Text(message)];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
         let variable = self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span));

@@ -4,10 +4,11 @@
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
 use super::dae::Kind;
-use super::equation::{Assertion, Level, Part};
+use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::events::Transport;
 use super::expressions::Array;
+use super::text_part::TextPart;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
@@ -121,7 +122,7 @@ impl Builder<'_> {
 
     fn require(&mut self, operator: RelationOperator, a: Expr, b: Expr, message: &str, span: Span) {
         let condition = self.dae.pool.relation(operator, a, b);
-        let parts = vec![Part::Text(message.into())];
+        let parts = vec![TextPart::Text(message.into())];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
     }
 }

@@ -6,14 +6,14 @@
 
 use super::builder::Builder;
 use super::dae::Kind;
-use super::equation::{Equation, Level, Part};
+use super::equation::{Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
-use super::events::{Reinit, Termination};
-use super::expressions::message_text;
-use super::expressions::{Array, Lowering};
+use super::events::Reinit;
+use super::execution::Loops;
+use super::expressions::{Array, Lowering, TextPart};
+use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
@@ -28,7 +28,6 @@ pub(super) struct Guarded {
 }
 
 type Assigned = IndexMap<VarId, Vec<Guarded>>;
-type Loops = Vec<(Ident, Expr)>;
 
 impl Builder<'_> {
     pub(super) fn when_equation(
@@ -68,7 +67,7 @@ impl Builder<'_> {
     pub(super) fn activation(
         &mut self,
         condition: &Expression,
-        loops: &[(Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<Expr, Diagnostic> {
         let elements = match &condition.kind {
             ExpressionKind::Array(elements) => elements.as_slice(),
@@ -229,8 +228,8 @@ impl Builder<'_> {
         let Some((index, inner)) = indices.split_first() else {
             return self.when_body(body, guard, assigned, loops);
         };
-        for value in self.when_lowering(loops).loop_values(index)? {
-            loops.push((index.name.node, value));
+        for variable in self.when_lowering(loops).loop_variables(index)? {
+            loops.push(variable);
             let done = self.when_for(inner, body, guard, assigned, loops);
             loops.pop();
             done?;
@@ -258,12 +257,8 @@ impl Builder<'_> {
         };
         match (function.name().to_string().as_str(), arguments.positional.as_slice()) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
-            ("terminate", arguments) => {
-                let mut lowering = Lowering::new(self);
-                lowering.loops = loops.to_vec();
-                let message = message_text(&mut lowering, arguments.first()).into();
-                let termination = Termination { condition: guard, message, span: call.span };
-                self.dae.events.terminations.push(termination);
+            ("terminate", _) => {
+                self.terminate(arguments, guard, call.span, loops);
                 Ok(())
             }
             ("reinit", [state, value]) => {
@@ -291,7 +286,7 @@ impl Builder<'_> {
                 // Calls are carried out only where their statement is.
                 let zero = self.dae.pool.constant(0.0);
                 for part in &mut assertion.parts {
-                    if let Part::Number(call) = part {
+                    if let TextPart::Numbered(call) = part {
                         *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
                     }
                 }

@@ -356,11 +356,15 @@ impl System {
 
     /// Checks the assertions of when-clauses, and at the start those of initial sections.
     pub(super) fn assert_at_event(&mut self) -> Result<(), Failure> {
-        let events = &self.program.events;
+        let program = self.program.clone();
+        let events = &program.events;
         run(&events.assertions.tape, &mut self.registers)?;
         let value = |register: &u32| self.registers[*register as usize];
         match events.assertions.outputs.iter().position(|a| value(a) == 0.0) {
-            Some(failed) => Err(Failure::Assertion { assertion: events.asserted[failed] }),
+            Some(failed) => {
+                let (assertion, values) = &events.asserted[failed];
+                Err(self.failed_assertion(*assertion, values))
+            }
             None => Ok(()),
         }
     }
@@ -391,7 +395,8 @@ impl System {
         for (rounding, code) in program.events.roundings.iter().zip(&program.events.rounded) {
             let value = match rounding.time {
                 Some((slope, rest)) => {
-                    rounded_in_time(slope * t + self.registers[rest as usize], slope)
+                    let direction = if self.is_at_start { 0.0 } else { slope };
+                    rounded_in_time(slope * t + self.registers[rest as usize], direction)
                 }
                 None => match code.tape.run(&mut self.registers) {
                     Ok(()) => self.registers[code.outputs[0] as usize].floor(),
@@ -406,6 +411,16 @@ impl System {
             *slot = value;
         }
         changed
+    }
+
+    /// Whether what is rounded decreases in time and is whole at `t`.
+    pub(super) fn rounds_down_after(&self, t: f64) -> bool {
+        self.program.events.roundings.iter().any(|rounding| {
+            rounding.time.is_some_and(|(slope, rest)| {
+                let value = slope * t + self.registers[rest as usize];
+                rounded_in_time(value, slope) != rounded_in_time(value, 0.0)
+            })
+        })
     }
 
     /// Times at which a rounding of time jumps or a sample is due next.
@@ -436,11 +451,11 @@ impl System {
     }
 }
 
-/// `floor`; at a jump the value behind it.
+/// `floor`; at a jump the value that follows in the direction of the slope.
 fn rounded_in_time(value: f64, slope: f64) -> f64 {
     let nearest = value.round();
     if (value - nearest).abs() > AT_ONCE * value.abs().max(1.0) {
         return value.floor();
     }
-    if slope > 0.0 { nearest } else { nearest - 1.0 }
+    if slope >= 0.0 { nearest } else { nearest - 1.0 }
 }

@@ -112,18 +112,8 @@ pub fn run_parameter(
             Ok(Some(failure(tape, registers, at)))
         }
         Err(at) => Err(failure(tape, registers, at)),
-        Ok(()) => match registers.overflow {
-            Some(at) => Err(failure(tape, registers, at)),
-            None if registers[parameter.0 as usize].is_infinite() => Err(infinite(tape)),
-            None => Ok(None),
-        },
+        Ok(()) => registers.overflow.map_or(Ok(None), |at| Err(failure(tape, registers, at))),
     }
-}
-
-/// A value beyond the largest Real that no single operation is blamed for.
-fn infinite(tape: &Tape) -> Failure {
-    let origin = tape.origin((tape.code.len() as u32).saturating_sub(1));
-    Failure::Domain { origin, operation: Operation::OTHER }
 }
 
 /// The failure of an instruction.
@@ -131,12 +121,8 @@ fn failure(tape: &Tape, registers: &Memory, at: u32) -> Failure {
     let operation = match tape.code[at as usize] {
         Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),
         Instruction::Call { .. } => {
-            if let Some(failure) = registers.calls.failure {
-                return Failure::Function {
-                    function: failure.function,
-                    at: failure.at,
-                    reason: failure.reason as u8,
-                };
+            if let Some(failure) = &registers.calls.failure {
+                return failure.into();
             }
             Operation::DIVISION
         }

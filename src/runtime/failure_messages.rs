@@ -13,6 +13,31 @@ use crate::fault;
 use crate::sim::{Failure, Offending, SimError, SimErrorKind};
 use crate::source::Span;
 use crate::symbolic::VarId;
+use crate::symbolic::function::Function;
+
+/// What an operation has failed with.
+fn why(operation: Operation) -> String {
+    match operation {
+        Operation::Division => "a division by zero or an overflow of a division".to_owned(),
+        Operation::Power => "a power without a finite result".to_owned(),
+        Operation::Function(function) => {
+            format!("`{}` has no value: {}", function.name, domain(function))
+        }
+        Operation::Other => "an operation without a finite result".to_owned(),
+    }
+}
+
+/// What a function needs of its argument.
+fn domain(function: &Function) -> &'static str {
+    function.domain.map_or("the result is not finite", |domain| domain.words)
+}
+
+impl From<&bytecode::Failure> for Failure {
+    fn from(failure: &bytecode::Failure) -> Failure {
+        let bytecode::Failure { function, at, reason } = *failure;
+        Failure::Function { function, at, reason: reason as u8 }
+    }
+}
 
 impl Program {
     /// A failed simulation in the model's words.
@@ -74,17 +99,31 @@ impl Program {
         self.sorted.dae.equations.first().map_or(Span::NONE, |equation| equation.span)
     }
 
+    /// The variable that the equation of this number is solved for, or the parameter of this number.
+    pub(super) fn variable_of(&self, origin: u32) -> Option<VarId> {
+        let sorted = &self.sorted;
+        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
+        let mut assignments = blocks.flat_map(Block::assignments);
+        let solved = assignments.find(|a| a.equation == origin as usize).map(|a| a.variable);
+        let declared = || origin.checked_sub(number_of_equations(sorted) as u32).map(VarId);
+        let is_variable = |v: &VarId| (v.0 as usize) < sorted.dae.variables.len();
+        solved.or_else(declared).filter(is_variable)
+    }
+
+    /// That the variable of an equation has no value, and why.
+    pub(super) fn failed_value(&self, origin: u32, operation: u32, when: &str) -> String {
+        let variable = self.variable_of(origin).map(|v| &*self.sorted.dae.variable(v).name);
+        match (variable.filter(|name| !name.starts_with('$')), Operation::of(operation)) {
+            (Some(name), Operation::Function(function)) => {
+                let (words, function) = (domain(function), function.name);
+                format!("`{name}` has no value {when}: in `{function}`, {words}")
+            }
+            (Some(name), operation) => format!("`{name}` has no value {when}: {}", why(operation)),
+            (None, operation) => format!("{} {when}", why(operation)),
+        }
+    }
+
     fn without_value(&self, origin: u32, operation: u32, when: &str) -> Diagnostic {
-        let what = match Operation::of(operation) {
-            Operation::Division => "a division by zero or an overflow of a division".to_owned(),
-            Operation::Power => "a power without a finite result".to_owned(),
-            Operation::Function(function) => format!(
-                "`{}` has no value: {}",
-                function.name,
-                function.domain.map_or("the result is not finite", |d| d.words)
-            ),
-            Operation::Other => "an operation without a finite result".to_owned(),
-        };
         match self.linear_loop(origin) {
             Some(names) => fault!(
                 SIMULATION_FAILED,
@@ -94,7 +133,8 @@ impl Program {
                        the equations"
             )
             .at(self.place(origin)),
-            None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(origin)),
+            None => fault!(DOMAIN_ERROR, "{} {when}", why(Operation::of(operation)))
+                .at(self.place(origin)),
         }
     }
 
@@ -115,18 +155,12 @@ impl Program {
                 }
                 fault!(DOMAIN_ERROR, "{words} ({when})").at(span)
             }
-            Failure::Assertion { assertion } => {
-                let dae = &self.sorted.dae;
-                let mut all = dae.assertions.iter().chain(&dae.events.assertions);
-                match all.nth(assertion as usize) {
-                    Some(failed) => {
-                        fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
-                    }
-                    None => {
-                        fault!(ASSERTION_FAILED, "an assertion fails {when}").at(self.first_span())
-                    }
+            Failure::Assertion { assertion } => match self.sorted.dae.assertion(assertion) {
+                Some(failed) => {
+                    fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
                 }
-            }
+                None => fault!(ASSERTION_FAILED, "an assertion fails {when}").at(self.first_span()),
+            },
             Failure::Newton { block } => {
                 self.explain_block(self.block(block), when, SIMULATION_FAILED)
             }

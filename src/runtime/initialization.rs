@@ -72,7 +72,7 @@ impl System {
     }
 
     /// Solves the initial system, with what the events of the first instant do.
-    pub(super) fn initialize_once(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+    pub(super) fn solve_for_start(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
         self.treated.clear();
         self.kept.clear();

@@ -2,16 +2,16 @@
 //! systems that somebody listens to look after them.
 
 use super::execution::run;
-use super::simulation_log::{LogMessage, Recorded, SimulationLog};
+use super::simulation_log::{LogMessage, SimulationLog};
 use super::system::System;
 use crate::bytecode::Journal;
-use crate::codegen::Program;
-use crate::codegen::code::LogAssertion;
-use crate::lower::{Assertion, Level, Part};
-use crate::sim;
+use crate::codegen::code::{LogAssertion, Outputs};
+use crate::codegen::errors::{ASSERTION_FAILED, DOMAIN_ERROR};
+use crate::diag::Diagnostic;
+use crate::lower::{Assertion, Level, TextPart};
+use crate::sim::{self, SimError, SimErrorKind};
 use crate::source::Span;
-use crate::value::Value;
-use crate::value::format::text;
+use crate::value::format::written;
 
 impl System {
     /// From now on what the model tells is kept.
@@ -35,8 +35,7 @@ impl System {
     /// What the model has told in the last simulation, and how much more there was.
     pub fn log_messages(&self) -> (Vec<LogMessage>, u64) {
         let Some(log) = &self.log else { return (Vec::new(), 0) };
-        let messages = log.recorded.iter().filter_map(|one| message(&self.program, one));
-        (messages.collect(), log.omitted)
+        (log.recorded.clone(), log.omitted)
     }
 
     pub(super) fn forget_notices(&mut self) {
@@ -44,6 +43,7 @@ impl System {
             let active = vec![false; self.program.log_assertions.len()];
             *log = SimulationLog { active, ..SimulationLog::default() };
         }
+        self.forget_warnings_of_others();
     }
 
     /// The warnings that begin to hold now.
@@ -51,13 +51,12 @@ impl System {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.log_assertions.iter().enumerate().try_for_each(|(at, assertion)| {
-            let values = self.message_numbers(assertion)?;
-            let holds = values.is_some();
-            if let Some(values) = values.filter(|_| !log.active.get(at).is_some_and(|a| *a)) {
-                log.record(t, assertion.assertion, values);
+            let fails = self.fails(assertion)?;
+            if fails && !log.active.get(at).is_some_and(|active| *active) {
+                self.record(assertion, t, &mut log)?;
             }
             if let Some(active) = log.active.get_mut(at) {
-                *active = holds;
+                *active = fails;
             }
             Ok(())
         });
@@ -70,50 +69,105 @@ impl System {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.events.log_assertions.iter().try_for_each(|assertion| {
-            if let Some(values) = self.message_numbers(assertion)? {
-                log.record(t, assertion.assertion, values);
+            match self.fails(assertion)? {
+                true => self.record(assertion, t, &mut log),
+                false => Ok(()),
             }
-            Ok(())
         });
         self.log = Some(log);
         done
     }
 
-    /// The numbers of a text whose condition does not hold.
-    fn message_numbers(
+    fn fails(&mut self, assertion: &LogAssertion) -> Result<bool, sim::Failure> {
+        run(&assertion.condition.tape, &mut self.registers)?;
+        let holds = assertion.condition.outputs.iter().map(|at| self.registers[*at as usize]);
+        Ok(holds.eq([0.0]))
+    }
+
+    /// Records the text of an assertion; makes the calls of one that writes.
+    fn record(
         &mut self,
         assertion: &LogAssertion,
-    ) -> Result<Option<Vec<f64>>, sim::Failure> {
-        run(&assertion.code.tape, &mut self.registers)?;
-        let mut values = assertion.code.outputs.iter().map(|at| self.registers[*at as usize]);
-        let holds = values.next() != Some(0.0);
-        Ok((!holds).then(|| values.collect()))
-    }
-}
-
-fn message(program: &Program, recorded: &Recorded) -> Option<LogMessage> {
-    let dae = &program.sorted().dae;
-    let mut all = dae.assertions.iter().chain(&dae.events.assertions);
-    let Assertion { parts, level, span, .. } = all.nth(recorded.assertion as usize)?;
-    if *level == Level::Effect {
-        return None;
-    }
-    let mut values = recorded.values.iter().copied();
-    let mut words = String::new();
-    for part in parts {
-        let value = match part {
-            Part::Text(known) => {
-                words += known;
-                continue;
-            }
-            Part::Number(_) => Value::Real(values.next()?),
-            Part::Boolean(_) => Value::Boolean(values.next()? != 0.0),
+        t: f64,
+        log: &mut SimulationLog,
+    ) -> Result<(), sim::Failure> {
+        let LogAssertion { assertion: number, values, .. } = assertion;
+        let program = self.program.clone();
+        let Some(Assertion { level, span, .. }) = program.sorted().dae.assertion(*number) else {
+            return Ok(());
         };
-        words += &text(&value, DIGITS, 0, true).ok()?;
+        if *level == Level::Effect {
+            return run(&values.tape, &mut self.registers);
+        }
+        let text = self.message_of(*number, values);
+        let warning = (*level == Level::Warning).then_some(ASSERTION_FAILED);
+        log.record(LogMessage { time: t, text, warning, span: *span });
+        Ok(())
     }
-    let is_warning = *level == Level::Warning;
-    Some(LogMessage { time: recorded.time, text: words, is_warning, span: *span })
+
+    /// An assertion that does not hold, whose text is kept with its values as they are.
+    pub(super) fn failed_assertion(&mut self, assertion: u32, values: &Outputs) -> sim::Failure {
+        self.failed_message = Some((assertion, self.message_of(assertion, values)));
+        sim::Failure::Assertion { assertion }
+    }
+
+    /// What a failure says with the values in its text, where there are some, and with the variable
+    /// that has none.
+    pub(super) fn with_values(&self, said: Diagnostic, error: &SimError) -> Diagnostic {
+        let (SimErrorKind::Evaluation(failure) | SimErrorKind::Initialization(failure)) =
+            error.kind
+        else {
+            return said;
+        };
+        if let (sim::Failure::Domain { origin, operation }, DOMAIN_ERROR) = (failure, said.code) {
+            let when = format!("at t = {}", error.time);
+            return said.reworded(self.program.failed_value(origin, operation, &when));
+        }
+        let dae = &self.program.sorted().dae;
+        let texts = match failure {
+            sim::Failure::Assertion { assertion } => {
+                let text = self.failed_message.as_ref().filter(|(known, _)| *known == assertion);
+                dae.assertion(assertion).map(|a| &*a.message).zip(text.map(|(_, text)| &**text))
+            }
+            sim::Failure::Function { .. } => {
+                let last = self.registers.calls.failure;
+                let last = last.filter(|last| failure == sim::Failure::from(last));
+                let known = last.and_then(|last| dae.functions.message(&last));
+                known.zip(Some(self.registers.calls.message()))
+            }
+            _ => None,
+        };
+        match texts.filter(|(known, _)| known.contains(UNKNOWN)) {
+            Some((known, text)) => {
+                let message = said.message.replacen(known, text, 1);
+                said.reworded(message)
+            }
+            None => said,
+        }
+    }
+
+    /// The text of an assertion with its values as they are; `…` for those that there are not.
+    fn message_of(&mut self, assertion: u32, values: &Outputs) -> String {
+        let program = self.program.clone();
+        let Some(assertion) = program.sorted().dae.assertion(assertion) else {
+            return String::new();
+        };
+        let are_known = run(&values.tape, &mut self.registers).is_ok();
+        let mut outputs = values.outputs.iter().map(|at| self.registers[*at as usize]);
+        let mut words = String::new();
+        for part in &assertion.parts {
+            let row: Vec<f64> = outputs.by_ref().take(part.scalars().len()).collect();
+            let text = match part {
+                TextPart::Text(known) => Some(known.clone()),
+                _ if !are_known => None,
+                TextPart::Numbered(_) => self.registers.calls.text(row[0]),
+                TextPart::Written(_, format) => written(&row, format.as_deref()).ok(),
+            };
+            words += text.as_deref().unwrap_or(UNKNOWN);
+        }
+        words
+    }
 }
 
-/// As `String` writes Reals (MLS §3.7.1).
-const DIGITS: i64 = 6;
+/// Stands for a value that there is not.
+const UNKNOWN: &str = "…";

@@ -35,6 +35,7 @@ mod multiple_roots;
 mod newton;
 mod noevent_relations;
 mod open_loops;
+mod other_variables;
 mod postponement;
 mod profile;
 mod relations;

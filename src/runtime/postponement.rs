@@ -7,8 +7,10 @@
 //!
 //! A relation has at its instant the value that it has behind it, so that all that happens at one
 //! time is one event. Where the equations then fail, the instant itself has what the relation says
-//! literally, and it changes a little later.
+//! literally, and it changes a little later. At the start it has what it says literally as well: an
+//! event at the same time follows where that is another value than behind it.
 
+use super::execution::run;
 use super::instants::{AT_ONCE, same_time};
 use super::system::System;
 use crate::sim::Failure;
@@ -43,6 +45,11 @@ impl System {
         })
     }
 
+    /// Whether a relation on time, or what is rounded of time, has another value after `t`.
+    pub(super) fn changes_after(&self, t: f64) -> bool {
+        self.to_postpone(t).next().is_some() || self.rounds_down_after(t)
+    }
+
     /// Lets the relations that change at `t` change behind it; whether there are any.
     pub(super) fn postpone(&mut self, t: f64) -> bool {
         let found: Vec<usize> = self.to_postpone(t).collect();
@@ -64,7 +71,7 @@ impl System {
         }
         let registers = self.registers.clone();
         let relations = (self.has_changed.clone(), self.held.clone(), self.excused.clone());
-        let first = attempt(self);
+        let first = attempt(self).and_then(|done| self.unread_have_values().map(|()| done));
         if first.is_err() {
             self.registers = registers;
             (self.has_changed, self.held, self.excused) = relations;
@@ -72,5 +79,11 @@ impl System {
             return attempt(self).or(first);
         }
         first
+    }
+
+    /// Whether what is computed for results alone has values as well.
+    fn unread_have_values(&mut self) -> Result<(), Failure> {
+        let program = self.program.clone();
+        run(&program.unread.values.tape, &mut self.registers)
     }
 }

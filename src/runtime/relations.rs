@@ -84,9 +84,13 @@ impl System {
         let relation = &self.program.relations[at];
         let operator = relation.operator;
         if let (Some((factor, _)), Some(switch)) = (relation.time, self.switches[at]) {
-            // At the instant itself the value is that behind it.
-            let near = same_time(t, switch);
-            let difference = if near { factor } else { factor * (t - switch) };
+            // At the instant itself the value is that after it; at the start, which nothing comes
+            // before, an event follows for that.
+            let difference = match (same_time(t, switch), self.is_at_start) {
+                (true, true) => 0.0,
+                (true, false) => factor,
+                (false, _) => factor * (t - switch),
+            };
             return operator.holds(difference, 0.0);
         }
         let sides = &self.program.relation_sides[at];

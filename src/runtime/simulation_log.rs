@@ -1,6 +1,7 @@
 //! What is kept of a simulation for the user: warnings and printed strings, and unknowns that equations
 //! left open.
 
+use crate::diag::Code;
 use crate::source::Span;
 
 /// More are counted only.
@@ -9,7 +10,7 @@ const MOST: usize = 200;
 /// What is recorded of a simulation.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SimulationLog {
-    pub(super) recorded: Vec<Recorded>,
+    pub(super) recorded: Vec<LogMessage>,
     pub(super) omitted: u64,
     /// Which warnings hold now, so that each is recorded when it begins.
     pub(super) active: Vec<bool>,
@@ -17,30 +18,23 @@ pub(super) struct SimulationLog {
     pub(super) open: Vec<Open>,
 }
 
-#[derive(Debug, Clone)]
-pub(super) struct Recorded {
-    pub(super) time: f64,
-    pub(super) assertion: u32,
-    pub(super) values: Vec<f64>,
-}
-
-/// A message of a model.
+/// A message of a model, or about a variable of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogMessage {
     /// When, seconds.
     pub time: f64,
     /// The text.
     pub text: String,
-    /// Whether it is a warning, and not something printed.
-    pub is_warning: bool,
+    /// What kind of warning it is; `None` for something printed.
+    pub warning: Option<Code>,
     /// Where it is written.
     pub span: Span,
 }
 
 impl SimulationLog {
-    pub(super) fn record(&mut self, time: f64, assertion: u32, values: Vec<f64>) {
+    pub(super) fn record(&mut self, message: LogMessage) {
         match self.recorded.len() < MOST {
-            true => self.recorded.push(Recorded { time, assertion, values }),
+            true => self.recorded.push(message),
             false => self.omitted += 1,
         }
     }

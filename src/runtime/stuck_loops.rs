@@ -19,7 +19,7 @@ enum When {
 impl System {
     /// A failed simulation in the model's words, with what is known of the loop that failed.
     pub fn explain(&self, error: &SimError) -> Diagnostic {
-        let diagnostic = self.program().explain(error);
+        let diagnostic = self.with_values(self.program().explain(error), error);
         let failed = match error.kind {
             SimErrorKind::Evaluation(Failure::Initialization { block })
             | SimErrorKind::Initialization(Failure::Initialization { block }) => {

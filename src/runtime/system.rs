@@ -1,17 +1,18 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::execution::{read, run, run_assignments, run_parameter, run_strictly};
+use super::execution::{Operation, read, run, run_assignments, run_parameter, run_strictly};
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
+use super::other_variables::OtherVariables;
 use super::sensitivity_state::Sensitivity;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
 use super::transport_record::Record;
-use crate::codegen::code::{Outputs, Step};
+use crate::codegen::code::{LogAssertion, Outputs, Step};
 use crate::codegen::memory::Memory;
-use crate::codegen::program::{Access, Program};
+use crate::codegen::program::{Access, Program, number_of_equations};
 use crate::codegen::sequence::{expressions, observing};
 use crate::diag::Fault;
 use crate::fault;
@@ -37,10 +38,15 @@ pub struct System {
     /// Values set from outside, by number of the parameter.
     pub(super) set: Vec<Option<f64>>,
     observed: Option<Outputs>,
+    /// What is observed where variables that nothing reads have no value.
+    pub(super) others: OtherVariables,
     /// What [`System::observe_only`] was asked for.
     pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
+    /// Whether no event has followed the initialization yet: relations on time have literally the
+    /// values that they have at the start, not those after it.
+    pub(super) is_at_start: bool,
     /// Relations on time that change behind their instants.
     pub(super) postponed: Vec<bool>,
     /// What reads a parameter that a function has left without value fails with.
@@ -94,6 +100,8 @@ pub struct System {
     pub(super) unstable: u32,
     /// Derivatives that are carried along, if any are.
     pub(super) sensitivity: Option<Box<Sensitivity>>,
+    /// The text of the assertion that failed last, with its values, and its number.
+    pub(super) failed_message: Option<(u32, String)>,
     /// What is told of a simulation, where somebody listens.
     pub(super) log: Option<SimulationLog>,
     /// The modes on both sides of relations.
@@ -122,8 +130,10 @@ impl System {
             registers,
             set: vec![None; program.parameters().len()],
             observed: None,
+            others: OtherVariables::default(),
             observed_variables: None,
             switches: vec![None; program.relations.len()],
+            is_at_start: false,
             postponed: vec![false; program.relations.len()],
             lacking: None,
             has_changed: vec![false; program.relations.len()],
@@ -153,6 +163,7 @@ impl System {
             sampled: false,
             unstable: 0,
             sensitivity: None,
+            failed_message: None,
             log: None,
             modes: Modes::default(),
             treated: Vec::new(),
@@ -216,6 +227,7 @@ impl System {
         let (registers, observed) = observing(&program, &pool, &outputs);
         self.registers.extend(&registers);
         self.observed = Some(observed);
+        self.others = OtherVariables::default();
         let variables = variables.iter().map(|at| program.variables()[*at].variable);
         self.has_means = variables.map(|v| program.has_means(v)).collect();
     }
@@ -292,13 +304,15 @@ impl System {
 
     /// Evaluates an assertion.
     fn assert(&mut self, at: usize) -> Result<(), Failure> {
-        let (number, condition) = &self.program.assertions[at];
+        let assertion = &self.program.assertions[at];
         let mut holds = [0.0];
-        read(condition, &mut self.registers, &mut holds)?;
-        match holds == [0.0] {
-            true => Err(Failure::Assertion { assertion: *number as u32 }),
-            false => Ok(()),
+        read(&assertion.condition, &mut self.registers, &mut holds)?;
+        if holds != [0.0] {
+            return Ok(());
         }
+        let program = self.program.clone();
+        let LogAssertion { assertion, values, .. } = &program.assertions[at];
+        Err(self.failed_assertion(*assertion, values))
     }
 
     /// Whether a value is a number; it need not be where a parameter has no value.
@@ -307,6 +321,17 @@ impl System {
             Some(failure) if value.is_nan() => Err(*failure),
             _ => Ok(()),
         }
+    }
+
+    /// Whether a parameter is finite; it need not be a number where another one has no value.
+    fn is_finite(&self, parameter: VarId) -> Result<(), Failure> {
+        let value = self.registers[parameter.0 as usize];
+        self.is_a_number(value)?;
+        if value.is_finite() || (value.is_nan() && self.lacking.is_some()) {
+            return Ok(());
+        }
+        let origin = number_of_equations(&self.program.sorted) as u32 + parameter.0;
+        Err(Failure::Domain { origin, operation: Operation::OTHER })
     }
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
@@ -333,7 +358,7 @@ impl System {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
                 None => match run_parameter(*parameter, tape, &mut self.registers)? {
                     Some(failure) => self.lacking = Some(failure),
-                    None => self.is_a_number(self.registers[parameter.0 as usize])?,
+                    None => self.is_finite(*parameter)?,
                 },
             }
         }
@@ -527,11 +552,12 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.postponed.fill(false);
-        let initialized = self.initialize_once(t, y);
-        match initialized {
-            Err(_) if self.postpone(t) => self.initialize_once(t, y).or(initialized),
-            _ => initialized,
-        }
+        self.is_at_start = true;
+        self.solve_for_start(t, y)
+    }
+
+    fn has_event_at_start(&self) -> bool {
+        self.is_at_start && self.changes_after(self.registers[0])
     }
 
     fn n_crossings(&self) -> usize {
@@ -540,6 +566,17 @@ impl DaeSystem for System {
 
     fn crossings_vary_in_time(&self) -> bool {
         self.program.crossings_vary_in_time
+    }
+
+    fn oscillation(&mut self, t: f64) -> f64 {
+        let program = self.program.clone();
+        let rates = &program.oscillations;
+        self.registers[0] = t;
+        if rates.outputs.is_empty() || rates.tape.run(&mut self.registers).is_err() {
+            return 0.0;
+        }
+        let rates = rates.outputs.iter().map(|rate| self.registers[*rate as usize].abs());
+        rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max)
     }
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
@@ -570,6 +607,7 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
+        self.is_at_start = false;
         self.registers.calls.next_instant();
         self.has_changed.fill(false);
         self.has_effect = false;
@@ -706,7 +744,10 @@ impl DaeSystem for System {
             self.registers.forget_solutions();
         }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
-        read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        if let Err(failure) = read(observed, &mut self.registers, out) {
+            let failure = self.refine(failure);
+            self.observe_others(t, failure, out)?;
+        }
         out.iter().try_for_each(|value| self.is_a_number(*value))?;
         self.note_open(t);
         Ok(())

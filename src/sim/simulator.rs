@@ -22,6 +22,12 @@ const MOST_EVENTS_AT_ONCE: u32 = 200;
 const AT_ONCE: f64 = 1e-10;
 /// Parts of a step that are searched for events of their own, at least.
 const PARTS_SEARCHED: f64 = 8.0;
+/// Parts of the simulation that are searched so, at least: as many as there are output intervals
+/// unless settings say otherwise, so that no events are missed where points are few.
+const PARTS_OF_SPAN: f64 = 500.0;
+/// Parts of a period of functions that oscillate in time: parabolas through three values find a pulse
+/// of a thousandth of the period, as sin(ωt) > 0.99999.
+const PARTS_OF_PERIOD: f64 = 32.0;
 /// How far behind the end of a solution of the algebraic equations another one is looked for,
 /// relative to the simulated interval.
 const BEHIND: [f64; 3] = [1e-10, 1e-9, 1e-8];
@@ -284,9 +290,9 @@ pub struct Run<'a> {
 
 impl Run<'_> {
     fn run(&mut self) -> Result<(), SimErrorKind> {
-        self.initialize()?;
-        while self.t < self.problem.settings.stop {
-            let after = match self.step() {
+        let mut after = self.initialize()?;
+        while after != After::Terminated && self.t < self.problem.settings.stop {
+            after = match self.step() {
                 Ok(time_event) => {
                     self.count_step();
                     self.advance_to_end_of_step(time_event)?
@@ -308,7 +314,7 @@ impl Run<'_> {
         }
     }
 
-    fn initialize(&mut self) -> Result<(), SimErrorKind> {
+    fn initialize(&mut self) -> Result<After, SimErrorKind> {
         let system = &mut *self.problem.system;
         system.initialize(self.t, self.y).map_err(SimErrorKind::Initialization)?;
         if !self.y.iter().all(|y| y.is_finite()) {
@@ -326,7 +332,15 @@ impl Run<'_> {
             self.record()?;
             self.advance_output();
         }
-        self.restart()
+        if way > 0.0 && self.problem.system.has_event_at_start() {
+            self.problem.statistics.time_events += 1;
+            self.problem.system.crossed(None, way);
+            if self.whole_event(self.t)? == EventOutcome::Terminate {
+                return Ok(After::Terminated);
+            }
+        }
+        self.restart()?;
+        Ok(After::Restarted)
     }
 
     pub fn restart(&mut self) -> Result<(), SimErrorKind> {
@@ -561,16 +575,22 @@ impl Run<'_> {
     }
 
     /// The end of the part of a step that is searched at once: where crossing functions vary in
-    /// time, one of several, and not beyond an output point.
-    fn end_of_part(&self, begin: f64, part: f64, end: f64) -> f64 {
+    /// time, one of several, a small part of the simulation and of a period, and not beyond an output
+    /// point.
+    fn end_of_part(&mut self, begin: f64, part: f64, end: f64) -> f64 {
         if !self.problem.system.crossings_vary_in_time() {
             return end;
         }
-        let share = part + (end - begin) / PARTS_SEARCHED;
+        let settings = self.problem.settings;
+        let span = settings.stop - settings.start;
+        let longest = f64::min((end - begin) / PARTS_SEARCHED, span / PARTS_OF_SPAN);
+        let rate = self.problem.system.oscillation(part);
+        let period = std::f64::consts::TAU / rate.max(f64::MIN_POSITIVE);
+        let shortest = span / self.problem.settings.max_total_steps as f64;
+        let share = part + longest.min((period / PARTS_OF_PERIOD).max(shortest));
         if share <= part {
             return end;
         }
-        let settings = self.problem.settings;
         let numbers = self.output_number..;
         let mut points =
             numbers.map_while(|n| settings.output.point(settings.start, settings.stop, n));

@@ -72,9 +72,19 @@ pub trait DaeSystem {
     fn crossings_vary_in_time(&self) -> bool {
         false
     }
+    /// How fast crossing functions oscillate at `t` by themselves, in radians per second; 0 where
+    /// nothing tells.
+    fn oscillation(&mut self, _t: f64) -> f64 {
+        0.0
+    }
     /// The next time event after `t`, if any is known.
     fn next_time_event(&self, _t: f64) -> Option<f64> {
         None
+    }
+    /// Whether something changes right after the start that has another value at the start itself, as
+    /// `time > 0` does: an event at the same time, after the initial values.
+    fn has_event_at_start(&self) -> bool {
+        false
     }
     /// Event iteration at (t, y) (MLS §8.5): updates the discrete state, may change x, and leaves v
     /// consistent with x (an interpolated v fulfils 0 = g only within the tolerance).

@@ -9,6 +9,9 @@ use std::sync::Arc;
 /// The widest field and the highest precision that a format may ask for.
 const MAX_WIDTH: usize = 4096;
 
+/// Significant digits of a Real unless given.
+const DIGITS: i64 = 6;
+
 /// `String(x, significantDigits, minimumLength, leftJustified)`; the digits count for Reals only.
 pub fn text(
     value: &Value,
@@ -36,6 +39,23 @@ pub fn text(
         bail!(DOMAIN_ERROR, "{minimum_length} is not a valid string length")
     };
     Ok(padded(plain, width, left_justified).into())
+}
+
+/// A number as `String` writes it, in a row: its value, whether it is a Real (0), an Integer (1) or a
+/// Boolean (2); and, where there is no format, significant digits, minimum length, left justified.
+pub fn written(row: &[f64], format: Option<&str>) -> Result<Arc<str>, Fault> {
+    let value = match row[1] as i64 {
+        1 => Value::Integer(row[0] as i64),
+        2 => Value::Boolean(row[0] != 0.0),
+        _ => Value::Real(row[0]),
+    };
+    match (format, &row[2..]) {
+        (Some(format), _) => formatted(&value, format),
+        (None, [digits, length, left]) => {
+            text(&value, *digits as i64, *length as i64, *left != 0.0)
+        }
+        (None, _) => text(&value, DIGITS, 0, true),
+    }
 }
 
 fn bounded(length: i64) -> Result<usize, ()> {

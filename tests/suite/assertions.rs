@@ -123,6 +123,127 @@ equation
 end When;
 end Q;"#;
 
+const MESSAGES: &str = r#"package V
+type E = enumeration(off, starting, running);
+function root
+  input Real x;
+  input Integer n;
+  output Real y;
+algorithm
+  assert(x > 0, "x = " + String(x, significantDigits = 3) + ", n = " + String(n));
+  y := 1;
+  for i in 1:n loop y := y*x; end for;
+  while y > 1 loop y := y/2; end while;
+end root;
+function stops
+  input Real x;
+  output Real y;
+algorithm
+  y := x;
+  while y > 1 loop y := y/2; end while;
+  if x > 0.75 then
+    Modelica.Utilities.Streams.error("x is " + String(x, format = ".2f"));
+  end if;
+end stops;
+model Warning
+  parameter Real p = 0.5;
+  parameter Integer width = 8;
+  Real x(start = 1, fixed = true);
+  E e = if time < 0.75 then E.starting else E.running;
+equation
+  der(x) = -1;
+  assert(x > p, "x = " + String(x, format = ".3f") + ", p = " + String(p, significantDigits = 3)
+    + "|" + String(time > 0.1, minimumLength = 6) + "|" + String(p, minimumLength = width,
+    leftJustified = false) + "|" + String(e) + "|" + String(e, minimumLength = 9) + "|"
+    + (if x > 0.9 then "high" else "low"), AssertionLevel.warning);
+end Warning;
+model Error
+  Real x(start = 1, fixed = true);
+  Integer i = integer(4*time);
+equation
+  der(x) = -1;
+  assert(x > 0.5, "x = " + String(x, format = ".2f") + ", i = " + String(i));
+end Error;
+model AtEvent
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -1;
+  when time > 0.25 then
+    Modelica.Utilities.Streams.error("x = " + String(x, format = ".2f"));
+  end when;
+end AtEvent;
+model InFunction
+  Real x(start = 1, fixed = true), y = root(x - 0.5, integer(4*time));
+equation
+  der(x) = -1;
+end InFunction;
+model Stopped
+  Real y = stops(time);
+end Stopped;
+model Printed
+  parameter Real a[2] = {0.5, 1.25};
+  parameter String first = "[" + String(a[1]) + "]";
+  parameter String names[3] = {String(e) for e in E};
+  E e(start = E.off, fixed = true);
+algorithm
+  when time > 0.5 then
+    e := E.running;
+    for q in {0.25, 2.75} loop
+      Modelica.Utilities.Streams.print(String(q) + " " + String(2*q, significantDigits = 2));
+    end for;
+    for i in 1:2 loop
+      Modelica.Utilities.Streams.print(first + String(i, minimumLength = 3) + " " + names[i]);
+    end for;
+    Modelica.Utilities.Streams.print(String(e) + " " + String(integer(10*time)));
+  end when;
+end Printed;
+end V;"#;
+
+/// Exit code, output and errors.
+fn simulate_message(model: &str) -> (u8, String, String) {
+    let world = crate::shipped::world().with_file("V.mo", MESSAGES);
+    let streams = world.streams();
+    let script = format!("openModel(\"V.mo\");\nsimulateModel(\"V.{model}\", stopTime = 1);");
+    let status = Session::new(Box::new(world)).run_text("s.mos", &script);
+    (status.code, streams.output(), streams.errors())
+}
+
+#[test]
+fn messages_have_the_values_of_when_they_are_given() {
+    let (code, _, errors) = simulate_message("Warning");
+    assert_eq!(code, 0, "{errors}");
+    let words = "p = 0.5|true  |     0.5|starting|starting |low (at t = 0.";
+    assert!(errors.contains(words) && !errors.contains('…'), "{errors}");
+    // It is given at the end of a step, with what x is then.
+    let number = |before: &str, after: char| -> f64 {
+        let (_, rest) = errors.split_once(before).expect("the words before a number");
+        rest.split(after).next().expect("a number").parse().expect("a number")
+    };
+    assert!((number("x = ", ',') + number("(at t = ", ')') - 1.0).abs() < 1e-3, "{errors}");
+    let failing = [
+        ("Error", "x = 0.50, i = 2 (at t = 0.5"),
+        ("AtEvent", "x = 0.75 (at t = 0.25)"),
+        ("Stopped", "x is 0.75 (at t = 0.75"),
+    ];
+    for (model, message) in failing {
+        let (code, _, errors) = simulate_message(model);
+        assert!(code != 0 && errors.contains(message), "{model}: {errors}");
+    }
+    let (code, _, errors) = simulate_message("InFunction");
+    let has_numbers = errors.contains(", n = 2 (at t = 0.5") && !errors.contains('…');
+    assert!(code != 0 && has_numbers, "{errors}");
+}
+
+#[test]
+fn strings_of_loop_variables_have_their_types() {
+    let (code, output, errors) = simulate_message("Printed");
+    assert_eq!(code, 0, "{errors}");
+    let lines = ["0.25 0.5", "2.75 5.5", "[0.5]1   off", "[0.5]2   starting", "running 5"];
+    for line in lines {
+        assert!(output.contains(line), "`{line}` is not in {output}");
+    }
+}
+
 fn simulate(model: &str) -> (u8, String) {
     let world = crate::shipped::world().with_file("Q.mo", PACKAGE);
     let streams = world.streams();

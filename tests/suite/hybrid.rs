@@ -46,6 +46,24 @@ pub(super) fn attempt(
 
 pub(super) fn simulated(text: &str, stop: f64) -> Run {
     let (program, system, rows, ended) = attempt(text, stop);
+    finished(program, system, rows, ended)
+}
+
+/// The same with other settings.
+pub(super) fn simulated_with(text: &str, settings: &Settings) -> Run {
+    let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
+    let mut system = program.system();
+    let mut rows = Trajectory::default();
+    let ended = Simulator::new().run(&mut system, settings, &mut rows).map(|_| ());
+    finished(program, system, rows, ended)
+}
+
+fn finished(
+    program: Arc<Program>,
+    system: System,
+    rows: Trajectory,
+    ended: Result<(), SimError>,
+) -> Run {
     if let Err(error) = ended {
         panic!("{}", program.explain(&error).message);
     }
@@ -70,6 +88,11 @@ impl Run {
             Access::Time => self.rows.time().to_vec(),
             _ => vec![self.system.value(at).expect("a parameter has a value"); self.rows.len()],
         }
+    }
+
+    /// The value at the start, before the events of that time.
+    pub(super) fn first(&self, name: &str) -> f64 {
+        self.column(name)[0]
     }
 
     pub(super) fn last(&self, name: &str) -> f64 {

@@ -12,7 +12,7 @@ use crate::lower::dae::Kind;
 use crate::lower::equation::{Equation, Instance};
 use crate::lower::errors::{INVALID_STATE_MACHINE, NOT_SUPPORTED};
 use crate::lower::expressions::{ClockedCall, Lowered, Lowering};
-use crate::name::Ident;
+use crate::lower::loops::LoopVariable;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{Arguments, EquationKind, Expression, ExpressionKind};
@@ -90,7 +90,7 @@ impl Builder<'_> {
         name: &str,
         arguments: &Arguments,
         span: Span,
-        loops: &[(Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         let mut states = Vec::new();
         for argument in arguments.positional.iter().take(2) {
@@ -117,7 +117,7 @@ impl Builder<'_> {
         (from, to): (usize, usize),
         arguments: &Arguments,
         span: Span,
-        loops: &[(Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
         let find = |at: usize, name: &str| {
             let named = arguments.named.iter().find(|given| given.name.node == name);
@@ -168,7 +168,7 @@ impl Builder<'_> {
         &mut self,
         name: &str,
         e: &Expression,
-        loops: &[(Ident, Expr)],
+        loops: &[LoopVariable<Expr>],
     ) -> Result<f64, Diagnostic> {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();

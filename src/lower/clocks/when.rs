@@ -5,10 +5,9 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::builder::Builder;
 use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::execution::Loops;
 use crate::lower::expressions::Lowering;
-use crate::name::Ident;
 use crate::source::Span;
-use crate::symbolic::Expr;
 use crate::syntax::ast::{self, EquationKind, Expression};
 
 impl Builder<'_> {
@@ -35,7 +34,7 @@ impl Builder<'_> {
         &mut self,
         branches: &[(Expression, Vec<ast::Equation>)],
         span: Span,
-        loops: &mut Vec<(Ident, Expr)>,
+        loops: &mut Loops,
     ) -> Result<(), Diagnostic> {
         let [(condition, body)] = branches else {
             return Err(fault!(NOT_SUPPORTED, "a clocked when-clause has no `elsewhen`";

@@ -59,7 +59,11 @@ impl<T: Target> Lowering<'_, T> {
                     true => own.call_with_known_texts(user, arguments, span).ok(),
                     false => None,
                 });
-                made.map_or(outputs, Ok)
+                let settled = made.or_else(|| {
+                    self.settling_texts(|own| own.call_with_known_texts(user, arguments, span))?
+                        .ok()
+                });
+                settled.map_or(outputs, Ok)
             }
             _ => outputs,
         }

@@ -3,8 +3,12 @@
 use super::records::{field, stacked};
 use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target};
 use crate::diag::Diagnostic;
+use crate::eval::ValueType;
 use crate::fault;
 use crate::lower::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use crate::lower::loops::{LoopVariable, Loops};
+use crate::lower::shape::UNKNOWN_TEXT;
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Subscript, UnaryOperator,
@@ -110,9 +114,9 @@ impl<T: Target> Lowering<'_, T> {
         reference: &ComponentReference,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         if let Some(ident) = reference.as_ident()
-            && let Some((_, value)) = self.loops.iter().rev().find(|(name, _)| *name == ident)
+            && let Some(variable) = self.loop_variable(ident)
         {
-            return Ok(Lowered::scalar(*value));
+            return Ok(Lowered::scalar(variable.value));
         }
         if let Some(value) = self.part_of_own(reference)? {
             return Ok(value);
@@ -122,8 +126,25 @@ impl<T: Target> Lowering<'_, T> {
             return Ok(chosen);
         }
         let value = self.target.reference(&path, reference)?;
+        let value = self.made_of_binding(&path, value);
         let subscripts = &reference.parts[reference.parts.len() - 1].subscripts;
         self.elements_of(value, subscripts, reference.span)
+    }
+
+    /// A String parameter that is not known is made of its binding where Strings are made.
+    fn made_of_binding(&mut self, path: &str, value: Lowered<T::Scalar>) -> Lowered<T::Scalar> {
+        let is_unknown = matches!(&value, Lowered::Text(text) if text.contains(UNKNOWN_TEXT));
+        if !self.composes || !is_unknown {
+            return value;
+        }
+        let Some(binding) = self.target.string_binding(path) else { return value };
+        let loops = std::mem::take(&mut self.loops);
+        let made = self.lower(&binding);
+        self.loops = loops;
+        match made {
+            Ok(made @ Lowered::Numbered(_)) => made,
+            _ => value,
+        }
     }
 
     /// The flat name without the last part's subscripts: `c[2].x`.
@@ -276,8 +297,8 @@ impl<T: Target> Lowering<'_, T> {
             return self.lower(element);
         };
         let mut inner = Vec::new();
-        for value in self.loop_values(last)? {
-            self.loops.push((last.name.node, value));
+        for variable in self.loop_variables(last)? {
+            self.loops.push(variable);
             let element = self.comprehension(element, outer, span);
             self.loops.pop();
             inner.push(element?);
@@ -289,8 +310,16 @@ impl<T: Target> Lowering<'_, T> {
         stacked(inner, span)
     }
 
-    /// The values of a loop variable.
-    pub(crate) fn loop_values(&mut self, index: &ForIndex) -> Result<Vec<T::Scalar>, Diagnostic> {
+    /// The variable of a loop of this name, the innermost.
+    pub(super) fn loop_variable(&self, name: Ident) -> Option<&LoopVariable<T::Scalar>> {
+        self.loops.iter().rev().find(|variable| variable.name == name)
+    }
+
+    /// A loop variable with each of its values.
+    pub(crate) fn loop_variables(
+        &mut self,
+        index: &ForIndex,
+    ) -> Result<Loops<T::Scalar>, Diagnostic> {
         let Some(range) = &index.range else {
             return Err(fault!(NOT_SUPPORTED,
                 "the range of `{}` is missing and cannot be deduced", index.name.node;
@@ -301,7 +330,15 @@ impl<T: Target> Lowering<'_, T> {
         if values.dims.len() != 1 {
             return Err(fault!(ARRAY_MISMATCH, "a loop needs a vector as its range").at(range.span));
         }
-        Ok(values.elements)
+        let (name, value_type) = (index.name.node, self.type_of_index(index));
+        let variable = |value| LoopVariable { name, value, value_type: value_type.clone() };
+        Ok(values.elements.into_iter().map(variable).collect())
+    }
+
+    /// The type of a loop variable.
+    pub(crate) fn type_of_index(&mut self, index: &ForIndex) -> ValueType {
+        let range = index.range.as_ref();
+        range.and_then(|range| self.type_of(range)).unwrap_or(ValueType::Integer)
     }
 
     /// Every element of `f(e for i in …)`, after the dimensions of the iterators those of `e`.

@@ -17,12 +17,13 @@ mod text_parts;
 mod varying_strings;
 mod vectorized;
 
+pub(crate) use super::text_part::TextPart;
 pub(crate) use arrays::Choice;
-pub(crate) use message_text::message_text;
+pub(crate) use message_text::{message_parts, message_text, nth};
 pub(crate) use records::field_of;
-pub(crate) use text_parts::TextPart;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::loops::Loops;
 use super::shape::{Shape, UNKNOWN_TEXT};
 use super::text_array::Texts;
 use crate::diag::{At, Diagnostic, Fault};
@@ -133,8 +134,18 @@ pub(crate) trait Target {
     fn wants_texts(&mut self, wanted: bool) {
         let _ = wanted;
     }
+    /// What a String parameter, or a String that is bound, is made of: a scalar.
+    fn string_binding(&self, path: &str) -> Option<Expression> {
+        let _ = path;
+        None
+    }
     /// A text is needed that is not known, and that [`Target::composes`] would give.
     fn misses_text(&mut self) {}
+    /// Whether parameters that texts depend on are evaluated, to be switched; `None` where they cannot
+    /// be.
+    fn settles_texts(&mut self) -> Option<&mut bool> {
+        None
+    }
     /// Whether the right operand of `and` and `or` is computed only where it decides.
     fn short_circuits(&self) -> bool {
         false
@@ -450,7 +461,7 @@ pub(crate) struct Lowering<'a, T: Target> {
     /// Where the scalars go.
     pub(crate) target: &'a mut T,
     /// Loop variables, innermost last.
-    pub(crate) loops: Vec<(Ident, T::Scalar)>,
+    pub(crate) loops: Loops<T::Scalar>,
     /// Whether relations are evaluated as they are (inside `noEvent`).
     pub(crate) live: bool,
     /// Whether Strings that are not known are made when what is translated runs.

@@ -142,7 +142,10 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let mut dims = Vec::new();
         let mut positions = vec![0];
-        let choices = self.choices(&texts.dims, subscripts, span)?;
+        let mut choices = self.choices(&texts.dims, subscripts, span)?;
+        if self.target.settles_texts().is_some_and(|settles| *settles) {
+            self.settle_choices(&mut choices, &texts.dims);
+        }
         if choices.iter().any(|choice| matches!(choice, Choice::Computed(_)))
             && let Some(numbers) = self.numbers_of_texts(&texts)
         {
@@ -169,6 +172,19 @@ impl<T: Target> Lowering<'_, T> {
         Ok(of_texts(Texts { dims, texts: chosen }))
     }
 
+    /// Evaluates the parameters that positions depend on.
+    fn settle_choices(&mut self, choices: &mut [Choice<T::Scalar>], dims: &[usize]) {
+        for (choice, size) in choices.iter_mut().zip(dims) {
+            let Choice::Computed(position) = choice else { continue };
+            match self.target.settle(*position) {
+                Some(known) if known >= 1.0 && known <= *size as f64 => {
+                    *choice = Choice::Known { positions: vec![known as usize - 1], keeps: false };
+                }
+                _ => {}
+            }
+        }
+    }
+
     /// The numbers of texts, if all are known and the texts of the model have numbers.
     fn numbers_of_texts(&mut self, texts: &Texts) -> Option<Array<T::Scalar>> {
         if texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
@@ -180,17 +196,18 @@ impl<T: Target> Lowering<'_, T> {
 
     /// What a reference stands for, if that is known.
     fn known_reference(&mut self, reference: &ComponentReference) -> Option<Value> {
-        let is_index = |name| self.loops.iter().any(|(index, _)| *index == name);
-        let wanted = match reference.as_ident().is_some_and(is_index) {
-            true => ValueType::Integer,
-            false => {
+        let variable = reference.as_ident().and_then(|name| self.loop_variable(name));
+        let wanted = match variable {
+            Some(variable) => variable.value_type.clone(),
+            None => {
                 let path = self.path(reference).ok()?;
                 self.target.value_type(&path)?
             }
         };
         let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
         let value = self.lower(&e).ok()?;
-        self.known_value(&value, &wanted, false)
+        let settle = self.target.settles_texts().is_some_and(|settles| *settles);
+        self.known_value(&value, &wanted, settle)
     }
 
     /// The value of an argument; of arrays of texts too little is known.

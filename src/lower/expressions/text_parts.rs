@@ -2,30 +2,24 @@
 //! (MLS §3.7.1).
 
 use super::varying_strings::computed;
-use super::{Lowered, Lowering, Target};
-use crate::diag::Diagnostic;
+use super::{Array, Choice, Lowered, Lowering, Target, TextPart};
+use crate::diag::{At, Diagnostic};
 use crate::eval::ValueType;
 use crate::fault;
+use crate::functions::{self, TypeRule};
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::shape::UNKNOWN_TEXT;
+use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind, UnaryOperator};
-use std::sync::Arc;
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
+};
+use crate::value::Value;
+use crate::value::format::text;
 
 /// As `String` writes numbers.
 const DEFAULTS: [(&str, f64); 3] =
     [("significantDigits", 6.0), ("minimumLength", 0.0), ("leftJustified", 1.0)];
-
-/// A part of a text.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum TextPart<S> {
-    /// A text.
-    Text(Arc<str>),
-    /// The number of a text.
-    Numbered(S),
-    /// A number and its type, and how it is written; or with a format.
-    Number(Vec<S>, Option<Arc<str>>),
-}
 
 impl<T: Target> Lowering<'_, T> {
     /// `String(x, …)` of what is not known yet.
@@ -59,7 +53,7 @@ impl<T: Target> Lowering<'_, T> {
         self.target.compose(&parts, span).map(Lowered::Numbered)
     }
 
-    /// `String(x, …)` of a number that is not known yet; `None` if it is none.
+    /// `String(x, …)` of a value that is not known yet; `None` if it has no such form.
     pub(crate) fn number_part(
         &mut self,
         arguments: &Arguments,
@@ -70,6 +64,9 @@ impl<T: Target> Lowering<'_, T> {
             Some(ValueType::Real) => 0.0,
             Some(ValueType::Integer) => 1.0,
             Some(ValueType::Boolean) => 2.0,
+            Some(ValueType::Enumeration(definition)) => {
+                return self.literal_part(argument, &definition.literals, arguments);
+            }
             _ => return Ok(None),
         };
         let Ok(number) = self.scalar(argument) else { return Ok(None) };
@@ -77,7 +74,8 @@ impl<T: Target> Lowering<'_, T> {
         let format = arguments.positional.get(1).or(named("format").map(|a| &a.value));
         if let Some(format) = format {
             let Lowered::Text(format) = self.lower(format)? else { return Ok(None) };
-            return Ok(Some(TextPart::Number(row, Some(format))));
+            let is_known = !format.contains(UNKNOWN_TEXT);
+            return Ok(is_known.then(|| TextPart::Written(row, Some(format))));
         }
         for (name, default) in DEFAULTS {
             row.push(match named(name) {
@@ -85,7 +83,33 @@ impl<T: Target> Lowering<'_, T> {
                 None => self.target.constant(default),
             });
         }
-        Ok(Some(TextPart::Number(row, None)))
+        Ok(Some(TextPart::Written(row, None)))
+    }
+
+    /// `String(e, …)` of an enumeration: the text of one of its literals.
+    fn literal_part(
+        &mut self,
+        argument: &Expression,
+        literals: &[Ident],
+        arguments: &Arguments,
+    ) -> Result<Option<TextPart<T::Scalar>>, Diagnostic> {
+        let Ok(ordinal) = self.scalar(argument) else { return Ok(None) };
+        let mut layout = [0.0, 1.0];
+        for (value, name) in layout.iter_mut().zip(["minimumLength", "leftJustified"]) {
+            if let Some(given) = arguments.named.iter().find(|a| a.name.node == name) {
+                *value = self.shaping(&given.value)?;
+            }
+        }
+        let mut numbers = Vec::with_capacity(literals.len());
+        for literal in literals {
+            let literal = Value::String(literal.as_str().trim_matches('\'').into());
+            let text = text(&literal, 0, layout[0] as i64, layout[1] != 0.0).at(argument.span)?;
+            let Some(number) = self.target.text_number(&text) else { return Ok(None) };
+            numbers.push(number);
+        }
+        let numbers = Array { dims: vec![numbers.len()], elements: numbers };
+        let chosen = self.chosen_by(numbers, vec![Choice::Computed(ordinal)], argument.span)?;
+        Ok(chosen.elements.first().copied().map(TextPart::Numbered))
     }
 
     /// The type of a scalar or of the elements of an array; Real where it is not known.
@@ -99,26 +123,22 @@ impl<T: Target> Lowering<'_, T> {
             ExpressionKind::Integer(_) => Some(ValueType::Integer),
             ExpressionKind::Boolean(_) => Some(ValueType::Boolean),
             ExpressionKind::Reference(reference) => {
-                let is_index = |name| self.loops.iter().any(|(own, _)| *own == name);
-                if reference.as_ident().is_some_and(is_index) {
-                    return Some(ValueType::Integer);
+                let variable = reference.as_ident().and_then(|name| self.loop_variable(name));
+                if let Some(variable) = variable {
+                    return Some(variable.value_type.clone());
                 }
                 let Ok(path) = self.path(reference) else { return Some(ValueType::Real) };
                 Some(self.target.value_type(&path).unwrap_or(ValueType::Real))
             }
             ExpressionKind::Array(elements) => self.type_of(elements.first()?),
-            ExpressionKind::Call { function, arguments } => match function.as_ident() {
-                Some(name) if name == "fill" => self.type_of(arguments.positional.first()?),
-                Some(name) if name == "integer" || name == "Integer" || name == "size" => {
-                    Some(ValueType::Integer)
-                }
-                _ => {
-                    let output = self.target.function(&function.name());
-                    let output =
-                        output.and_then(|f| f.outputs.first().map(|o| o.value_type.clone()));
-                    Some(output.unwrap_or(ValueType::Real))
-                }
+            ExpressionKind::Range { start, step, stop } => match step {
+                Some(step) if self.type_of(step)? != ValueType::Integer => Some(ValueType::Real),
+                _ => both(self, start, stop),
             },
+            ExpressionKind::Comprehension { element, .. } => self.type_of(element),
+            ExpressionKind::Call { function, arguments } => {
+                self.type_of_call(function, &arguments.positional)
+            }
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(ValueType::Boolean),
             ExpressionKind::Unary { operand, .. } => self.type_of(operand),
             ExpressionKind::Binary { operator, left, right } => match operator {
@@ -143,6 +163,34 @@ impl<T: Target> Lowering<'_, T> {
                 None => self.type_of(otherwise),
             },
             _ => Some(ValueType::Real),
+        }
+    }
+
+    fn type_of_call(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &[Expression],
+    ) -> Option<ValueType> {
+        let output = self.target.function(&function.name());
+        if let Some(output) = output.and_then(|f| f.outputs.first().map(|o| o.value_type.clone())) {
+            return Some(output);
+        }
+        let entry = function.as_ident().and_then(|name| functions::find(name.as_str()));
+        match entry.map_or(TypeRule::Unknown, |entry| entry.value_type) {
+            TypeRule::Real | TypeRule::Unknown => Some(ValueType::Real),
+            TypeRule::Integer => Some(ValueType::Integer),
+            TypeRule::Boolean | TypeRule::Sampled => Some(ValueType::Boolean),
+            TypeRule::String => Some(ValueType::String),
+            TypeRule::Clock => None,
+            TypeRule::As(at) => self.type_of(arguments.get(at)?),
+            TypeRule::Joined => {
+                let types = arguments.iter().map(|argument| self.type_of(argument));
+                let types = types.collect::<Option<Vec<_>>>()?;
+                match types.contains(&ValueType::Real) {
+                    true => Some(ValueType::Real),
+                    false => types.into_iter().next(),
+                }
+            }
         }
     }
 }

@@ -37,13 +37,31 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         e: &Expression,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        match self.lower(e) {
-            Ok(Lowered::Text(text)) if text.contains(UNKNOWN_TEXT) => {
-                self.composing(|own| own.lower(e))
-            }
-            Err(_) => self.composing(|own| own.lower(e)),
-            known => known,
+        let is_unknown = |text: &Result<Lowered<T::Scalar>, Diagnostic>| match text {
+            Ok(Lowered::Text(text)) => text.contains(UNKNOWN_TEXT),
+            Ok(_) => false,
+            Err(_) => true,
+        };
+        let known = self.lower(e);
+        if !is_unknown(&known) {
+            return known;
         }
+        let made = self.composing(|own| own.lower(e));
+        if !is_unknown(&made) {
+            return made;
+        }
+        match self.settling_texts(|own| own.lower(e)) {
+            Some(settled) if !is_unknown(&settled) => settled,
+            _ => made,
+        }
+    }
+
+    /// What is made of Strings whose parameters are evaluated for it; `None` where none can be.
+    pub(super) fn settling_texts<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> Option<R> {
+        let before = std::mem::replace(self.target.settles_texts()?, true);
+        let result = lower(self);
+        *self.target.settles_texts()? = before;
+        Some(result)
     }
 
     /// What is made of Strings that are made at run time, where they can be.

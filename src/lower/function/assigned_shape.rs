@@ -3,8 +3,10 @@
 use super::emitter::Operand;
 use super::statements::Body;
 use crate::diag::Diagnostic;
+use crate::eval::ValueType;
 use crate::lower::errors::UNRESOLVED_REFERENCE;
 use crate::lower::expressions::{Lowered, Target};
+use crate::lower::loops::LoopVariable;
 use crate::lower::shape::Shape;
 use crate::name::Ident;
 use crate::syntax::ast::{
@@ -55,7 +57,8 @@ impl Body<'_, '_> {
         self.emitter.open();
         let mut loops = Vec::with_capacity(assignment.loops.len());
         for name in &assignment.loops {
-            loops.push((*name, Operand::Register(self.emitter.block(1))));
+            let value = Operand::Register(self.emitter.block(1));
+            loops.push(LoopVariable { name: *name, value, value_type: ValueType::Integer });
         }
         let value = match (assignment.output, &assignment.value.kind) {
             (Some(output), ExpressionKind::Call { function, arguments }) => {

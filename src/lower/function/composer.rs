@@ -74,7 +74,7 @@ fn slots<S: Copy>(
                 let first = row(emitter, std::slice::from_ref(number));
                 slots.push(Slot { kind: Kind::Numbered, first, dims: Box::new([]) });
             }
-            TextPart::Number(scalars, format) => {
+            TextPart::Written(scalars, format) => {
                 let first = row(emitter, scalars);
                 let dims = Box::new([scalars.len() as u32]);
                 slots.push(Slot { kind: Kind::Number, first, dims });

@@ -9,9 +9,10 @@ use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::lower::builder::Builder;
-use crate::lower::equation::{Assertion, Level, Part};
+use crate::lower::equation::{Assertion, Level};
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
+use crate::lower::text_part::TextPart;
 use crate::source::Span;
 use crate::symbolic::{Expr, RelationOperator};
 use std::sync::Arc;
@@ -115,7 +116,7 @@ fn chain(
             "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}",
             function.inputs[at].name, function.name
         );
-        let parts = vec![Part::Text(text.into())];
+        let parts = vec![TextPart::Text(text.into())];
         builder.dae.assertions.push(Assertion::new(known, parts, Level::Error, span));
     }
     let mut results = results.into_iter();

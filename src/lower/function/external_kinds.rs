@@ -39,10 +39,7 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
 /// Whether a function is external and needs its texts: all but one that fails with a message, which
 /// may be unknown in parts.
 pub(super) fn reads_texts(function: &Function) -> bool {
-    match &function.body {
-        FunctionBody::External(clause) => external_name(function, clause) != "ModelicaError",
-        _ => false,
-    }
+    matches!(function.body, FunctionBody::External(_)) && !fails(function)
 }
 
 /// What calls of a function do besides giving results, itself or by what it calls.
@@ -114,6 +111,39 @@ pub(in crate::lower) fn confirms(function: &Function) -> bool {
     let FunctionBody::External(clause) = &function.body else { return false };
     let is_confirmed = c_function::in_rust(function, clause).is_some_and(|entry| entry.confirms);
     is_confirmed && clause.output.is_some() && function.outputs.len() == 1
+}
+
+/// Whether a function does nothing but to end the simulation with its first argument, as
+/// `Modelica.Utilities.Streams.error` does.
+pub(in crate::lower) fn fails(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => external_name(function, clause) == "ModelicaError",
+        FunctionBody::Algorithm(statements) => match statements.as_slice() {
+            [statement] => asserts_nothing_but(function, &statement.kind),
+            _ => false,
+        },
+        _ => false,
+    }
+}
+
+/// `assert(false, string)` with the first input.
+fn asserts_nothing_but(function: &Function, statement: &ast::StatementKind) -> bool {
+    let ast::StatementKind::Call(call) = statement else { return false };
+    let ast::ExpressionKind::Call { function: called, arguments } = &call.kind else {
+        return false;
+    };
+    let [condition, message, level @ ..] = arguments.positional.as_slice() else { return false };
+    let is_input = |name| function.inputs.first().is_some_and(|input| input.name == name);
+    // The second level is the error.
+    let is_error = level.iter().all(|level| level.kind == ast::ExpressionKind::Integer(2));
+    called.as_ident().is_some_and(|name| name == "assert")
+        && arguments.named.is_empty()
+        && condition.kind == ast::ExpressionKind::Boolean(false)
+        && is_error
+        && match &message.kind {
+            ast::ExpressionKind::Reference(reference) => reference.as_ident().is_some_and(is_input),
+            _ => false,
+        }
 }
 
 /// Whether a function does nothing but to print its first argument.

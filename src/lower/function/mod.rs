@@ -29,7 +29,7 @@ mod single_assignment;
 mod statements;
 mod target;
 
-pub(super) use external_kinds::{confirms, prints};
+pub(super) use external_kinds::{confirms, fails, prints};
 pub(super) use headers::library_of;
 pub(super) use instances::Instances;
 use instances::Output;

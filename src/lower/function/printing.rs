@@ -1,24 +1,17 @@
-//! Functions that print, called in functions being compiled: their texts may have numbers in them
-//! that are known when the simulation gets there.
+//! Functions that print, and assertions, in functions being compiled: their texts may have numbers in
+//! them that are known when the simulation gets there.
 
+use super::emitter::Operand;
 use super::statements::{Body, Loops};
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::Diagnostic;
-use crate::external::{PRINT, Slot};
+use crate::external::{FAIL, PRINT};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::expressions::{Lowered, TextPart, message_text};
-use crate::lower::message::nth;
+use crate::lower::expressions::{Lowered, message_parts, message_text, nth};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::syntax::ast;
-
-/// The arguments of `String(x, …)`.
-fn arguments_of_string(e: &ast::Expression) -> Option<&ast::Arguments> {
-    let ast::ExpressionKind::Call { function, arguments } = &e.kind else { return None };
-    let is_plain = function.as_ident()? == "String" && arguments.positional.len() == 1;
-    is_plain.then_some(arguments)
-}
 
 impl Body<'_, '_> {
     /// A call of a function that prints: the numbers in its text are those of when it is carried out.
@@ -40,9 +33,8 @@ impl Body<'_, '_> {
             );
         }
         let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
-        if let Some(text) = nth(arguments, 0, "string") {
-            self.parts_of_text(text, loops, &mut parts)?;
-        }
+        let text = message_parts(&mut self.of_known_texts(loops), nth(arguments, 0, "string"));
+        parts.extend(self.slots(&text));
         let call = ExternalCall::new(&PRINT, parts, None);
         let external = self.emitter.external(call);
         self.emitter.emit(Instruction::External { external });
@@ -50,33 +42,32 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    fn parts_of_text(
+    /// Ends the simulation with a text unless a condition holds; the text is put together only then.
+    pub(super) fn fail_unless(
         &mut self,
-        e: &ast::Expression,
+        condition: Operand,
+        text: Option<&ast::Expression>,
+        span: Span,
         loops: &Loops,
-        parts: &mut Vec<Slot>,
     ) -> Result<(), Diagnostic> {
-        if let ast::ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } =
-            &e.kind
-        {
-            self.parts_of_text(left, loops, parts)?;
-            return self.parts_of_text(right, loops, parts);
-        }
-        if let ast::ExpressionKind::Reference(_) = e.kind
-            && let Ok(Lowered::Numbered(text)) = self.of_known_texts(loops).lower(e)
-        {
-            parts.extend(self.slots(&[TextPart::Numbered(text)]));
+        let known = message_text(&mut self.of_known_texts(loops), text);
+        let a = self.emitter.register(condition);
+        if !known.contains(UNKNOWN_TEXT) {
+            let message = self.emitter.message(known.into());
+            self.emitter.emit(Instruction::Assert { a, message });
             return Ok(());
         }
-        let text = message_text(&mut self.of_known_texts(loops), Some(e));
-        if text.contains(UNKNOWN_TEXT)
-            && let Some(arguments) = arguments_of_string(e)
-            && let Some(part) = self.lowering(loops).number_part(arguments)?
-        {
-            parts.extend(self.slots(&[part]));
-            return Ok(());
-        }
-        parts.push(self.slot(Lowered::Text(text.into()), None, e.span)?);
+        self.emitter.open();
+        let fails = self.emitter.block(1);
+        self.emitter.emit(Instruction::Not { d: fails, a });
+        let holds = self.emitter.jump_unless(Operand::Register(fails));
+        let parts = message_parts(&mut self.of_known_texts(loops), text);
+        let mut arguments = vec![self.slot(Lowered::Text(known.into()), None, span)?];
+        arguments.extend(self.slots(&parts));
+        let external = self.emitter.external(ExternalCall::new(&FAIL, arguments, None));
+        self.emitter.emit(Instruction::External { external });
+        self.emitter.land(holds);
+        self.emitter.close();
         Ok(())
     }
 }

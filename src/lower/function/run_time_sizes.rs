@@ -153,9 +153,9 @@ impl Body<'_, '_> {
 
     /// The register of a scalar Integer of the function or of a loop.
     fn integer(&self, name: Ident, loops: &Loops) -> Option<Operand> {
-        if let Some((_, operand)) = loops.iter().rev().find(|(own, _)| *own == name) {
-            let is_free = self.loop_sizes && matches!(operand, Operand::Register(_));
-            return is_free.then_some(*operand);
+        if let Some(variable) = loops.iter().rev().find(|variable| variable.name == name) {
+            let is_free = self.loop_sizes && matches!(variable.value, Operand::Register(_));
+            return is_free.then_some(variable.value);
         }
         let of_function = super::component_of(self.function, name.as_str())?;
         match self.local(&[name])? {
@@ -171,8 +171,8 @@ impl Body<'_, '_> {
 
     /// Gives an Integer another operand.
     fn bind(&mut self, name: Ident, operand: Operand, loops: &mut Loops) {
-        if let Some((_, value)) = loops.iter_mut().rev().find(|(own, _)| *own == name) {
-            *value = operand;
+        if let Some(own) = loops.iter_mut().rev().find(|own| own.name == name) {
+            own.value = operand;
         } else if let Some((_, value)) = self.locals.iter_mut().find(|(own, _)| *own == name) {
             *value = Lowered::scalar(operand);
         }

@@ -1,7 +1,7 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
-use super::external_kinds::prints;
+use super::external_kinds::{fails, prints};
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
@@ -12,8 +12,8 @@ use crate::flatten::FlatModel;
 use crate::lower::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE,
 };
-use crate::lower::expressions::message_text;
-use crate::lower::expressions::{Array, Lowered, Lowering, Target};
+use crate::lower::expressions::{Array, Lowered, Lowering, Target, nth};
+use crate::lower::loops::LoopVariable;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -46,7 +46,7 @@ pub(super) struct Body<'a, 'f> {
 }
 
 /// Loop variables, innermost last.
-pub(super) type Loops = Vec<(Ident, Operand)>;
+pub(super) type Loops = crate::lower::loops::Loops<Operand>;
 
 impl<'a, 'f> Body<'a, 'f> {
     pub(super) fn new(
@@ -351,17 +351,15 @@ impl<'a, 'f> Body<'a, 'f> {
         body: &[Statement],
         loops: &mut Loops,
     ) -> Result<(), Diagnostic> {
-        let values = self.lowering(loops).loop_values(index)?;
-        let mut copies = Vec::with_capacity(values.len());
-        for value in values {
-            copies.push(match value {
-                Operand::Constant(_) => value,
-                Operand::Register(_) => Operand::Register(self.emitter.copies(&[value])),
-            });
+        let mut variables = self.lowering(loops).loop_variables(index)?;
+        for LoopVariable { value, .. } in &mut variables {
+            if let Operand::Register(_) = value {
+                *value = Operand::Register(self.emitter.copies(&[*value]));
+            }
         }
         self.breaks.push(Vec::new());
-        for value in copies {
-            loops.push((index.name.node, value));
+        for variable in variables {
+            loops.push(variable);
             let turn = self.for_loop(inner, body, loops);
             loops.pop();
             turn?;
@@ -398,7 +396,9 @@ impl<'a, 'f> Body<'a, 'f> {
         }
         self.emitter.emit(Instruction::Add { d: counter, a: counter, b: one });
         self.breaks.push(Vec::new());
-        loops.push((index.name.node, Operand::Register(value)));
+        let value_type = self.lowering(loops).type_of_index(index);
+        let value = Operand::Register(value);
+        loops.push(LoopVariable { name: index.name.node, value, value_type });
         let turn = self.for_loop(inner, body, loops);
         loops.pop();
         turn?;
@@ -424,7 +424,8 @@ impl<'a, 'f> Body<'a, 'f> {
             self.emitter.emit(Instruction::Turns { d: turns, range: first });
             return Ok(Iterated::Range { first, turns });
         }
-        let elements = self.lowering(loops).loop_values(index)?;
+        let variables = self.lowering(loops).loop_variables(index)?;
+        let elements: Vec<_> = variables.iter().map(|variable| variable.value).collect();
         let first = self.emitter.copies(&elements);
         Ok(Iterated::Elements { first, n: elements.len() })
     }
@@ -439,6 +440,10 @@ impl<'a, 'f> Body<'a, 'f> {
         let name = function.name();
         match self.function(&name) {
             Some(user) if prints(&user) => self.printing(arguments, call.span, loops),
+            Some(user) if fails(&user) => {
+                let text = nth(arguments, 0, "string");
+                self.fail_unless(Operand::Constant(0.0), text, call.span, loops)
+            }
             Some(user) => {
                 self.lowering(loops).user_call(&user, arguments, call.span)?;
                 Ok(())
@@ -473,11 +478,7 @@ impl<'a, 'f> Body<'a, 'f> {
         {
             return Ok(());
         }
-        let text = message_text(&mut self.of_known_texts(loops), find(1, "message"));
-        let message = self.emitter.message(text.into());
-        let a = self.emitter.register(condition);
-        self.emitter.emit(Instruction::Assert { a, message });
-        Ok(())
+        self.fail_unless(condition, find(1, "message"), span, loops)
     }
 }
 

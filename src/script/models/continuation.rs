@@ -69,6 +69,14 @@ impl DaeSystem for Continued {
         self.system.crossings(t, y, out)
     }
 
+    fn oscillation(&mut self, t: f64) -> f64 {
+        self.system.oscillation(t)
+    }
+
+    fn has_event_at_start(&self) -> bool {
+        self.system.has_event_at_start()
+    }
+
     fn next_time_event(&self, t: f64) -> Option<f64> {
         self.system.next_time_event(t)
     }

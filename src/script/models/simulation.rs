@@ -8,7 +8,7 @@ use super::stored::Request;
 pub use super::translated::Translated;
 use super::translated::declarations;
 use super::warnings::warn;
-use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
+use crate::codegen::errors::{CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
@@ -395,12 +395,13 @@ fn report_defaults(session: &mut Session, system: &System) {
 /// The log messages of the simulation.
 fn report_log(session: &mut Session, system: &System) {
     let (messages, omitted) = system.log_messages();
-    for LogMessage { time, text, is_warning, span } in messages {
-        if is_warning {
-            let message = format!("{text} (at t = {time})");
-            session.report(Fault::new(ASSERTION_FAILED, message).at(span).warning());
-        } else {
-            session.print_of_script(&(text + "\n"));
+    for LogMessage { time, text, warning, span } in messages {
+        match warning {
+            Some(code) => {
+                let message = format!("{text} (at t = {time})");
+                session.report(Fault::new(code, message).at(span).warning());
+            }
+            None => session.print_of_script(&(text + "\n")),
         }
     }
     if omitted > 0 {

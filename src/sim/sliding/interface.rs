@@ -105,6 +105,14 @@ impl DaeSystem for Sliding<'_> {
         self.inner.crossings_vary_in_time()
     }
 
+    fn oscillation(&mut self, t: f64) -> f64 {
+        self.inner.oscillation(t)
+    }
+
+    fn has_event_at_start(&self) -> bool {
+        self.inner.has_event_at_start()
+    }
+
     fn next_time_event(&self, t: f64) -> Option<f64> {
         self.inner.next_time_event(t)
     }

@@ -1,0 +1,65 @@
+//! How fast crossing functions oscillate in time by themselves: the rates at which the arguments of
+//! sin, cos and tan in them change. Steps, which are as long as the states allow, do not tell.
+
+use crate::causalize::{Assignment, CausalizedDae};
+use crate::codegen::event_code::changes_at_events_only;
+use crate::symbolic::{Expr, Node, Pool, Substitution, VarId, derivative};
+use indexmap::IndexSet;
+use rustc_hash::FxHashMap;
+
+const TIME: VarId = VarId(0);
+/// More arguments are not looked at: sources of one model share a few frequencies.
+const MOST_ARGUMENTS: usize = 200;
+
+/// The rates, in radians per second, of time and of what changes at events only. `needed` are the
+/// assignments that the functions need.
+pub(super) fn oscillations(
+    pool: &mut Pool,
+    causalized: &CausalizedDae,
+    needed: &[Assignment],
+    functions: &[Expr],
+) -> Vec<Expr> {
+    let values: Vec<Expr> =
+        needed.iter().map(|a| a.value).chain(functions.iter().copied()).collect();
+    let arguments = arguments(pool, &values);
+    let mut by_time: FxHashMap<VarId, Expr> = FxHashMap::default();
+    for assignment in needed {
+        if let Some(value) = in_time(pool, causalized, &by_time, assignment.value) {
+            by_time.insert(assignment.variable, value);
+        }
+    }
+    let mut rates = IndexSet::new();
+    for argument in arguments {
+        let Some(argument) = in_time(pool, causalized, &by_time, argument) else { continue };
+        let rate = derivative(pool, argument, TIME);
+        if pool.as_constant(rate) != Some(0.0) {
+            rates.insert(rate);
+        }
+    }
+    rates.into_iter().collect()
+}
+
+/// The arguments of trigonometric functions.
+fn arguments(pool: &Pool, values: &[Expr]) -> IndexSet<Expr> {
+    let argument = |e: &Expr| match pool.node(*e) {
+        Node::Apply(id, arguments) if ["sin", "cos", "tan"].contains(&id.get().name) => {
+            Some(arguments.first())
+        }
+        _ => None,
+    };
+    pool.reachable(values).iter().filter_map(argument).take(MOST_ARGUMENTS).collect()
+}
+
+/// An expression in terms of time and of what changes at events only; `None` if it is not made of these.
+fn in_time(
+    pool: &mut Pool,
+    causalized: &CausalizedDae,
+    by_time: &FxHashMap<VarId, Expr>,
+    e: Expr,
+) -> Option<Expr> {
+    let is_kept = |v: VarId| v == TIME || changes_at_events_only(causalized, v);
+    if pool.any_variable(e, |v| !is_kept(v) && !by_time.contains_key(&v)) {
+        return None;
+    }
+    Some(Substitution::new(&|v| by_time.get(&v).copied()).apply(pool, e))
+}

@@ -1,0 +1,122 @@
+//! Variables that nothing reads and whose divisions have no value, as v = q/area in an empty pipe: the simulation
+//! goes on, results have no number for them and for what follows from them, and a warning says so.
+
+use super::execution::{Operation, read};
+use super::simulation_log::LogMessage;
+use super::system::System;
+use crate::codegen::code::Outputs;
+use crate::codegen::errors::DOMAIN_ERROR;
+use crate::codegen::registers::Registers;
+use crate::codegen::sequence::{expressions, observing};
+use crate::sim::Failure;
+use crate::symbolic::{Expr, VarId};
+use rustc_hash::FxHashSet;
+use std::sync::Arc;
+
+/// What is observed where some variables have no value.
+#[derive(Debug, Clone, Default)]
+pub(super) struct OtherVariables {
+    /// Variables that have had no value, of which a warning says so.
+    warned: Vec<VarId>,
+    known: Vec<Others>,
+}
+
+/// The variables that do not depend on some.
+#[derive(Debug, Clone)]
+struct Others {
+    without_value: Vec<VarId>,
+    code: Arc<(Registers, Outputs)>,
+    /// Which of the observed they are.
+    places: Vec<usize>,
+}
+
+impl System {
+    /// Observes what can be observed where variables that nothing reads have no value.
+    ///
+    /// # Errors
+    /// The failure, if it is another one, or if nobody would hear the warning.
+    pub(super) fn observe_others(
+        &mut self,
+        t: f64,
+        mut failure: Failure,
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        let mut without_value = Vec::new();
+        loop {
+            let variable = self.without_value(t, failure)?;
+            if without_value.contains(&variable) {
+                return Err(failure);
+            }
+            without_value.push(variable);
+            let Others { code, places, .. } = self.others(&without_value);
+            let mut values = vec![0.0; places.len()];
+            // The code has registers of its own, as that of other variables does.
+            let mut memory = self.registers.clone();
+            memory.extend(&code.0);
+            match read(&code.1, &mut memory, &mut values) {
+                Ok(()) => {
+                    out.fill(f64::NAN);
+                    places.iter().zip(values).for_each(|(place, value)| out[*place] = value);
+                    return Ok(());
+                }
+                Err(next) => failure = self.refine(next),
+            }
+        }
+    }
+
+    /// A simulation begins: the code stays.
+    pub(super) fn forget_warnings_of_others(&mut self) {
+        self.others.warned.clear();
+    }
+
+    /// The variable whose value has failed; warns of it once.
+    fn without_value(&mut self, t: f64, failure: Failure) -> Result<VarId, Failure> {
+        let program = self.program.clone();
+        let (Failure::Domain { origin, operation: Operation::DIVISION }, Some(log)) =
+            (failure, &mut self.log)
+        else {
+            return Err(failure);
+        };
+        let variable = program.variable_of(origin);
+        let Some(variable) = variable.filter(|v| program.unread.variables.binary_search(v).is_ok())
+        else {
+            return Err(failure);
+        };
+        if !self.others.warned.contains(&variable) {
+            self.others.warned.push(variable);
+            let value = program.failed_value(origin, Operation::DIVISION, "here");
+            let text = format!("{value}; the simulation goes on, as nothing depends on it");
+            let (warning, span) = (Some(DOMAIN_ERROR), program.place(origin));
+            log.record(LogMessage { time: t, text, warning, span });
+        }
+        Ok(variable)
+    }
+
+    /// What does not depend on variables without value.
+    fn others(&mut self, without_value: &[VarId]) -> Others {
+        let known = self.others.known.iter().find(|known| known.without_value == without_value);
+        if let Some(known) = known {
+            return known.clone();
+        }
+        let program = self.program.clone();
+        let mut pool = program.sorted().dae.pool.clone();
+        let all: Vec<Expr> = match &self.observed_variables {
+            Some(variables) => expressions(&program, &mut pool, variables),
+            None => program.observed.iter().map(|v| pool.variable(*v)).collect(),
+        };
+        let mut lacking: FxHashSet<VarId> = without_value.iter().copied().collect();
+        for assignment in &program.sequence {
+            if pool.any_variable(assignment.value, |v| lacking.contains(&v)) {
+                lacking.insert(assignment.variable);
+            }
+        }
+        let has_value = |e: &Expr| !pool.any_variable(*e, |v| lacking.contains(&v));
+        let places: Vec<usize> = (0..all.len()).filter(|at| has_value(&all[*at])).collect();
+        let outputs: Vec<Expr> = places.iter().map(|at| all[*at]).collect();
+        let code = Arc::new(observing(&program, &pool, &outputs));
+        let without_value = without_value.to_vec();
+        let others = Others { without_value, code, places };
+        self.others.known.push(others.clone());
+        others
+    }
+}
