@@ -5,7 +5,7 @@ use crate::causalize::{Assignment, CausalizedDae};
 use crate::codegen::event_code::changes_at_events_only;
 use crate::symbolic::{Expr, Node, Pool, Substitution, VarId, derivative};
 use indexmap::IndexSet;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 const TIME: VarId = VarId(0);
 /// More arguments are not looked at: sources of one model share a few frequencies.
@@ -23,7 +23,7 @@ pub(super) fn oscillations(
         needed.iter().map(|a| a.value).chain(functions.iter().copied()).collect();
     let arguments = arguments(pool, &values);
     let mut by_time: FxHashMap<VarId, Expr> = FxHashMap::default();
-    for assignment in needed {
+    for assignment in behind(pool, needed, &arguments) {
         if let Some(value) = in_time(pool, causalized, &by_time, assignment.value) {
             by_time.insert(assignment.variable, value);
         }
@@ -48,6 +48,22 @@ fn arguments(pool: &Pool, values: &[Expr]) -> IndexSet<Expr> {
         _ => None,
     };
     pool.reachable(values).iter().filter_map(argument).take(MOST_ARGUMENTS).collect()
+}
+
+/// The assignments that the arguments need, in order.
+fn behind(pool: &Pool, needed: &[Assignment], arguments: &IndexSet<Expr>) -> Vec<Assignment> {
+    let mut wanted: FxHashSet<VarId> = FxHashSet::default();
+    let arguments: Vec<Expr> = arguments.iter().copied().collect();
+    pool.visit_variables(&arguments, |v| wanted.extend([v]));
+    let mut found = Vec::new();
+    for assignment in needed.iter().rev() {
+        if wanted.contains(&assignment.variable) {
+            found.push(*assignment);
+            pool.visit_variables(&[assignment.value], |v| wanted.extend([v]));
+        }
+    }
+    found.reverse();
+    found
 }
 
 /// An expression in terms of time and of what changes at events only; `None` if it is not made of these.

@@ -566,11 +566,17 @@ impl<'a> Builder<'a> {
                 "a call of `{name}` as an equation of a state of a state machine"
             )
             .at(call.span)),
-            _ if !self.place.initial && self.printing(call, loops)?.is_some() => {
-                self.warn_of_telling(&name, call.span);
-                Ok(())
+            _ => {
+                let said = if self.place.initial { None } else { self.printing(call, loops)? };
+                match said {
+                    Some(Level::Message) => {
+                        self.warn_of_telling(&name, call.span);
+                        Ok(())
+                    }
+                    Some(_) => Ok(()),
+                    None => self.call_statement(call, loops, self.place.initial),
+                }
             }
-            _ => self.call_statement(call, loops, self.place.initial),
         }
     }
 

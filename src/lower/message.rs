@@ -27,13 +27,13 @@ fn end_line(parts: &mut [TextPart<Expr>]) {
 }
 
 impl Builder<'_> {
-    /// A call of a function that prints to the screen, or ends the simulation with a message; `None` for
-    /// other calls.
+    /// A call of a function that prints to the screen, or ends the simulation with a message, and which of
+    /// both; `None` for other calls.
     pub(super) fn printing(
         &mut self,
         call: &Expression,
         loops: &[LoopVariable<Expr>],
-    ) -> Result<Option<()>, Diagnostic> {
+    ) -> Result<Option<Level>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
         let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
         let level = match (prints(&user), fails(&user)) {
@@ -53,7 +53,7 @@ impl Builder<'_> {
         end_line(&mut parts);
         let condition = self.dae.pool.constant(0.0);
         self.dae.assertions.push(Assertion::new(condition, parts, level, call.span));
-        Ok(Some(()))
+        Ok(Some(level))
     }
 
     /// `terminate(message)` where a guard holds: the simulation ends, and says why.

@@ -119,7 +119,9 @@ impl System {
         else {
             return said;
         };
-        if let (sim::Failure::Domain { origin, operation }, DOMAIN_ERROR) = (failure, said.code) {
+        if let sim::Failure::Domain { origin, operation } = failure
+            && said.code == DOMAIN_ERROR
+        {
             let when = format!("at t = {}", error.time);
             return said.reworded(self.program.failed_value(origin, operation, &when));
         }
