@@ -3,7 +3,7 @@
 
 use super::live::Live;
 use super::options::Colour;
-use crate::diag::visible;
+use crate::diag::{visible, visible_coloured};
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
 use crate::script::world::Screen;
@@ -150,7 +150,7 @@ impl Screen for Terminal {
             return;
         }
         self.suspended(|| {
-            let _ = std::io::stderr().lock().write_all(text.as_bytes());
+            let _ = std::io::stderr().lock().write_all(visible_coloured(text).as_bytes());
         });
     }
 
@@ -206,8 +206,18 @@ fn round_up(duration: Duration) -> Duration {
     Duration::from_secs(duration.as_secs() + u64::from(duration.subsec_nanos() > 0))
 }
 
-/// Writes to standard output where there is no session.
+/// Writes to standard output where there is no session: as text on a terminal, unchanged elsewhere.
 pub(super) fn print(text: &str) {
+    write(&on_terminal(std::io::stdout().is_terminal(), text));
+}
+
+/// Writes text with colours to standard output. What it quotes from files must be made visible before
+/// it is coloured.
+pub(super) fn print_coloured(text: &str) {
+    write(&visible_coloured(text));
+}
+
+fn write(text: &str) {
     let mut out = std::io::stdout().lock();
     checked(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
 }

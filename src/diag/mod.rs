@@ -12,7 +12,7 @@ mod visible;
 
 pub use code::Code;
 pub use shorten::shortened;
-pub use visible::{visible, visible_line};
+pub use visible::{visible, visible_coloured, visible_line};
 
 use crate::source::Span;
 
