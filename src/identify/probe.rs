@@ -9,8 +9,8 @@ use super::fitness::FITNESSES;
 use super::problem::inference::ModelPredictions;
 use super::problem::{
     EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation,
-    Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
-    SolvedSeries, Stop, conclude, draw_curves, failure_region,
+    Problem, Run, ScriptError, ScriptResult, Series, Severity, Sigma, Simulate, Solution,
+    SolvedParameter, SolvedSeries, Stop, conclude, draw_curves, failure_region,
 };
 use super::ranks::Processors;
 use super::recorder::{Best, Recorder};
@@ -63,6 +63,8 @@ pub struct Ending<'a> {
     pub probe: Probe,
     /// Whether the user interrupted the run.
     pub interrupted: bool,
+    /// The first error of the script that it did not handle: where, and what.
+    pub error: Option<ScriptError>,
 }
 
 impl Ending<'_> {
@@ -312,18 +314,23 @@ impl Ending<'_> {
         script.fitness = best.fitness;
         script.fitness_name = best.objective.name().to_owned();
         script.interrupted = self.interrupted;
+        script.error.clone_from(&self.error);
         script.changes.clone_from(&recorder.changes);
-        let mut findings = vec![search(script.probe.clone())];
+        let mut findings: Vec<Finding> = script.error.iter().map(ScriptError::finding).collect();
+        findings.push(search(script.probe.clone()));
         if recorder.ranges.is_none() {
             findings.push(search(
                 "The ranges in the table are those of the script's individuals, extended where \
                  the minimum lies outside.",
             ));
         }
-        let (method, stop) = match (self.interrupted, script.probed) {
-            (true, _) => ("script", "interrupted: these are the best values found so far"),
-            (false, true) => ("script, then least squares", "the script has ended"),
-            (false, false) => ("script", "the script has ended"),
+        let method = if script.probed { "script, then least squares" } else { "script" };
+        let stop = match &script.error {
+            Some(error) => error.place(),
+            None if self.interrupted => {
+                "interrupted: these are the best values found so far".to_owned()
+            }
+            None => "the script has ended".to_owned(),
         };
         findings.append(&mut solution.findings);
         if !script.probed {
@@ -334,7 +341,7 @@ impl Ending<'_> {
         Solution {
             findings,
             method: method.to_owned(),
-            stop: stop.to_owned(),
+            stop,
             generations: recorder.history.generations.len() as u64,
             evaluations: recorder.evaluations,
             simulations: recorder.evaluations,

@@ -150,6 +150,12 @@ impl Session {
         self.output.record(text);
     }
 
+    /// As [`Session::print`], for a report; `brief` is what a brief transcript has of it.
+    pub fn print_report(&mut self, whole: &str, brief: &str) {
+        self.world.print(whole);
+        self.output.record_report(whole, brief);
+    }
+
     /// The one place where a diagnostic is reported to the user without ending a statement: it goes
     /// to standard error, to the transcript, and to the messages that the script can ask for.
     pub fn report(&mut self, diagnostic: Diagnostic) {

@@ -73,7 +73,7 @@ pub use portable::{Portable, PortableExperiment, PortableSettings};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;
 pub use run::{Best, Run};
-pub use script_result::ScriptResult;
+pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
 pub use solution::{
     CalibratedModel, ChiSquare, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict,

@@ -1,5 +1,6 @@
 //! What a script's own search has found, beside the solution that least squares from there gives.
 
+use super::{Finding, FindingKind, Severity};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +21,47 @@ pub struct ScriptResult {
     pub probe_simulations: u64,
     /// Whether the run was interrupted.
     pub interrupted: bool,
+    /// The first error of the script that it did not handle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<ScriptError>,
     /// Statements typed while it ran, and the first generation that they hold for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<(usize, String)>,
+}
+
+/// An error that a script did not handle.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ScriptError {
+    /// The script; empty where the error belongs to no statement.
+    pub file: String,
+    /// The line of the statement, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl ScriptError {
+    /// Where it happened: how the run ended, in a few words.
+    pub fn place(&self) -> String {
+        match self.file.as_str() {
+            "" => "error".to_owned(),
+            file => format!("error in {file}, line {}", self.line),
+        }
+    }
+
+    /// The error in a sentence.
+    pub fn sentence(&self) -> String {
+        let place = self.place();
+        let place = place.strip_prefix("error").unwrap_or_default();
+        format!("The script failed with an error{place}: {}.", self.message.trim_end_matches('.'))
+    }
+
+    /// The finding that comes before all others.
+    pub fn finding(&self) -> Finding {
+        let sentence = format!(
+            "{} The result is that of the simulations which the script has evaluated.",
+            self.sentence()
+        );
+        Finding::new(FindingKind::Search, sentence).severity(Severity::Serious)
+    }
 }

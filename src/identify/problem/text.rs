@@ -1,12 +1,14 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{EndingKind, Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
+use super::{EndingKind, Profile, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::identify::table::{quoted, significant};
 use crate::plot::{self, Comparison, Figure};
 use std::fmt::Write;
 
 /// How many causes of failure are shown.
 const CAUSES: usize = 5;
+/// Digits of the brief report: more than the comparison with a tolerance needs.
+const BRIEF_DIGITS: usize = 10;
 const HEADING: [&str; 7] =
     ["parameter", "value", "unit", "standard error", "95 % interval", "range", ""];
 
@@ -37,9 +39,28 @@ impl Solution {
         text
     }
 
+    /// What the report says in numbers: objective and estimates, without the sentences, which another
+    /// version may choose otherwise.
+    pub fn brief(&self) -> String {
+        let fitness = significant(self.fitness, BRIEF_DIGITS);
+        let mut text = format!("{}\n  {} = {fitness}\n", self.title, self.fitness_name);
+        if let Some(error) = self.script_error() {
+            _ = writeln!(text, "  {}", error.place());
+        }
+        for SolvedParameter { name, value, unit, .. } in &self.parameters {
+            let value = significant(*value, BRIEF_DIGITS);
+            _ = writeln!(text, "  {}", format!("{name} = {value} {unit}").trim_end());
+        }
+        text
+    }
+
     /// Labels and values of the report.
     fn facts(&self) -> Vec<(&'static str, String)> {
-        let mut facts = vec![("model", self.model.clone()), ("objective", self.objective_values())];
+        let mut facts = Vec::new();
+        if self.script_error().is_some() {
+            facts.push(("stopped", self.stop.clone()));
+        }
+        facts.extend([("model", self.model.clone()), ("objective", self.objective_values())]);
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
         if let Some(chi) = &self.chi_square {
@@ -101,7 +122,9 @@ impl Solution {
         if !operators.is_empty() {
             facts.push(("operators", operators.join(", ")));
         }
-        facts.push(("stopped", self.stop.clone()));
+        if self.script_error().is_none() {
+            facts.push(("stopped", self.stop.clone()));
+        }
         if self.ending.kind == EndingKind::Minimum {
             facts.push(("ending", self.ending.words.clone()));
         }
@@ -120,6 +143,11 @@ impl Solution {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
         }
         facts
+    }
+
+    /// The error that the script did not handle: what is said first.
+    pub fn script_error(&self) -> Option<&ScriptError> {
+        self.script.as_ref()?.error.as_ref()
     }
 
     fn objective_values(&self) -> String {

@@ -10,6 +10,9 @@ pub fn head(view: &View) -> Markup {
     let points: usize = solution.series.iter().map(|series| series.points.len()).sum();
     html! {
         h1 { (solution.title) }
+        @if let Some(error) = solution.script_error() {
+            p.lead { strong.bad { (error.sentence()) } }
+        }
         p.lead { (verdict(view)) }
         dl.facts {
             div { dt { "Model" } dd { (solution.model) } }

@@ -8,6 +8,9 @@ use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::value::Value;
 use crate::value::show::{Style, show};
 
+/// The variable that has the value of the last expression at a prompt.
+pub const ANSWER: &str = "ans";
+
 impl Session {
     /// Runs a script whose answers are the value of the statement that runs it, as OpenModelica's
     /// are: what the statements answer, line by line. In Dymola's dialect there are none.

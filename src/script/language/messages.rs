@@ -40,13 +40,21 @@ impl Messages {
         self.tested.extend(numbers.start.max(self.first)..numbers.end);
     }
 
-    /// Number of errors that the script has neither asked for nor tested.
-    pub fn unread_errors(&self) -> usize {
+    /// Errors that the script has neither asked for nor tested, with their numbers.
+    fn unhandled(&self) -> impl Iterator<Item = (&Diagnostic, usize)> {
         let numbered = self.unread.iter().zip(self.first..);
-        let counts = |(diagnostic, number): &(&Diagnostic, usize)| {
-            diagnostic.is_error() && !self.tested.contains(number)
-        };
-        numbered.filter(counts).count()
+        numbered
+            .filter(|(diagnostic, number)| diagnostic.is_error() && !self.tested.contains(number))
+    }
+
+    /// How many of them there are.
+    pub fn unread_errors(&self) -> usize {
+        self.unhandled().count()
+    }
+
+    /// The first of them from this number on.
+    pub fn first_unhandled(&self, from: usize) -> Option<&Diagnostic> {
+        self.unhandled().find(|(_, number)| *number >= from).map(|(diagnostic, _)| diagnostic)
     }
 
     /// Numbers of unread notes, warnings and errors.

@@ -47,6 +47,14 @@ impl Output {
         self.log.answer(text);
     }
 
+    /// Notes a report that the program prints by itself; `brief` is what a brief transcript has of it.
+    pub fn record_report(&mut self, whole: &str, brief: &str) {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.print_report(whole, brief);
+        }
+        self.log.answer(whole);
+    }
+
     /// Shows a diagnostic on the screen, unless it is `quiet` about warnings and notes, and keeps it
     /// for the script. Returns whether it is an error.
     pub fn report(

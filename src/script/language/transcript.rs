@@ -21,6 +21,9 @@ pub struct Exchange {
 pub struct Transcript {
     /// The exchanges, in order.
     pub exchanges: Vec<Exchange>,
+    /// Whether of a report only the numbers are recorded: its sentences and the version change with
+    /// every release.
+    pub is_brief: bool,
 }
 
 impl Transcript {
@@ -38,6 +41,12 @@ impl Transcript {
     pub fn print(&mut self, text: &str) {
         self.answer(text);
         self.current().printed.push_str(text);
+    }
+
+    /// Adds a report of the program to the answer of the current statement: all of it, or what is left of
+    /// it in a brief transcript.
+    pub fn print_report(&mut self, whole: &str, brief: &str) {
+        self.print(if self.is_brief { brief } else { whole });
     }
 
     /// Adds a diagnostic to the answer of the current statement.

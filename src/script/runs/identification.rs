@@ -6,7 +6,7 @@ use super::tracing;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
-use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
+use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, ScriptError, Solution};
 use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Model as _, Quantity, Question, Recorder,
     Simulated, Study,
@@ -39,6 +39,8 @@ pub(in crate::script) struct Identification {
     pub(in crate::script) data_missing: bool,
     /// Runs reported so far.
     reported: usize,
+    /// The number of the first message of this run.
+    first_message: usize,
 }
 
 /// An evaluator that is ready for the next population.
@@ -360,6 +362,26 @@ impl Session {
     }
 }
 
+impl Session {
+    /// The first error of the run that the script did not handle, at the statement that failed.
+    fn unhandled_error(&mut self) -> Option<ScriptError> {
+        let next = self.output.messages.next_number();
+        let identification = self.extension::<Identification>();
+        let from = std::mem::replace(&mut identification.first_message, next);
+        let error = self.output.messages.first_unhandled(from)?;
+        let calls = error.trace.iter().map(|frame| frame.span);
+        let mut places = std::iter::once(error.span()).chain(calls);
+        let name = |span: Span| self.sources.get(span.source).map(|source| source.name.clone());
+        let is_script = |span: &Span| name(*span).is_some_and(|name| name.ends_with(".mos"));
+        let span = places.find(is_script).unwrap_or_else(|| error.span());
+        Some(ScriptError {
+            file: name(span).as_deref().unwrap_or_default().to_owned(),
+            line: self.sources.line_column(span).map_or(0, |place| place.line),
+            message: error.message.clone(),
+        })
+    }
+}
+
 /// What remains to be done when the outermost script ends.
 fn report(session: &mut Session) -> Result<(), Diagnostic> {
     report_run(session).map_err(|fault| fault.at(Span::NONE))
@@ -369,6 +391,7 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
+    let error = session.unhandled_error();
     let (processors, probe) = (session.world.processors(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
@@ -402,16 +425,17 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
             Some((one.measured.clone()?, study, is_relative))
         })
         .collect();
-    let ending = Ending { recorder: &recorder, models, noise, processors, probe, interrupted };
+    let ending =
+        Ending { recorder: &recorder, models, noise, processors, probe, interrupted, error };
     let Some(solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
     for (measured, study, is_relative) in compared {
         session.compared(&measured, &study.model, (&study.y, is_relative));
     }
-    session.print(&solution.text());
     let now = session.world.monotonic_seconds();
     let seconds = now - started.unwrap_or(now);
-    session.print(&format!("  {:<12} {seconds:.2} s\n", "time"));
+    let text = format!("{}  {:<12} {seconds:.2} s\n", solution.text(), "time");
+    session.print_report(&text, &solution.brief());
     write_files(session, &solution, seconds)
 }
 

@@ -472,7 +472,7 @@ pub(super) fn write(
         None => {
             let here = session.world.current_dir();
             let shown = folder.strip_prefix(&here).unwrap_or(folder).display().to_string();
-            session.print(&format!("\n  written to {shown}\n"));
+            session.print_report(&format!("\n  written to {shown}\n"), "");
         }
         Some(mut fault) => {
             let (missing, folder) = (missing.join(", "), folder.display());
