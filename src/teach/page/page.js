@@ -235,8 +235,10 @@ function begin() {
     at(id).addEventListener("click", () => { if (id !== "play" && timer !== null) stop(); action(); });
   }
   document.addEventListener("keydown", event => {
-    const taken = ["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName);
-    const own = taken && (event.key === " " || event.target.tagName !== "BUTTON");
+    const { tagName, type } = event.target;
+    // What is only clicked takes the space bar alone; other controls take all keys.
+    const isClicked = tagName === "BUTTON" || type === "checkbox";
+    const own = isClicked ? event.key === " " : ["INPUT", "SELECT"].includes(tagName);
     if (own || event.ctrlKey || event.altKey || event.metaKey || !KEYS[event.key]) return;
     event.preventDefault();
     at(KEYS[event.key]).click();
