@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
 /// Settings of every command.
-#[derive(Debug, Args)]
+#[derive(Debug, Args, Clone)]
 pub(super) struct Global {
     /// When to use colours
     #[arg(long, value_enum, default_value_t = Colour::Auto, global = true, value_name = "WHEN")]

@@ -3,6 +3,10 @@
 use crate::cli::{folder, gapi};
 use std::fs;
 
+/// A straight line.
+pub(crate) const LINE: &str = "model Line input Real x; parameter Real a = 1; parameter Real b = 1; \
+                               output Real y; equation y = a + b*x; end Line;\n";
+
 #[test]
 fn a_transcript_is_accepted_then_agrees_then_differs() {
     let here = folder(&[("a.mos", "x = 1.5\nx + 1\n")]);
@@ -22,6 +26,113 @@ fn a_transcript_is_accepted_then_agrees_then_differs() {
     assert!(out.contains("-  = 2.6\n+  = 2.5"), "{out}");
     let report = fs::read_to_string(here.path().join("report.xml")).expect("a report");
     assert!(report.contains("tests=\"1\" failures=\"1\""), "{report}");
+}
+
+#[test]
+fn tolerances_are_set_per_script_and_on_the_command_line() {
+    let here = folder(&[("a.mos", "x = 1.5\nx + 1\nsize({1, 2}, 1)\n")]);
+    let record = |value: &str, size: &str| {
+        let transcript =
+            format!(">>> x = 1.5\n>>> x + 1\n = {value}\n>>> size({{1, 2}}, 1)\n = {size}\n");
+        fs::write(here.path().join("a.mos.snap"), transcript + "[exit code 0]\n").unwrap();
+    };
+    record("2.501", "2");
+    assert_eq!(gapi(&here, &["test"]).0, 1);
+    assert_eq!(gapi(&here, &["test", "--tolerance", "1e-3"]).0, 0);
+    assert_eq!(gapi(&here, &["test", "--tolerance", "1e-4", "--absolute", "0.0008"]).0, 0);
+    assert_eq!(gapi(&here, &["test", "--tolerance", "-1"]).0, 2);
+    record("2.500001", "3");
+    assert_eq!(gapi(&here, &["test", "--tolerance", "0.9"]).0, 1, "integers are exact");
+    record("2.501", "2");
+    let set = |line: &str| {
+        fs::write(
+            here.path().join("a.mos"),
+            format!("{line}\nx = 1.5\nx + 1\nsize({{1, 2}}, 1)\n"),
+        )
+        .unwrap();
+    };
+    set("// gapi test: tolerance = 1e-3");
+    assert_eq!(gapi(&here, &["test"]).0, 0);
+    assert_eq!(gapi(&here, &["test", "--tolerance", "1e-6"]).0, 1, "the command line comes first");
+    set("// gapi test: tolerance = much");
+    let (code, out, _) = gapi(&here, &["test"]);
+    assert!(code == 1 && out.contains("`much` is not a tolerance"), "{out}");
+    set("// gapi test: skip");
+    let (code, out, _) = gapi(&here, &["test"]);
+    assert!(code == 1 && out.contains("0 scripts, 0 agree, 0 do not, 1 skipped"), "{out}");
+}
+
+#[test]
+fn what_has_nothing_to_compare_is_a_failure() {
+    let here = folder(&[("a.mos", "x = 1\n"), ("gone.mos.snap", "[exit code 0]\n")]);
+    fs::create_dir(here.path().join("empty")).unwrap();
+    fs::create_dir_all(here.path().join("results/a")).unwrap();
+    // What a run has written is no test, and neither is a table.
+    fs::write(here.path().join("results/a/origin.json"), "{}").unwrap();
+    fs::write(here.path().join("results/a/calibrated.mos"), "x = 1\n").unwrap();
+    fs::write(here.path().join("data.mos"), "#1\ndouble dat(2,2)\n1 2\n3 4\n").unwrap();
+    assert_eq!(gapi(&here, &["test", "a.mos", "--accept"]).0, 0);
+    let (code, out, _) = gapi(&here, &["test", "."]);
+    assert_eq!(code, 1);
+    assert!(out.contains("failed   ./gone.mos.snap\n  a transcript without its script"), "{out}");
+    assert!(out.contains("2 scripts, 1 agree, 1 do not"), "{out}");
+    for (path, why) in [
+        ("empty", "there is no script (.mos) in this folder"),
+        ("b*.mos", "no file matches this pattern"),
+        ("b.mos", "there is no such file or folder"),
+    ] {
+        let (code, out, _) = gapi(&here, &["test", path]);
+        assert!(code == 1 && out.contains(why), "{path}: {out}");
+    }
+    let (code, out, _) = gapi(&here, &["test", "?.mos"]);
+    assert!(code == 0 && out.contains("1 scripts, 1 agree"), "{out}");
+    let (code, out, _) = gapi(&here, &["test", "--list"]);
+    assert_eq!(code, 1);
+    let expected = "./a.mos  transcript\n./gone.mos.snap  (a transcript without its script \
+                    `gone.mos`: remove it)\n";
+    assert_eq!(out, expected);
+}
+
+#[test]
+fn scripts_are_tested_at_the_same_time_and_shown_in_their_order() {
+    let names: Vec<String> = (0..6).map(|k| format!("s{k}.mos")).collect();
+    let texts: Vec<String> =
+        (0..6).map(|k| format!("sum(i for i in 1:{})\n", 40_000 / (k + 1))).collect();
+    let files: Vec<(&str, &str)> =
+        names.iter().map(String::as_str).zip(texts.iter().map(String::as_str)).collect();
+    let here = folder(&files);
+    assert_eq!(gapi(&here, &["test", "--accept", "--threads", "3"]).0, 0);
+    let (code, out, _) = gapi(&here, &["test", "--threads", "3", "--junit", "report.xml"]);
+    let order: String = names.iter().map(|name| format!("ok       ./{name}\n")).collect();
+    assert_eq!((code, out), (0, order + "6 scripts, 6 agree, 0 do not\n"));
+    let report = fs::read_to_string(here.path().join("report.xml")).expect("a report");
+    let times = regex::Regex::new(r#"name="./s\d.mos" time="\d+\.\d{3}"/>"#).unwrap();
+    assert_eq!(times.find_iter(&report).count(), 6, "{report}");
+}
+
+/// The report of an identification: objective and estimates in a transcript, all of it if asked for.
+#[test]
+fn sentences_of_a_report_are_compared_if_asked_for() {
+    let script = "(S, M, Xexp, Yexp) := Exp_Adq_SISO(\"d.csv\", \"t\", \"y\");\n\
+                  P := {{0.5, 1}, {2, 3}};\n\
+                  F := Fit(Eval(\"Line.mo\", \"Line\", Xexp, P, {\"a\", \"b\"}, \"x\", \"y\"), Yexp);\n";
+    let here = folder(&[
+        ("Line.mo", LINE),
+        ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
+        ("fit.mos", script),
+    ]);
+    assert_eq!(gapi(&here, &["test", "--accept"]).0, 0);
+    let recorded = fs::read_to_string(here.path().join("fit.mos.snap")).expect("a transcript");
+    assert!(recorded.contains("\n  a = 1.03"), "{recorded}");
+    for absent in [env!("CARGO_PKG_VERSION"), "minimum", "written", "stopped", "time"] {
+        assert!(!recorded.contains(absent), "{absent}: {recorded}");
+    }
+    assert_eq!(gapi(&here, &["test"]).0, 0);
+    let (code, out, _) = gapi(&here, &["test", "--report"]);
+    assert!(code == 1 && out.contains("+   version"), "{out}");
+    assert_eq!(gapi(&here, &["test", "--report", "--accept"]).0, 0);
+    let recorded = fs::read_to_string(here.path().join("fit.mos.snap")).expect("a transcript");
+    assert!(recorded.contains("stopped      the script has ended"), "{recorded}");
 }
 
 #[test]

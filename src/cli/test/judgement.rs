@@ -1,20 +1,20 @@
 //! Statements compared with the result that their script embeds, one by one.
 
-use super::Verdict;
-use crate::diag::Code;
+use super::{Tested, Verdict};
+use crate::diag::{Code, visible};
 use crate::script::Exchange;
 use crate::script::errors::OUT_OF_REACH;
 use crate::script::language::expectation::{Line, agreeing};
 use std::fmt::{self, Write as _};
-use std::path::PathBuf;
 
 /// A statement compared with the result that its script embeds.
+#[derive(Debug, PartialEq)]
 pub(super) struct Judged {
     pub statement: String,
     pub judgement: Judgement,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Judgement {
     Agrees,
     Differs,
@@ -45,7 +45,7 @@ pub(super) fn summary(judged: &[Judged]) -> String {
     let mut text = format!("  {counts}\n");
     for one in judged {
         if let Judgement::Unsupported(code) = one.judgement {
-            let statement = one.statement.lines().next().unwrap_or("");
+            let statement = visible(one.statement.lines().next().unwrap_or(""));
             let _ = writeln!(text, "  unsupported [{}]: {statement}", code.slug);
         }
     }
@@ -74,12 +74,12 @@ impl Counts {
     }
 
     /// Those of all scripts with embedded results.
-    pub(super) fn of_all(results: &[(PathBuf, Verdict)]) -> Counts {
+    pub(super) fn of_all(results: &[Tested]) -> Counts {
         let mut all = Counts::default();
-        for (_, verdict) in results {
-            match verdict {
+        for tested in results {
+            match &tested.verdict {
                 Verdict::Agrees(statements) => all.agreed += statements,
-                Verdict::Differs(_, judged) => {
+                Verdict::DiffersFromEmbedded(_, judged) => {
                     let counts = Counts::of(judged.iter().map(|one| one.judgement));
                     all.agreed += counts.agreed;
                     all.differ += counts.differ;

@@ -1,44 +1,59 @@
 //! `gapi test`: scripts compared with what is recorded of them.
 
+mod collection;
+mod comparison;
 mod judgement;
 mod junit;
+mod settings;
 mod wording;
 
 use super::disk;
 use super::options::{Freedom, Global};
-use super::parsing::scripts;
-use super::run::without_folders;
-use super::scratch::{Output, ScratchWorld};
+use super::pool::{self, Ended, Watch};
 use super::terminal::{self, Terminal};
-use super::world::SystemWorld;
-use super::{limits, session};
-use crate::script::language::expectation::{Line, Tolerance, difference, embedded, shown};
+use crate::diag::visible;
+use crate::script::language::expectation::{Line, shown};
 use crate::script::world::Screen as _;
-use crate::script::{Dialect, Echo, Exchange, Options, Transcript};
 use clap::{Args, ValueHint};
-use judgement::{Counts, Judged, judged, summary};
+use collection::{Found, collected, transcript_of};
+use judgement::{Counts, Judged, summary};
+use settings::Settings;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 /// Arguments of `gapi test`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A script is compared with the transcript NAME.mos.snap next to it, or with the lines between `// \
-                        Result:` and `// endResult` in it. Files that it writes are kept in memory.
+                        Result:` and `// endResult` in it. Files that it writes are kept in memory. \
+                        Of the report of an identification the transcript has the objective and the \
+                        estimates, unless --report is given.
+
+Words and integers must be equal. Other numbers agree if they differ by at most A + T |expected|. A \
+                        script can set this for itself, in a line such as `// gapi test: tolerance = \
+                        1e-3, absolute = 1e-6`; `report` in that line means --report, `skip` that the \
+                        script is not a test. Options of the command line come first.
 
 Examples:
   gapi test scripts
+  gapi test scripts --list
   gapi test tests/my.mos --accept
+  gapi test \"tests/*.mos\" --tolerance 1e-4
   gapi test --review
-  gapi test --junit report.xml
+  gapi test --junit report.xml --threads 2
 
-Exit code: 0 if all agree, 1 if one does not or has no reference, 2 for an invalid command line.")]
+Exit code: 0 if all agree; 1 if one does not or has no reference, if a transcript has no script, or if \
+                        there is no script to test; 2 for an invalid command line.")]
 pub(in crate::cli) struct TestArgs {
-    /// Scripts, or folders with scripts
+    /// Scripts, patterns such as `tests/*.mos`, or folders with scripts
     #[arg(default_value = ".", value_hint = ValueHint::AnyPath)]
     pub paths: Vec<PathBuf>,
+    /// List the scripts and what they are compared with, and run none
+    #[arg(long, conflicts_with_all = ["accept", "review", "junit"])]
+    pub list: bool,
     /// Overwrite the transcripts
     #[arg(long, conflicts_with = "review")]
     pub accept: bool,
@@ -48,167 +63,193 @@ pub(in crate::cli) struct TestArgs {
     /// Write a JUnit report for build servers
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub junit: Option<PathBuf>,
+    /// Number of scripts that run at the same time [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// How scripts are compared
+    #[command(flatten)]
+    pub settings: Settings,
     /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,
 }
 
-/// How a path in the folder of the script begins, which embedded results leave out.
-const START: &str = "<start>/";
-
 /// How a script did.
+#[derive(Debug, PartialEq)]
 enum Verdict {
     /// With this number of statements compared one by one.
     Agrees(usize),
     /// The transcript was written.
     Accepted,
-    /// There is nothing to compare with.
-    Unrecorded,
-    /// The comparison, and for an embedded result what each statement did.
-    Differs(Vec<Line>, Vec<Judged>),
+    /// Its settings say that it is not a test.
+    Skipped,
+    /// There is nothing to compare this transcript with.
+    Unrecorded(String),
+    /// It does not agree with its transcript, which would be the second string.
+    Differs(Vec<Line>, String),
+    /// It does not agree with the result that it embeds; what each statement did.
+    DiffersFromEmbedded(Vec<Line>, Vec<Judged>),
     Failed(String),
+}
+
+impl Verdict {
+    fn is_good(&self) -> bool {
+        matches!(self, Verdict::Agrees(_) | Verdict::Accepted)
+    }
+}
+
+/// A script that was tested.
+struct Tested {
+    path: PathBuf,
+    verdict: Verdict,
+    /// How long it took.
+    seconds: f64,
 }
 
 /// Runs the scripts; exit code 1 unless all agree with what is recorded.
 pub(super) fn test(arguments: &TestArgs, global: &Global) -> ExitCode {
-    let terminal = Terminal::new(global.color, false);
-    let found = scripts(&arguments.paths);
-    let mut results = Vec::with_capacity(found.len());
-    for path in found {
-        let verdict = examined(&path, arguments, global)
-            .unwrap_or_else(|error| Verdict::Failed(error.to_string()));
-        terminal::print(&line(&path, &verdict, terminal.colour()));
-        let verdict = match (verdict, arguments.review) {
-            (verdict @ (Verdict::Differs(..) | Verdict::Unrecorded), true) => {
-                reviewed(&path, verdict, arguments, global)
-            }
-            (verdict, _) => verdict,
-        };
-        results.push((path, verdict));
+    let colour = Terminal::new(global.color, false).colour();
+    let found = collected(&arguments.paths);
+    if arguments.list {
+        return list(&found);
     }
-    let good = |verdict: &Verdict| matches!(verdict, Verdict::Agrees(_) | Verdict::Accepted);
-    let wrong = results.iter().filter(|(_, verdict)| !good(verdict)).count();
-    let count = results.len();
-    terminal::print(&format!("{count} scripts, {} agree, {wrong} do not\n", count - wrong));
-    let counts = Counts::of_all(&results);
+    let mut results = tested(found, arguments, global, colour);
+    if arguments.review {
+        for result in &mut results {
+            terminal::print_coloured(&line(result, arguments.accept, colour));
+            review(result);
+        }
+    }
+    conclude(&results, arguments)
+}
+
+/// Lists the scripts and what they are compared with.
+fn list(found: &[Found]) -> ExitCode {
+    for Found { path, problem } in found {
+        let reference = match problem {
+            Some(problem) => format!("({problem})"),
+            None => comparison::reference(path),
+        };
+        terminal::print(&format!(
+            "{}  {}\n",
+            visible(&path.to_string_lossy()),
+            visible(&reference)
+        ));
+    }
+    let is_good = found.iter().all(|found| found.problem.is_none());
+    if is_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Tests the scripts, several at a time; what came of them is printed in their order, where nobody is
+/// asked about it afterwards.
+fn tested(found: Vec<Found>, arguments: &TestArgs, global: &Global, colour: bool) -> Vec<Tested> {
+    let available = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.map_or(available, usize::from).min(found.len()).max(1);
+    let job = |found: &Found| {
+        let found = found.clone();
+        let (freedom, global) = (arguments.freedom.clone(), global.clone());
+        let (asked, accept) = (arguments.settings, arguments.accept);
+        Box::new(move |_: &Watch| {
+            let begin = Instant::now();
+            let verdict = match found.problem {
+                Some(problem) => Verdict::Failed(problem),
+                None => {
+                    comparison::Comparison { freedom: &freedom, global: &global, asked, accept }
+                        .verdict(&found.path)
+                        .unwrap_or_else(|error| Verdict::Failed(error.to_string()))
+                }
+            };
+            (verdict, begin.elapsed().as_secs_f64())
+        }) as Box<dyn FnOnce(&Watch) -> (Verdict, f64) + Send>
+    };
+    let done: Mutex<(Vec<Option<Tested>>, usize)> =
+        Mutex::new((found.iter().map(|_| None).collect(), 0));
+    pool::work(&found, threads, Duration::MAX, job, |index, _, ended| {
+        let (verdict, seconds) = match ended {
+            Ended::Done(done) => done,
+            Ended::Panicked | Ended::TimedOut => {
+                let message = "gapi panicked, which is a fault of gapi: report it with this script";
+                (Verdict::Failed(message.to_owned()), 0.0)
+            }
+        };
+        let mut done = done.lock().expect("no panic under the lock");
+        let (results, printed) = &mut *done;
+        results[index] = Some(Tested { path: found[index].path.clone(), verdict, seconds });
+        while let Some(Some(next)) = results.get(*printed).filter(|_| !arguments.review) {
+            terminal::print_coloured(&line(next, arguments.accept, colour));
+            *printed += 1;
+        }
+    });
+    let (results, _) = done.into_inner().expect("no panic under the lock");
+    results.into_iter().flatten().collect()
+}
+
+/// Counts, writes the report for build servers, and says how the test ended.
+fn conclude(results: &[Tested], arguments: &TestArgs) -> ExitCode {
+    let count = |is: fn(&Verdict) -> bool| results.iter().filter(|one| is(&one.verdict)).count();
+    let (good, skipped) = (count(Verdict::is_good), count(|verdict| *verdict == Verdict::Skipped));
+    let tested = results.len() - skipped;
+    let left_out = if skipped > 0 { format!(", {skipped} skipped") } else { String::new() };
+    terminal::print(&format!(
+        "{tested} scripts, {good} agree, {} do not{left_out}\n",
+        tested - good
+    ));
+    let counts = Counts::of_all(results);
     if counts.total() > 0 {
         terminal::print(&format!("{counts}\n"));
     }
+    if tested == 0 {
+        terminal::eprint("error: there is no script to test\n");
+    }
     if let Some(file) = &arguments.junit
-        && let Err(error) = disk::write_named(file, junit::report(&results).as_bytes())
+        && let Err(error) = disk::write_named(file, junit::report(results).as_bytes())
     {
         terminal::eprint(&format!("error: cannot write `{}`: {error}\n", file.display()));
         return ExitCode::FAILURE;
     }
-    if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if good == tested && tested > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Where the transcript of a script is.
-fn recorded(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".snap");
-    PathBuf::from(name)
-}
-
-fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Verdict> {
-    let bytes = super::named::read(path)?;
-    let (script, _) = crate::script::language::parsing::text(&bytes);
-    let snap = recorded(path);
-    let expected = super::named::read_text(&snap).ok();
-    if let (None, Some(expected)) = (&expected, embedded(&script)) {
-        let mut ran = Ran::new(path, &arguments.freedom, global, true)?;
-        for one in &mut ran.exchanges {
-            one.printed = wording::reduced(&one.printed);
-        }
-        let printed = wording::reduced(&ran.printed.replace(START, ""));
-        return Ok(match difference(&wording::reduced(&expected), &printed, Tolerance::EMBEDDED) {
-            None => Verdict::Agrees(ran.exchanges.len()),
-            Some(lines) => {
-                let judged = judged(&lines, &ran.exchanges);
-                Verdict::Differs(lines, judged)
-            }
-        });
-    }
-    let ran = Ran::new(path, &arguments.freedom, global, false)?;
-    let lines =
-        expected.map(|expected| difference(&expected, &ran.transcript, Tolerance::TRANSCRIPT));
-    match lines {
-        Some(None) => Ok(Verdict::Agrees(0)),
-        _ if arguments.accept => {
-            disk::write_named(&snap, ran.transcript.as_bytes())?;
-            Ok(Verdict::Accepted)
-        }
-        Some(Some(lines)) => Ok(Verdict::Differs(lines, Vec::new())),
-        None => Ok(Verdict::Unrecorded),
-    }
-}
-
-/// What a script printed and its transcript.
-struct Ran {
-    printed: String,
-    exchanges: Vec<Exchange>,
-    transcript: String,
-}
-
-impl Ran {
-    fn new(path: &Path, freedom: &Freedom, global: &Global, embedded: bool) -> io::Result<Ran> {
-        let disk = SystemWorld::new(Terminal::new(global.color, true), "results".as_ref(), None)?;
-        let _watch = limits::watch(&freedom.limits, Instant::now(), disk.stopping())
-            .map_err(|_| io::Error::other("the limits cannot be watched"))?;
-        let (folder, name) = (path.parent().unwrap_or(Path::new("")), path.file_name());
-        let name = name.ok_or_else(|| io::Error::other("a script has a name"))?;
-        let printed = Output::default();
-        let world = ScratchWorld::new(disk, folder, Output::clone(&printed));
-        let options = freedom.options();
-        let dialect = options.dialect.or(embedded.then_some(Dialect::OpenModelica));
-        let echo = if embedded { Echo::Everything } else { Echo::Usual };
-        let mut session =
-            session::open(global, world).with_options(Options { dialect, echo, ..options });
-        // What scripts translate in folders of their own, nobody translates again.
-        session.storage = None;
-        let start = session.world.current_dir();
-        session.output.transcript = Some(Transcript::default());
-        let status = session.run_file(Path::new(name));
-        let transcript = session.output.transcript.take().unwrap_or_default();
-        let text = without_folders(&transcript.to_string(), &start, &start.join("results"));
-        let printed = printed.lock().map_or(String::new(), |printed| printed.clone());
-        Ok(Ran {
-            printed: without_folders(&printed, &start, &start.join("results")),
-            transcript: format!("{text}[exit code {}]\n", status.code),
-            exchanges: transcript.exchanges,
-        })
-    }
-}
-
-fn line(path: &Path, verdict: &Verdict, colour: bool) -> String {
-    let (word, code, rest) = match verdict {
+/// What came of a script, as it is printed: what files hold is made visible before it is coloured.
+fn line(tested: &Tested, accept: bool, colour: bool) -> String {
+    let (word, code, rest) = match &tested.verdict {
         Verdict::Agrees(_) => ("ok", "32", String::new()),
         Verdict::Accepted => ("accepted", "33", String::new()),
-        Verdict::Unrecorded => ("new", "33", "  nothing is recorded: --accept\n".to_owned()),
-        Verdict::Differs(lines, judged) => {
-            ("differs", "31", shown(lines, colour) + &summary(judged))
+        Verdict::Skipped => ("skipped", "33", String::new()),
+        Verdict::Unrecorded(_) => ("new", "33", "  nothing is recorded: --accept\n".to_owned()),
+        Verdict::Differs(lines, _) => ("differs", "31", shown(lines, colour)),
+        Verdict::DiffersFromEmbedded(lines, judged) => {
+            let hint = "  its result is embedded: correct it in the script\n";
+            let hint = if accept { hint } else { "" };
+            ("differs", "31", shown(lines, colour) + &summary(judged) + hint)
         }
-        Verdict::Failed(message) => ("failed", "31", format!("  {message}\n")),
+        Verdict::Failed(message) => ("failed", "31", format!("  {}\n", visible(message))),
     };
     let word = match colour {
         true => format!("\x1b[{code}m{word:8}\x1b[0m"),
         false => format!("{word:8}"),
     };
-    format!("{word} {}\n{rest}", path.display())
+    format!("{word} {}\n{rest}", visible(&tested.path.to_string_lossy()))
 }
 
 /// Asks whether the new transcript is right.
-fn reviewed(path: &Path, verdict: Verdict, arguments: &TestArgs, global: &Global) -> Verdict {
-    let Ok(ran) = Ran::new(path, &arguments.freedom, global, false) else { return verdict };
-    if matches!(verdict, Verdict::Unrecorded) {
-        terminal::print(&ran.transcript);
-    }
+fn review(tested: &mut Tested) {
+    let transcript = match &tested.verdict {
+        Verdict::Unrecorded(transcript) => {
+            terminal::print(transcript);
+            transcript
+        }
+        Verdict::Differs(_, transcript) => transcript,
+        _ => return,
+    };
     terminal::print("accept this transcript? [y/N] ");
     let mut answer = String::new();
     let read = io::stdin().read_line(&mut answer);
-    let accepted = read.is_ok() && answer.trim().eq_ignore_ascii_case("y");
-    match accepted && disk::write_named(&recorded(path), ran.transcript.as_bytes()).is_ok() {
-        true => Verdict::Accepted,
-        false => verdict,
+    if read.is_err() || !answer.trim().eq_ignore_ascii_case("y") {
+        return;
     }
+    tested.verdict = match disk::write_named(&transcript_of(&tested.path), transcript.as_bytes()) {
+        Ok(()) => Verdict::Accepted,
+        Err(error) => Verdict::Failed(error.to_string()),
+    };
 }

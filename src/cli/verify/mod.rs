@@ -1,10 +1,10 @@
 //! `gapi verify`: a library against a collection of reference results.
 
 mod cases;
-mod pool;
 mod report;
 
 use super::options::{Global, seconds};
+use super::pool::{self, Ended, Watch};
 use super::session;
 use super::terminal::{self, Terminal};
 use crate::cli::disk::list_named;
@@ -20,7 +20,6 @@ use crate::script::world::Screen as _;
 use crate::source::Span;
 use cases::Case;
 use clap::{Args, ValueHint};
-use pool::{Ended, Watch};
 use report::{Outcome, Row};
 use std::collections::BTreeSet;
 use std::path::Path;

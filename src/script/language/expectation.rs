@@ -1,8 +1,10 @@
-//! What a script is expected to print, and whether it did: line by line, numbers within a tolerance.
+//! What a script is expected to print, and whether it did: line by line, integers exactly, other
+//! numbers within a tolerance.
 
+use crate::diag::visible;
 use std::fmt::Write as _;
 
-/// How numbers may differ: |a − b| ≤ absolute + relative |b|.
+/// How numbers that are no integers may differ: |a − b| ≤ absolute + relative |b|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// In units of the number itself.
@@ -111,6 +113,24 @@ fn aligned(expected: &[&str], actual: &[&str], tolerance: Tolerance) -> Vec<Line
     lines
 }
 
+/// A number as it is written.
+#[derive(Debug, Clone, Copy)]
+struct Number {
+    value: f64,
+    /// Digits alone: a count, a size, an index.
+    is_integer: bool,
+}
+
+impl Number {
+    fn agrees_with(self, actual: Number, tolerance: Tolerance) -> bool {
+        let (a, b) = (self.value, actual.value);
+        match self.is_integer && actual.is_integer {
+            true => a == b,
+            false => (a - b).abs() <= tolerance.absolute + tolerance.relative * a.abs(),
+        }
+    }
+}
+
 /// Whether two lines say the same: the same text between numbers that agree.
 pub fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) -> bool {
     if expected == actual {
@@ -122,9 +142,7 @@ pub fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) -> bool {
         let (text_b, number_b, rest_b) = next_number(b);
         let numbers = match (number_a, number_b) {
             (None, None) => return text_a == text_b,
-            (Some(a), Some(b)) => {
-                (a - b).abs() <= tolerance.absolute + tolerance.relative * a.abs()
-            }
+            (Some(a), Some(b)) => a.agrees_with(b, tolerance),
             _ => false,
         };
         if text_a != text_b || !numbers {
@@ -135,7 +153,7 @@ pub fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) -> bool {
 }
 
 /// The text before the next number, the number, and what follows it. Digits within a word are text.
-fn next_number(text: &str) -> (&str, Option<f64>, &str) {
+fn next_number(text: &str) -> (&str, Option<Number>, &str) {
     let bytes = text.as_bytes();
     let is_word = |at: usize| bytes[at].is_ascii_alphanumeric() || bytes[at] == b'_';
     let mut start = 0;
@@ -148,8 +166,9 @@ fn next_number(text: &str) -> (&str, Option<f64>, &str) {
         let end = end_of_number(bytes, start);
         let signed = start > 0 && bytes[start - 1] == b'-';
         let from = if signed { start - 1 } else { start };
+        let is_integer = bytes[start..end].iter().all(u8::is_ascii_digit);
         return match text[from..end].parse() {
-            Ok(number) => (&text[..from], Some(number), &text[end..]),
+            Ok(value) => (&text[..from], Some(Number { value, is_integer }), &text[end..]),
             Err(_) => (text, None, ""),
         };
     }
@@ -215,7 +234,8 @@ pub fn agreeing(lines: &[Line], printed: &[usize]) -> Vec<bool> {
     agree
 }
 
-/// A comparison as text: three lines of context around what differs; coloured if wanted.
+/// A comparison as text: three lines of context around what differs; coloured if wanted. Control
+/// characters are shown as symbols.
 pub fn shown(lines: &[Line], colour: bool) -> String {
     const CONTEXT: usize = 3;
     let differs = |at: usize| !matches!(lines[at], Line::Same(_));
@@ -235,6 +255,7 @@ pub fn shown(lines: &[Line], colour: bool) -> String {
             Line::Missing(line) => ("- ", "\x1b[31m", line),
             Line::Unexpected(line) => ("+ ", "\x1b[32m", line),
         };
+        let line = visible(line);
         let _ = match colour && !code.is_empty() {
             true => writeln!(text, "{code}{mark}{line}\x1b[0m"),
             false => writeln!(text, "{mark}{line}"),
@@ -256,6 +277,8 @@ mod tests {
             ("1e-07", "1e-7", true),
             ("{-2.0, 3}", "{-2.001, 3}", true),
             ("{2.0}", "{-2.0}", false),
+            ("n = 1000", "n = 1001", false),
+            ("n = 1000.0", "n = 1001", true),
             ("x1 = 2", "x2 = 2", false),
             ("a1.5", "a1.5001", false),
             ("v 1.", "v 1", true),

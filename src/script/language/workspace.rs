@@ -175,7 +175,7 @@ fn base_type(value: &Value) -> Option<&'static str> {
 }
 
 /// Whether a name matches a pattern in which `*` stands for any characters and `?` for one.
-fn matches(pattern: &[u8], name: &[u8]) -> bool {
+pub fn matches(pattern: &[u8], name: &[u8]) -> bool {
     let (mut p, mut n, mut star) = (0, 0, None);
     while n < name.len() {
         match pattern.get(p) {
