@@ -35,7 +35,7 @@ fn statements_are_answered_and_go_on_over_lines() {
 
 #[test]
 fn commands_of_the_prompt_tell_what_is_there() {
-    let (_, out, errors) = answers(
+    let (code, out, errors) = answers(
         "x = {1.5, 2}\n:vars\n:type x\n:load part.mos\nloaded\n:load Plant.mo\n:help Plant\n\
          :help simulateModel\n:time 1 + 1\n:nonsense\n",
     );
@@ -51,6 +51,7 @@ fn commands_of_the_prompt_tell_what_is_there() {
         assert!(out.contains(expected), "{expected:?} is not in\n{out}");
     }
     assert!(errors.contains("`:nonsense`"), "{errors}");
+    assert_eq!(code, 1, "nobody at a terminal has read the error");
 }
 
 #[test]
@@ -94,4 +95,72 @@ fn an_interrupt_stops_the_simulation_and_not_the_session() {
     assert!(rest.iter().any(|line| line.contains("= 42")), "{rest:?}");
     assert_eq!(session.wait().expect("it ends").code(), Some(0));
     interrupts.join().expect("no panic");
+}
+
+#[test]
+fn input_from_a_file_with_errors_ends_with_an_error() {
+    assert_eq!(answers("1 + 1\n").0, 0);
+    for wrong in ["y = z\n1 + 1\n", "(1\n\n\n", ":load nowhere.mos\n", "?nowhere\n"] {
+        assert_eq!(answers(wrong).0, 1, "{wrong}");
+    }
+    assert_eq!(answers("y = z\nexit(3)\n").0, 3);
+}
+
+/// Words of other prompts; a variable of that name is what it says.
+#[test]
+fn words_of_other_prompts_are_known() {
+    let (code, out, errors) =
+        answers("ls\n3*7\nans + 1\n?Plant\n:load Plant.mo\n?Plant\nls = 5\nls\n");
+    assert_eq!(code, 1, "{errors}");
+    for expected in ["Plant.mo\npart.mos\n", " = 21\n", " = 22\n", "model Plant", " = 5\n"] {
+        assert!(out.contains(expected), "{expected:?} is not in\n{out}");
+    }
+    let (_, out, _) = answers("pwd\n");
+    assert!(out.trim().starts_with(std::path::MAIN_SEPARATOR), "{out}");
+}
+
+/// After a simulation the name of a variable shows its value at the end, and plots are drawn.
+#[test]
+fn the_last_simulation_is_at_hand() {
+    let (code, out, errors) = answers(
+        "model M parameter Real k = 2; Real x(start = 1, unit = \"V\"); Real y[2]; equation \
+         der(x) = k; y = {x, 2*x}; end M;\nsimulateModel(\"M\", stopTime = 3)\nx\nk\ny[2]\nder(x)\n\
+         time\nx = 8\nx\nplot({\"x\"})\n",
+    );
+    assert_eq!(code, 0, "{errors}");
+    for expected in [
+        " = 7.0 V at time = 3.0\n",
+        " = 2.0\n",
+        " = 14.0 at time = 3.0\n",
+        " = 2.0 at time = 3.0\n",
+        " = 3.0 at time = 3.0\n",
+        " = 8\n",
+        "x\n 7.0000e0 │",
+    ] {
+        assert!(out.contains(expected), "{expected:?} is not in\n{out}");
+    }
+}
+
+#[test]
+fn a_session_is_saved_as_a_script_that_does_the_same() {
+    let here = folder(&[("Plant.mo", "model Plant parameter Real p = 4; end Plant;\n")]);
+    let saved = |lines: &str| {
+        let mut session = prompt(&here);
+        session.stdin.take().expect("a pipe").write_all(lines.as_bytes()).expect("read");
+        let output = session.wait_with_output().expect("it ends");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+            + &String::from_utf8_lossy(&output.stderr)
+    };
+    let said = saved(
+        ":load Plant.mo\nx = 2\ny = nowhere\n3*x\nz = ans + 1\n:vars\n:save s.mos\nz\n:save s.mos\n",
+    );
+    assert!(said.contains("saved to s.mos"), "{said}");
+    let script = std::fs::read_to_string(here.path().join("s.mos")).expect("saved");
+    let expected = "openModel(\"Plant.mo\");\nx = 2;\n// failed:\n// y = nowhere\nans := 3*x;\n\
+                    z = ans + 1;\nz;\n";
+    assert_eq!(script, expected);
+    let (code, out, errors) = crate::cli::gapi(&here, &["run", "s.mos"]);
+    assert_eq!((code, out.as_str()), (0, " = 7\n"), "{errors}");
+    let said = saved("1\n:save s.mos\n");
+    assert!(said.contains("`s.mos` exists already"), "{said}");
 }

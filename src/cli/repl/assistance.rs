@@ -1,5 +1,6 @@
 //! Help while typing: completion, colours, and whether a statement is complete.
 
+use super::commands::COMMANDS;
 use crate::script::{Session, builtins};
 use rustyline::completion::{Completer, FilenameCompleter, Pair};
 use rustyline::highlight::{CmdKind, Highlighter};
@@ -7,6 +8,7 @@ use rustyline::hint::Hinter;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
 use std::borrow::Cow;
+use std::cell::RefCell;
 
 /// Words of the language.
 const KEYWORDS: &[&str] = &[
@@ -58,44 +60,66 @@ const KEYWORDS: &[&str] = &[
     "within",
 ];
 
-/// Names of the prompt's own commands.
-const COMMANDS: &[&str] = &[":help", ":vars", ":type", ":load", ":dump", ":time", ":quit"];
-
-/// What is known when a line is read.
-pub(super) struct Assistance {
-    /// All that can be completed: functions, variables, classes, parts of the model.
-    names: Vec<String>,
+/// What is known when a line is read. The session is asked when something is to be completed.
+pub(super) struct Assistance<'s, 'w> {
+    session: &'s RefCell<&'w mut Session>,
     files: FilenameCompleter,
     colour: bool,
 }
 
-impl Assistance {
-    /// The names that the session knows now.
-    pub(super) fn of(session: &mut Session, colour: bool) -> Assistance {
-        let mut names: Vec<String> = builtins::names()
-            .into_iter()
-            .chain(KEYWORDS.iter().copied())
-            .map(str::to_owned)
-            .collect();
-        names.extend(session.names_to_complete());
-        names.sort();
-        names.dedup();
-        Assistance { names, files: FilenameCompleter::new(), colour }
+impl<'s, 'w> Assistance<'s, 'w> {
+    /// Assistance by what the session knows.
+    pub(super) fn of(session: &'s RefCell<&'w mut Session>, colour: bool) -> Assistance<'s, 'w> {
+        Assistance { session, files: FilenameCompleter::new(), colour }
     }
 
-    /// Names that begin with what is typed; of dotted names the next part only.
-    fn matching(&self, typed: &str) -> Vec<String> {
-        let mut found: Vec<String> = Vec::new();
-        for name in self.names.iter().filter(|name| name.starts_with(typed)) {
-            let end = name[typed.len()..].find('.').map_or(name.len(), |at| typed.len() + at);
-            let part = &name[..end];
-            if found.last().is_none_or(|last| last != part) {
-                found.push(part.to_owned());
-            }
+    /// Functions, variables, classes and parts of the model that begin with what is typed.
+    fn names(&self, typed: &str) -> Vec<String> {
+        let mut session = self.session.borrow_mut();
+        let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
+        names.extend(KEYWORDS.iter().map(|word| (*word).to_owned()));
+        names.extend(session.names_to_complete());
+        if let Some((parent, _)) = typed.rsplit_once('.') {
+            names.extend(session.classes_in(parent));
         }
-        found.dedup();
-        found
+        matching(names, typed)
     }
+
+    /// What strings name that begins with what is typed: classes, and variables of the model.
+    fn names_in_strings(&self, typed: &str) -> Vec<String> {
+        let mut session = self.session.borrow_mut();
+        let parent = typed.rsplit_once('.').map_or("", |(parent, _)| parent);
+        let mut names = session.classes_in(parent);
+        if !typed.is_empty() {
+            names.extend(session.names_in_model());
+        }
+        matching(names, typed)
+    }
+
+    /// Names and files within a string.
+    fn complete_in_string(
+        &self,
+        (start, typed): (usize, &str),
+        (files_start, files): (usize, Vec<Pair>),
+    ) -> (usize, Vec<Pair>) {
+        let names = self.names_in_strings(typed);
+        match names.is_empty() || files_start != start && !files.is_empty() {
+            true => (files_start, files),
+            false => (start, names.into_iter().map(pair).chain(files).collect()),
+        }
+    }
+}
+
+/// Names that begin with what is typed, sorted; of dotted names the next part only.
+fn matching(mut names: Vec<String>, typed: &str) -> Vec<String> {
+    names.retain(|name| name.starts_with(typed));
+    for name in &mut names {
+        let end = name[typed.len()..].find('.').map_or(name.len(), |at| typed.len() + at);
+        name.truncate(end);
+    }
+    names.sort();
+    names.dedup();
+    names
 }
 
 /// Where the name before the cursor begins.
@@ -121,7 +145,7 @@ fn enclosing_call(line: &str) -> Option<&str> {
     None
 }
 
-impl Completer for Assistance {
+impl Completer for Assistance<'_, '_> {
     type Candidate = Pair;
 
     fn complete(
@@ -131,16 +155,15 @@ impl Completer for Assistance {
         context: &Context<'_>,
     ) -> rustyline::Result<(usize, Vec<Pair>)> {
         let before = &line[..pos];
-        let in_string = before.matches('"').count() % 2 == 1;
         let start = name_start(before);
         let typed = &before[start..];
-        if in_string || before.starts_with(":load ") {
+        let takes_file = [":load ", ":save ", "ls "].iter().any(|word| before.starts_with(word));
+        if takes_file {
+            return self.files.complete(line, pos, context);
+        }
+        if is_in_string(before) {
             let files = self.files.complete(line, pos, context)?;
-            // Strings name models too: `simulateModel("Plant.…`.
-            return match files.1.is_empty() && !typed.is_empty() {
-                true => Ok((start, self.matching(typed).into_iter().map(pair).collect())),
-                false => Ok(files),
-            };
+            return Ok(self.complete_in_string((start, typed), files));
         }
         let mut pairs: Vec<Pair> = Vec::new();
         if let Some(function) = enclosing_call(before) {
@@ -150,21 +173,26 @@ impl Completer for Assistance {
         }
         let own = COMMANDS.iter().filter(|name| start == 0 && name.starts_with(typed));
         let own = own.map(|name| (*name).to_owned());
-        let names = if typed.is_empty() { Vec::new() } else { self.matching(typed) };
+        let names = if typed.is_empty() { Vec::new() } else { self.names(typed) };
         pairs.extend(own.chain(names).map(pair));
         Ok((start, pairs))
     }
+}
+
+/// Whether the end of a text lies in a string.
+fn is_in_string(before: &str) -> bool {
+    tokens(before).last().is_some_and(|token| token.is_open && token.kind == Kind::Text)
 }
 
 fn pair(text: String) -> Pair {
     Pair { display: text.clone(), replacement: text }
 }
 
-impl Hinter for Assistance {
+impl Hinter for Assistance<'_, '_> {
     type Hint = String;
 }
 
-impl Validator for Assistance {
+impl Validator for Assistance<'_, '_> {
     fn validate(&self, context: &mut ValidationContext<'_>) -> rustyline::Result<ValidationResult> {
         Ok(match is_complete(context.input()) {
             true => ValidationResult::Valid(None),
@@ -277,7 +305,7 @@ fn text_length(text: &str) -> (Kind, usize, bool) {
     (Kind::Text, text.len(), false)
 }
 
-impl Highlighter for Assistance {
+impl Highlighter for Assistance<'_, '_> {
     fn highlight<'l>(&self, line: &'l str, _pos: usize) -> Cow<'l, str> {
         if !self.colour {
             return Cow::Borrowed(line);
@@ -305,7 +333,7 @@ impl Highlighter for Assistance {
     }
 }
 
-impl Helper for Assistance {}
+impl Helper for Assistance<'_, '_> {}
 
 #[cfg(test)]
 mod tests {
@@ -341,13 +369,14 @@ mod tests {
 
     #[test]
     fn of_dotted_names_the_next_part_is_offered() {
-        let names = ["a.b.c", "a.b.d", "a.x", "ab"].map(str::to_owned).to_vec();
-        let assistance = Assistance { names, files: FilenameCompleter::new(), colour: false };
-        assert_eq!(assistance.matching("a"), ["a", "ab"]);
-        assert_eq!(assistance.matching("a."), ["a.b", "a.x"]);
+        let matching = |typed: &str| {
+            super::matching(["a.x", "a.b.c", "ab", "a.b.d"].map(str::to_owned).to_vec(), typed)
+        };
+        assert_eq!(matching("a"), ["a", "ab"]);
+        assert_eq!(matching("a."), ["a.b", "a.x"]);
     }
 
-    fn completed(assistance: &Assistance, line: &str) -> Vec<String> {
+    fn completed(assistance: &Assistance<'_, '_>, line: &str) -> Vec<String> {
         let history = rustyline::history::MemHistory::new();
         let context = Context::new(&history);
         let (_, pairs) = assistance.complete(line, line.len(), &context).expect("no terminal");
@@ -360,13 +389,19 @@ mod tests {
         let text = "model Plant Real level; parameter Real gain = 2; equation level = gain; \
                     end Plant;\nplanet = 3;\ntranslateModel(\"Plant\");";
         assert_eq!(session.run_text("m.mos", text).code, 0);
-        let assistance = Assistance::of(&mut session, false);
+        let session = RefCell::new(&mut session);
+        let assistance = Assistance::of(&session, false);
         assert_eq!(completed(&assistance, "simulateModel(stopT"), ["stopTime="]);
         assert_eq!(completed(&assistance, "x = plan"), ["planet"]);
         assert_eq!(completed(&assistance, "x = Plan"), ["Plant"]);
         assert_eq!(completed(&assistance, "getParameterValue(Plant.g"), ["Plant.gain"]);
         assert_eq!(completed(&assistance, "lev"), ["level"]);
         assert_eq!(completed(&assistance, ":ti"), [":time"]);
+        assert_eq!(completed(&assistance, "simulateModel(\"Pla"), ["Plant"]);
+        assert_eq!(completed(&assistance, "plot({\"lev"), ["level"]);
+        // A library is loaded when one of its classes is completed.
+        assert_eq!(completed(&assistance, "simulateModel(\"Modelica.Mat"), ["Modelica.Math"]);
+        assert_eq!(completed(&assistance, "Modelica.Math.Vec"), ["Modelica.Math.Vectors"]);
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("results.mat"), "").expect("writable");
         let line = format!("readTrajectoryNames(\"{}/res", folder.path().display());

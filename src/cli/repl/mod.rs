@@ -2,6 +2,7 @@
 
 mod assistance;
 mod commands;
+mod record;
 
 use super::limits::Stopping;
 use super::options::{Freedom, Global, Limits};
@@ -12,9 +13,11 @@ use crate::script::world::Screen as _;
 use crate::script::{Dialect, Echo, Options, Session};
 use assistance::Assistance;
 use clap::{Args, ValueHint};
+use commands::Dialogue;
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
 use rustyline::{CompletionType, Config, Editor};
+use std::cell::RefCell;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -26,8 +29,12 @@ use std::time::Instant;
 Examples:
   gapi repl
   gapi repl --dialect openmodelica --library ~/libraries
+  gapi repl < statements.txt
 
-`:help` lists the commands of the prompt.")]
+`:help` lists the commands of the prompt.
+
+Exit code: 0 after :quit or Ctrl-D, the argument of `exit(…)`, or 1 if statements that do not come from \
+                        a terminal had errors.")]
 pub(in crate::cli) struct ReplArgs {
     /// Folder for results and figures
     #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
@@ -65,19 +72,24 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
         echo: Echo::Dialogue,
         ..options
     });
+    let mut dialogue = Dialogue::default();
     if let Some(script) = &arguments.script {
         let _watch =
             match limits::watch(&arguments.freedom.limits, Instant::now(), stopping.clone()) {
                 Ok(watch) => watch,
                 Err(code) => return code,
             };
-        session.run_file(script);
+        dialogue.load(&mut session, &script.to_string_lossy());
     }
-    if std::io::stdin().is_terminal() {
+    let is_typed = std::io::stdin().is_terminal();
+    if is_typed {
         let dialect = session.dialect().name();
         terminal::print(&format!("{BANNER} (commands of {dialect})\n"));
     }
-    match talk(&mut session, (&arguments.freedom.limits, &stopping), colour) {
+    let limits = (&arguments.freedom.limits, &stopping);
+    match talk(&mut session, &mut dialogue, limits, colour) {
+        // Where nobody reads the errors, the exit code says that there were some.
+        Ok(Ok(0)) if dialogue.has_failed && !is_typed => ExitCode::FAILURE,
         Ok(Ok(code)) => ExitCode::from(code),
         Ok(Err(code)) => code,
         Err(error) => {
@@ -90,6 +102,7 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
 /// Each input has its own limits.
 fn talk(
     session: &mut Session,
+    dialogue: &mut Dialogue,
     (limits, stopping): (&Limits, &Stopping),
     colour: bool,
 ) -> rustyline::Result<Result<u8, ExitCode>> {
@@ -98,14 +111,15 @@ fn talk(
         .history_ignore_space(true)
         .max_history_size(10_000)?
         .build();
-    let mut editor: Editor<Assistance, FileHistory> = Editor::with_config(config)?;
+    let session = RefCell::new(session);
+    let mut editor: Editor<Assistance<'_, '_>, FileHistory> = Editor::with_config(config)?;
+    editor.set_helper(Some(Assistance::of(&session, colour)));
     let history = history_file();
     if let Some(file) = &history {
         // A first session has no history yet.
         let _ = editor.load_history(file);
     }
-    let code = loop {
-        editor.set_helper(Some(Assistance::of(session, colour)));
+    let ended = loop {
         match editor.readline("> ") {
             Ok(input) if input.trim().is_empty() => {}
             Ok(input) => {
@@ -116,19 +130,19 @@ fn talk(
                     Ok(watch) => watch,
                     Err(code) => return Ok(Err(code)),
                 };
-                if let Some(code) = commands::answer(session, &input) {
-                    break code;
+                if let Some(code) = dialogue.answer(&mut session.borrow_mut(), &input) {
+                    break Ok(code);
                 }
             }
             Err(ReadlineError::Interrupted) => {}
-            Err(ReadlineError::Eof) => break 0,
-            Err(error) => return Err(error),
+            Err(ReadlineError::Eof) => break Ok(0),
+            Err(error) => break Err(error),
         }
     };
     if let Some(file) = &history {
         let _ = editor.save_history(file);
     }
-    Ok(Ok(code))
+    ended.map(Ok)
 }
 
 /// `GAPI_HISTORY`, else a file in the user's state folder.

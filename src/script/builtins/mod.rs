@@ -8,6 +8,7 @@ mod clock;
 mod comparison;
 mod conversion;
 mod data_files;
+mod end_values;
 mod executable;
 mod extended;
 pub mod extensions;

@@ -40,6 +40,9 @@ pub(super) const OPENMODELICA: Family = Family {
     ],
 };
 
+/// Characters and lines of a plot at a prompt, besides its labels.
+const CHART: [usize; 2] = [64, 14];
+
 /// What was plotted so far.
 #[derive(Default)]
 struct Plots {
@@ -48,6 +51,11 @@ struct Plots {
     last_results: Option<String>,
     /// What `plotArray`, `plotArrays` and `plotScatter` draw on: drawn already when it has series.
     vectors: Option<Figure>,
+}
+
+/// The result file of the last simulation.
+pub(super) fn last_results(session: &mut Session) -> Option<String> {
+    session.extension::<Plots>().last_results.clone()
 }
 
 /// Notes the result file that plots take where they name none.
@@ -409,7 +417,8 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
     let path = session.world.output_dir().join(name);
     session.write_file(&path, figure.svg().as_bytes())?;
     if session.options.echo == Echo::Dialogue {
-        session.print(&format!("{}\n", path.display()));
+        let [width, height] = CHART;
+        session.print(&format!("{}{}\n", figure.text(width, height), path.display()));
     }
     session.extension::<Plots>().last_drawn = Some(figure.clone());
     Ok(())

@@ -4,7 +4,7 @@
 pub mod callees;
 mod constants;
 mod declarations;
-mod echo;
+pub mod echo;
 pub mod execution;
 pub mod expectation;
 pub mod follow_up;

@@ -9,6 +9,7 @@ use crate::script::builtins::component_names;
 use crate::script::errors::NO_WINDOW;
 use crate::syntax;
 use crate::value::Value;
+use std::collections::BTreeSet;
 
 /// Classes whose components are completed.
 const MAX_COMPLETED: usize = 500;
@@ -51,11 +52,36 @@ impl Session {
             let components = component_names(&definition).into_iter();
             names.extend(components.map(|component| format!("{class}.{component}")));
         }
-        if let Some(model) = self.last_model() {
-            names.extend(model.declarations.keys().map(|name| name.to_string()));
-        }
+        names.extend(self.names_in_model());
         names.extend(crate::functions::names().map(str::to_owned));
         names
+    }
+
+    /// The names of the classes in a class, or at the top level where the name is empty; a library is
+    /// loaded for that if it can be.
+    pub fn classes_in(&mut self, parent: &str) -> Vec<String> {
+        if parent.is_empty() {
+            let roots: Vec<Ident> = self.library().roots().collect();
+            let all: BTreeSet<Ident> = self.loadable_classes().into_iter().chain(roots).collect();
+            let mut names: Vec<String> = all.iter().map(|name| name.as_str().to_owned()).collect();
+            names.sort();
+            return names;
+        }
+        let parent = Name::parse(parent);
+        match self.find_class(&parent) {
+            Ok(true) => {
+                let children = self.library().children(&parent).into_iter();
+                children.map(|child| format!("{parent}.{child}")).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The names of the variables and parameters of the model translated last.
+    pub fn names_in_model(&self) -> Vec<String> {
+        let model = self.last_model();
+        let declared = model.iter().flat_map(|model| model.declarations.keys());
+        declared.map(|name| name.to_string()).collect()
     }
 
     /// The value of an expression; `name` stands in diagnostics.
