@@ -7,6 +7,7 @@ use super::explain::ExplainArgs;
 use super::fmt::FmtArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
+use super::journal::JournalArgs;
 use super::lesson::LessonArgs;
 #[cfg(feature = "lsp")]
 use super::lsp::LspArgs;
@@ -84,6 +85,8 @@ pub(super) enum Command {
     Lsp(LspArgs),
     /// Recreate the report of an identification from its files
     Report(ReportArgs),
+    /// Show what a checkpoint, a shard or a trace contains
+    Journal(JournalArgs),
     /// Compare results with reference results
     Compare(CompareArgs),
     /// Check a library against a collection of reference results

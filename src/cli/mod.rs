@@ -14,8 +14,10 @@ mod effort;
 pub mod embedding;
 mod explain;
 mod fmt;
+mod hangup;
 mod help;
 mod identify;
+mod journal;
 mod launcher;
 mod lesson;
 mod limits;
@@ -32,6 +34,7 @@ mod new;
 mod options;
 mod output;
 mod parsing;
+mod pool;
 mod repl;
 mod report;
 mod run;
@@ -128,6 +131,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Fmt(arguments) => fmt::fmt(arguments),
         #[cfg(feature = "lsp")]
         Command::Lsp(arguments) => lsp::lsp(arguments, &cli.global),
+        Command::Journal(arguments) => journal::journal(arguments),
         Command::Report(arguments) => report::report(arguments, &cli.global),
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),
         Command::Verify(arguments) => verify::verify(arguments, &cli.global),

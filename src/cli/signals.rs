@@ -33,6 +33,11 @@ pub(super) fn survive_large_files() {
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
+/// Whether the process was started so that a terminal that is closed does not end it (`nohup`).
+pub(super) fn ignores_hangup() -> bool {
+    is_ignored(SIGHUP)
+}
+
 /// Whether the process was started with the signal ignored, as far as the system tells.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

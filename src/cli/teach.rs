@@ -20,6 +20,7 @@ use clap::{Args, ValueHint};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 /// Arguments of `gapi teach`.
 #[derive(Debug, Args)]
@@ -321,6 +322,10 @@ fn show(
             Trouble::Message(message) => message,
         })
     };
+    // An interrupt during the run has ended the run; from here on it ends the screen.
+    let interrupt = session.as_ref().and_then(|session| session.world.interrupt_flag());
+    let interrupt = interrupt.unwrap_or_default();
+    interrupt.store(false, Ordering::SeqCst);
     let simulate = |genes: &[f64]| match &mut session {
         Some(session) => session.simulate_again(genes),
         None => Err("a trace contains only the curve of the best of each generation; give the \
@@ -329,7 +334,7 @@ fn show(
     };
     let screen = Screen::new(walk, colour);
     let screen = if arguments.quiz { screen.with_quiz() } else { screen };
-    let score = teach_screen::walk_through(screen, run_again, simulate)
+    let score = teach_screen::walk_through(screen, run_again, simulate, &interrupt)
         .map_err(|error| Trouble::Message(format!("cannot draw on the terminal: {error}")))?;
     if let Some(score) = score {
         terminal::print(&format!("{score}\n"));

@@ -1,13 +1,21 @@
 //! The screen of `gapi teach` on a terminal: draws, waits for a key, draws again.
 
+use super::hangup::{self, Input};
 use crate::teach::Trace;
 use crate::teach::quiz::Score;
 use crate::teach::screen::{self, Key, Screen};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How long the end of the screen may take after a signal.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// Walks through a trace until the learner ends it, and returns the score of the quiz. `run_again`
 /// makes the trace of a run that is changed from a generation on, `simulate` the curve of an
-/// individual that the trace does not have; both may say why there is none.
+/// individual that the trace does not have; both may say why there is none. The screen also ends when
+/// `interrupt` is set, and when its terminal is closed.
 ///
 /// # Errors
 ///
@@ -16,13 +24,14 @@ pub(super) fn walk_through(
     mut screen: Screen,
     run_again: impl Fn(usize, &str) -> Result<Trace, String>,
     mut simulate: impl FnMut(&[f64]) -> Result<Vec<f64>, String>,
-) -> std::io::Result<Option<Score>> {
+    interrupt: &AtomicBool,
+) -> io::Result<Option<Score>> {
     let mut terminal = ratatui::try_init()?;
     let walked = (|| {
         loop {
             if let Some((generation, change)) = screen.take_wish() {
                 // The run prints and shows its progress; the screen comes back after it.
-                ratatui::restore();
+                leave();
                 let branch = run_again(generation, &change);
                 terminal = ratatui::try_init()?;
                 screen.branched(generation, change, branch);
@@ -31,8 +40,9 @@ pub(super) fn walk_through(
                 screen.simulated(simulate(&genes));
             }
             terminal.draw(|frame| screen::draw(&screen, frame))?;
-            match event::read()? {
-                Event::Key(key) if key.kind != KeyEventKind::Release => {
+            match next_event(interrupt)? {
+                None => return Ok(screen.score()),
+                Some(Event::Key(key)) if key.kind != KeyEventKind::Release => {
                     let go_on =
                         !is_interrupt(key) && named(key).is_none_or(|key| screen.press(key));
                     if !go_on {
@@ -43,8 +53,26 @@ pub(super) fn walk_through(
             }
         }
     })();
-    ratatui::restore();
+    leave();
     walked
+}
+
+/// Gives the terminal back. One that is gone needs nothing.
+fn leave() {
+    let _ = ratatui::try_restore();
+}
+
+/// Waits for what the user does; nothing comes any more after an interrupt or without a terminal.
+fn next_event(interrupt: &AtomicBool) -> io::Result<Option<Event>> {
+    while !interrupt.load(Ordering::SeqCst) {
+        if hangup::wait(LOOK) == Input::Closed {
+            break;
+        }
+        if event::poll(Duration::ZERO)? {
+            return event::read().map(Some);
+        }
+    }
+    Ok(None)
 }
 
 fn is_interrupt(key: KeyEvent) -> bool {

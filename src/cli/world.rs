@@ -2,6 +2,7 @@
 
 use super::c_compiler;
 use super::disk::Disk;
+use super::hangup;
 use super::limits::Stopping;
 use super::lock::Lock;
 use super::output::Output;
@@ -146,6 +147,7 @@ impl SystemWorld {
         drop(caught);
         #[cfg(unix)]
         signals::catch(&self.stopping.flag);
+        hangup::watch(&self.stopping);
         if let Some(ranks) = &self.ranks {
             ranks.stop_by(Arc::clone(&self.stopping.flag));
         }

@@ -664,3 +664,77 @@ fn scripts_are_checked_without_being_run() {
     assert_eq!(code, 1);
     assert!(err.contains("missing.mos"), "{err}");
 }
+
+/// The report of a script that failed says so first, wherever it is read.
+#[test]
+fn a_script_that_fails_says_so_first() {
+    let script = "(S, M, Xexp, Yexp) := Exp_Adq_SISO(\"d.csv\", \"t\", \"y\");\n\
+                  P := {{0.5, 1}, {2, 3}};\n\
+                  F := Fit(Eval(\"Line.mo\", \"Line\", Xexp, P, {\"a\", \"b\"}, \"x\", \"y\"), Yexp);\n\
+                  RunScript(\"sub.mos\");\n";
+    let here = folder(&[
+        ("Line.mo", crate::script_tests::LINE),
+        ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
+        ("sub.mos", "y = 1;\nx = zeros(2)[3];\n"),
+        ("fit.mos", script),
+    ]);
+    let (code, out, _) = gapi(&here, &["run", "fit.mos"]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("\n  stopped      error in sub.mos, line 2\n  model "), "{out}");
+    assert!(out.contains("\n  The script failed with an error in sub.mos, line 2: "), "{out}");
+    assert!(!out.contains("the script has ended"), "{out}");
+    let read = |name: &str| fs::read_to_string(here.path().join("results/fit").join(name)).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&read("result.json")).unwrap();
+    assert_eq!(result["stop"], "error in sub.mos, line 2");
+    assert_eq!(result["script"]["error"]["line"], 2);
+    let first = result["findings"][0]["sentence"].as_str().unwrap();
+    assert!(first.starts_with("The script failed with an error in sub.mos, line 2: "), "{first}");
+    let page = read("report.html");
+    let error = page.find("The script failed with an error in sub.mos, line 2").expect("the error");
+    assert!(error < page.find("class=\"facts\"").expect("facts"), "it comes first");
+    // An error that the script has read is handled.
+    let handled = format!("{script}getLastError();\n");
+    fs::write(here.path().join("fit.mos"), handled).unwrap();
+    let (code, out, _) = gapi(&here, &["run", "fit.mos"]);
+    assert!(code == 0 && out.contains("stopped      the script has ended"), "{out}");
+}
+
+/// What a script prints is its own output; what the program says besides is not shown with `--quiet`.
+#[test]
+fn quiet_runs_show_what_scripts_print() {
+    let here = folder(&[("a.mos", "print(\"mine\")\n1 + 1\nx = nowhere\n")]);
+    let (code, out, errors) = gapi(&here, &["run", "a.mos", "--quiet"]);
+    assert_eq!((code, out.as_str()), (1, "mine\n"));
+    assert!(errors.contains("nowhere"), "{errors}");
+    assert_eq!(gapi(&here, &["run", "a.mos"]).1, "mine\n = 2\n");
+}
+
+#[test]
+fn journals_are_described() {
+    let problem = "model = \"Line\"\nfiles = [\"Line.mo\"]\n[parameters]\na = { min = 0, max = 5 }\n\
+                   b = { min = 0, max = 5 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                   x = { variable = \"x\", column = \"t\" }\noutputs = { y = \"y\" }\n\
+                   [stop]\nevaluations = 200\n";
+    let here = folder(&[
+        ("Line.mo", crate::script_tests::LINE),
+        ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
+        ("p.toml", problem),
+        ("trace.mos", "Cross(2, 1, {{1, 2}, {3, 4}}, {1})\n"),
+    ]);
+    let (code, _, errors) =
+        gapi(&here, &["identify", "p.toml", "--searches", "2", "--shard", "1/2", "--out", "s"]);
+    assert_eq!(code, 0, "{errors}");
+    let (code, out, _) = gapi(&here, &["journal", "s/shard.part"]);
+    assert_eq!(code, 0, "{out}");
+    assert!(out.starts_with("shard 1 of 2 of `p.toml`\ndepends on "), "{out}");
+    assert!(out.contains(" generations: ") && out.contains("least objective: "), "{out}");
+    assert_eq!(gapi(&here, &["run", "trace.mos", "--trace", "t"]).0, 0);
+    let (code, out, _) = gapi(&here, &["journal", "t"]);
+    assert!(code == 0 && out.contains("script: trace.mos\n1 generations"), "{out}");
+    let whole = fs::read(here.path().join("t")).unwrap();
+    fs::write(here.path().join("t"), &whole[..whole.len() - 1]).unwrap();
+    let (code, _, errors) = gapi(&here, &["journal", "t"]);
+    assert!(code == 1, "{errors}");
+    let (code, _, errors) = gapi(&here, &["journal", "d.csv"]);
+    assert!(code == 1 && errors.contains("is not a journal"), "{errors}");
+}

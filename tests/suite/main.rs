@@ -38,6 +38,7 @@ mod fuzzing;
 mod gapilib;
 mod grammar;
 mod guide;
+mod hangup;
 mod hybrid;
 mod hybrid_limits;
 mod ibpsa;

@@ -182,21 +182,67 @@ fn a_plot_says_which_file_it_wrote() {
     prompt.leave();
 }
 
+/// What a command shows on a terminal.
+fn shown(here: &TempDir, arguments: &[&str]) -> String {
+    let mut command = command(here.path(), arguments);
+    command.env("TERM", "xterm").env("NO_COLOR", "1");
+    let mut session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
+    let shown = session.exp_eof().expect("it ends");
+    // It gives every byte as a character.
+    let shown = shown.chars().map(|c| u8::try_from(u32::from(c)).expect("a byte")).collect();
+    String::from_utf8(shown).expect("UTF-8")
+}
+
 /// What a script prints is text for a terminal, not commands; elsewhere it is kept as it is.
 #[test]
 fn printed_text_carries_no_commands_to_the_terminal() {
     let text = "a\u{1b}]52;c;ZXZpbA==\u{7}b\u{9b}2Jc\u{1b}[31md";
     let here = folder(&[("print.mos", &format!("print(\"{text}\")\n"))]);
-    let mut run = command(here.path(), &["run", "print.mos"]);
-    run.env("TERM", "xterm").env("NO_COLOR", "1");
-    let mut session = spawn_command(run, Some(PATIENCE)).expect("a terminal");
-    let shown = session.exp_eof().expect("it ends");
-    // It gives every byte as a character.
-    let shown = shown.chars().map(|c| u8::try_from(u32::from(c)).expect("a byte")).collect();
-    let shown = String::from_utf8(shown).expect("UTF-8");
+    let shown = shown(&here, &["run", "print.mos"]);
     assert!(shown.contains("a␛]52;c;ZXZpbA==␇b"), "{shown:?}");
     assert!(shown.contains("c␛[31md"), "{shown:?}");
     assert!(!shown.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{shown:?}");
     let kept = command(here.path(), &["run", "print.mos"]).output().expect("it runs").stdout;
     assert!(String::from_utf8(kept).expect("UTF-8").contains(text));
+}
+
+/// Neither do the names and the contents of files, whichever command shows them.
+#[test]
+fn files_carry_no_commands_to_the_terminal() {
+    const EVIL: &str = "\u{1b}]52;c;ZXZpbA==\u{7}";
+    let model = format!("model A \"{EVIL}\"\n Real x;equation x=1;end A;\n");
+    let snap = format!(">>> x = 1\n{EVIL}\n[exit code 0]\n");
+    let data = format!("t,{EVIL}y,{EVIL}z\n0,1,{EVIL}\n1,3.1,1\n2,4.9,2\n");
+    let here = folder(&[
+        ("A.mo", &model),
+        (&format!("{EVIL}.mo"), "model B Real x;equation x=1;end B;\n"),
+        ("s.mos", "x = 1\n"),
+        ("s.mos.snap", &snap),
+        (&format!("{EVIL}.mos"), "x = 1\n"),
+        ("Line.mo", crate::script_tests::LINE),
+        ("d.csv", &data),
+        (
+            "read.mos",
+            "(S, M, X, Y) := Exp_Adq_SISO(\"d.csv\", \"t\", \"z\")\nreadCSVheaders(\"d.csv\")\n",
+        ),
+    ]);
+    let color = ["--color", "always"];
+    for arguments in [
+        &["fmt", "--diff", "."][..],
+        &["fmt", "--check", "."],
+        &["test", "."],
+        &["test", "--list", "."],
+        &["run", "read.mos"],
+        &["run", "--parse-only", "."],
+        &["check", "."],
+        &["new", "d.csv", "--model", "Line.mo", "--output", "p.toml"],
+        &["compare", "d.csv", "d.csv"],
+        &["journal", "d.csv"],
+    ] {
+        let shown = shown(&here, arguments);
+        assert!(!shown.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{arguments:?}: {shown:?}");
+        let coloured = self::shown(&here, &[arguments, &color].concat());
+        assert!(!coloured.contains(['\u{7}', '\u{9b}']), "{arguments:?}: {coloured:?}");
+        assert!(!coloured.contains("\u{1b}]"), "{arguments:?}: {coloured:?}");
+    }
 }

@@ -5,8 +5,9 @@
 //! way on every system, without another dependency.
 
 use super::copies::Copies;
-use crate::cli::terminal;
+use crate::cli::{hangup, terminal};
 use crate::lessons::Lesson;
+use std::io::IsTerminal as _;
 use std::time::{Duration, SystemTime};
 
 /// Time between two looks: shorter than a learner needs to change windows.
@@ -25,12 +26,16 @@ pub(super) fn for_ever(
     copies: &Copies<'_>,
     work: impl Fn() -> Result<(), String>,
 ) -> Result<(), String> {
+    let has_terminal = std::io::stdin().is_terminal();
     loop {
         // Before the work: what is saved meanwhile is seen after it.
         let seen = stamps(lesson, copies);
         work()?;
         terminal::print("\nWaiting for the next save; Ctrl-C ends.\n");
         while !is_saved(&seen, &stamps(lesson, copies)) {
+            if has_terminal && hangup::is_closed() {
+                return Ok(());
+            }
             std::thread::sleep(INTERVAL);
         }
         terminal::print(&format!("\n{}\n\n", "-".repeat(40)));

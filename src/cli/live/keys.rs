@@ -1,6 +1,7 @@
 //! Keys that are pressed while a run goes on. A thread reads them, so that Ctrl-C works in the
 //! midst of a long simulation.
 
+use crate::cli::hangup::{self, Input};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,13 +23,12 @@ impl Keys {
     pub(super) fn watch(interrupt: Arc<AtomicBool>) -> Keys {
         let (pause, ended) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
         let (paused, over) = (Arc::clone(&pause), Arc::clone(&ended));
-        let thread = std::thread::spawn(move || {
+        let watch = move || {
             while !over.load(Ordering::Relaxed) {
-                match event::poll(LOOK) {
-                    Ok(true) => {}
-                    Ok(false) => continue,
-                    Err(_) => return,
+                if hangup::wait(LOOK) == Input::Closed {
+                    return;
                 }
+                let Ok(true) = event::poll(Duration::ZERO) else { continue };
                 let Ok(Event::Key(key)) = event::read() else { continue };
                 if is_interrupt(key) {
                     interrupted(&interrupt);
@@ -36,8 +36,10 @@ impl Keys {
                     paused.store(true, Ordering::Relaxed);
                 }
             }
-        });
-        Keys { pause, ended, thread: Some(thread) }
+        };
+        // Without the thread, keys have no effect.
+        let thread = std::thread::Builder::new().name("keys".to_owned()).spawn(watch);
+        Keys { pause, ended, thread: thread.ok() }
     }
 
     pub(super) fn pause_was_pressed(&self) -> bool {

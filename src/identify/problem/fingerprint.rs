@@ -53,6 +53,11 @@ impl Origins {
         }
     }
 
+    /// What it consists of, by name.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(name, _)| name.as_str())
+    }
+
     /// What is not the same as in these; a file that is only named otherwise is the same.
     pub fn changed_since(&self, before: &Origins) -> Vec<String> {
         let missing = |these: &Origins, those: &Origins| -> Vec<String> {

@@ -69,6 +69,11 @@ impl ShardFile {
         }
     }
 
+    /// How many parts of each kind it has.
+    pub fn parts(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.known.iter().map(|((kind, _), results)| (kind.as_str(), results.len()))
+    }
+
     /// As bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         // Names and numbers only.

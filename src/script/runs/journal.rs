@@ -48,6 +48,36 @@ enum Entry {
     From(Origins),
 }
 
+/// An entry of a journal, as it is described to the user.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ScriptEntry {
+    /// A call of `Eval`: the number of simulated values, and of individuals that failed.
+    Simulated {
+        /// Values that were simulated.
+        values: usize,
+        /// Individuals that could not be simulated.
+        failures: usize,
+    },
+    /// What the user typed.
+    Typed(String),
+    /// What the next entries depend on.
+    From(Origins),
+}
+
+/// The entries of a journal, and how many bytes at its end are damaged or were not finished; `None` for
+/// another kind of file.
+pub fn read_script_journal(bytes: &[u8]) -> Option<(Vec<ScriptEntry>, usize)> {
+    let (entries, whole) = decode(bytes)?;
+    let described = |entry| match entry {
+        Entry::Simulated { rows, failures, .. } => {
+            ScriptEntry::Simulated { values: rows.len(), failures: failures.len() }
+        }
+        Entry::Typed(line) => ScriptEntry::Typed(line),
+        Entry::From(origins) => ScriptEntry::From(origins),
+    };
+    Some((entries.into_iter().map(described).collect(), bytes.len() - whole))
+}
+
 impl Session {
     /// What an earlier run was answered to the same question; `None` when it did not come so far.
     ///

@@ -5,7 +5,7 @@ pub(in crate::script) mod branching;
 mod changing;
 pub(in crate::script) mod checkpoint;
 pub(in crate::script) mod identification;
-pub(in crate::script) mod journal;
+pub mod journal;
 pub mod problem;
 pub(in crate::script) mod refinement;
 mod reseeding;
