@@ -1,6 +1,7 @@
 //! The screen of `gapi teach` on a terminal: draws, waits for a key, draws again.
 
 use super::hangup::{self, Input};
+use super::live::release;
 use crate::teach::Trace;
 use crate::teach::quiz::Score;
 use crate::teach::screen::{self, Key, Screen};
@@ -33,7 +34,7 @@ pub(super) fn walk_through(
                 // The run prints and shows its progress; the screen comes back after it.
                 leave();
                 let branch = run_again(generation, &change);
-                terminal = ratatui::try_init()?;
+                release(std::mem::replace(&mut terminal, ratatui::try_init()?));
                 screen.branched(generation, change, branch);
             }
             if let Some(genes) = screen.take_unknown() {
@@ -54,6 +55,7 @@ pub(super) fn walk_through(
         }
     })();
     leave();
+    release(terminal);
     walked
 }
 

@@ -719,7 +719,7 @@ fn journals_are_described() {
         ("Line.mo", crate::script_tests::LINE),
         ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
         ("p.toml", problem),
-        ("trace.mos", "Cross(2, 1, {{1, 2}, {3, 4}}, {1})\n"),
+        ("trace.mos", "Cross(1, 1, {{1, 2}, {3, 4}}, {1})\n"),
     ]);
     let (code, _, errors) =
         gapi(&here, &["identify", "p.toml", "--searches", "2", "--shard", "1/2", "--out", "s"]);

@@ -1,6 +1,6 @@
 //! Terminals that are closed while a command uses them: it saves what it has, and ends. Each command that
 //! opens a screen or waits for a key is started on a pseudo-terminal whose other side is closed then.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use crate::cli::{command, folder};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
@@ -42,7 +42,8 @@ const SCREEN: &str = "\u{1b}[?1049h";
 /// Starts a command on a terminal and waits until this is shown. The terminal is closed when the file is
 /// dropped.
 fn started(mut command: Command, shown: &str) -> (Child, File) {
-    let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+    // Another process that has it keeps the terminal open.
+    let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let master = openpt(flags).expect("a terminal");
     grantpt(&master).and_then(|()| unlockpt(&master)).expect("a terminal");
     let name = ptsname(&master, Vec::new()).expect("a name");
@@ -119,7 +120,6 @@ fn a_run_saves_what_it_has_when_its_terminal_is_closed() {
 }
 
 /// A run that was started with `nohup` goes on, and does nothing but its work.
-#[cfg(target_os = "linux")]
 #[test]
 fn a_run_that_outlives_its_terminal_goes_on_quietly() {
     let here = folder(FILES);

@@ -7,7 +7,7 @@ mod keys;
 use crate::script::runs::view::View;
 use keys::Keys;
 use ratatui::Terminal;
-use ratatui::backend::CrosstermBackend;
+use ratatui::backend::{Backend, CrosstermBackend};
 use ratatui::crossterm::execute;
 use ratatui::crossterm::terminal::{
     EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
@@ -82,6 +82,7 @@ impl Live {
         if let Some(screen) = self.screen.take() {
             drop(screen.keys);
             restore_terminal();
+            release(screen.terminal);
         }
     }
 
@@ -103,6 +104,14 @@ impl Live {
 impl Drop for Live {
     fn drop(&mut self) {
         self.close();
+    }
+}
+
+/// Shows the cursor again. A terminal that is gone is left alone: it would say that it has no cursor on
+/// standard error, which is gone as well, and a process that cannot say something there panics.
+pub(super) fn release<B: Backend>(mut terminal: Terminal<B>) {
+    if terminal.show_cursor().is_err() {
+        std::mem::forget(terminal);
     }
 }
 

@@ -94,9 +94,8 @@ impl Dialogue {
         statements: &str,
         status: RunStatus,
     ) -> Option<u8> {
-        let has_failed = status.errors > 0 || status.interrupted;
-        self.has_failed |= has_failed;
-        self.record.note(statements, has_failed);
+        self.has_failed |= status.errors > 0;
+        self.record.note(statements, status.errors > 0 || status.interrupted);
         // What was shown at the prompt has been read.
         session.output.messages.forget_unread();
         status.exit.map(|_| status.code)
