@@ -2,8 +2,9 @@
 //! multiplexer. Their device reports a hang-up from then on, and whoever reads it reads nothing for
 //! ever, as fast as the processor can.
 
-use super::limits::Stopping;
 use std::io::IsTerminal as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Time between two looks of the watch.
@@ -58,13 +59,12 @@ pub(super) fn is_closed() -> bool {
 
 /// Asks a run to stop when its terminal is closed, as the signal SIGHUP does, which not every terminal
 /// sends; one that does not notice ends with the process. A run that was started to outlive its terminal
-/// (`nohup`) goes on.
-pub(super) fn watch(stopping: &Stopping) {
+/// (`nohup`) continues. `noticed` is set when the run has seen that it has to stop.
+pub(super) fn watch(interrupt: &Arc<AtomicBool>, noticed: Arc<AtomicBool>) {
     if cfg!(not(unix)) || !std::io::stdin().is_terminal() || outlives_terminal() {
         return;
     }
-    let noticed = stopping.noticed.clone();
-    let flag = std::sync::Arc::downgrade(&stopping.flag);
+    let flag = Arc::downgrade(interrupt);
     let look = move || {
         while !is_closed() {
             std::thread::sleep(LOOK);
@@ -73,10 +73,10 @@ pub(super) fn watch(stopping: &Stopping) {
             }
         }
         if let Some(flag) = flag.upgrade() {
-            flag.store(true, std::sync::atomic::Ordering::SeqCst);
+            flag.store(true, Ordering::SeqCst);
         }
         std::thread::sleep(NOTICE);
-        if flag.strong_count() > 0 && !noticed.load(std::sync::atomic::Ordering::SeqCst) {
+        if flag.strong_count() > 0 && !noticed.load(Ordering::SeqCst) {
             #[allow(clippy::exit, reason = "nobody is left who could be told")]
             std::process::exit(130);
         }

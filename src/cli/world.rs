@@ -147,7 +147,7 @@ impl SystemWorld {
         drop(caught);
         #[cfg(unix)]
         signals::catch(&self.stopping.flag);
-        hangup::watch(&self.stopping);
+        hangup::watch(&self.stopping.flag, self.stopping.noticed.clone());
         if let Some(ranks) = &self.ranks {
             ranks.stop_by(Arc::clone(&self.stopping.flag));
         }

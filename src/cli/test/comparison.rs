@@ -1,9 +1,9 @@
 //! One script: run in memory, and compared with its transcript or with the result that it embeds.
 
-use super::Verdict;
 use super::collection::transcript_of;
 use super::judgement::judged;
 use super::settings::Settings;
+use super::verdict::Verdict;
 use super::wording::reduced;
 use crate::cli::options::{Freedom, Global};
 use crate::cli::run::without_folders;

@@ -1,6 +1,6 @@
 //! Statements compared with the result that their script embeds, one by one.
 
-use super::{Tested, Verdict};
+use super::verdict::{Tested, Verdict};
 use crate::diag::{Code, visible};
 use crate::script::Exchange;
 use crate::script::errors::OUT_OF_REACH;

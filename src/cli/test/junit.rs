@@ -1,7 +1,7 @@
 //! The report that build servers read.
 
 use super::judgement::{Judged, Judgement};
-use super::{Tested, Verdict};
+use super::verdict::{Tested, Verdict};
 use crate::script::language::expectation::shown;
 use maud::Render;
 use std::fmt::Write as _;

@@ -5,6 +5,7 @@ mod comparison;
 mod judgement;
 mod junit;
 mod settings;
+mod verdict;
 mod wording;
 
 use super::disk;
@@ -12,17 +13,18 @@ use super::options::{Freedom, Global};
 use super::pool::{self, Ended, Watch};
 use super::terminal::{self, Terminal};
 use crate::diag::visible;
-use crate::script::language::expectation::{Line, shown};
+use crate::script::language::expectation::shown;
 use crate::script::world::Screen as _;
 use clap::{Args, ValueHint};
 use collection::{Found, collected, transcript_of};
-use judgement::{Counts, Judged, summary};
+use judgement::{Counts, summary};
 use settings::Settings;
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use verdict::{Tested, Verdict};
 
 /// Arguments of `gapi test`.
 #[derive(Debug, Args)]
@@ -72,38 +74,6 @@ pub(in crate::cli) struct TestArgs {
     /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,
-}
-
-/// How a script did.
-#[derive(Debug, PartialEq)]
-enum Verdict {
-    /// With this number of statements compared one by one.
-    Agrees(usize),
-    /// The transcript was written.
-    Accepted,
-    /// Its settings say that it is not a test.
-    Skipped,
-    /// There is nothing to compare this transcript with.
-    Unrecorded(String),
-    /// It does not agree with its transcript, which would be the second string.
-    Differs(Vec<Line>, String),
-    /// It does not agree with the result that it embeds; what each statement did.
-    DiffersFromEmbedded(Vec<Line>, Vec<Judged>),
-    Failed(String),
-}
-
-impl Verdict {
-    fn is_good(&self) -> bool {
-        matches!(self, Verdict::Agrees(_) | Verdict::Accepted)
-    }
-}
-
-/// A script that was tested.
-struct Tested {
-    path: PathBuf,
-    verdict: Verdict,
-    /// How long it took.
-    seconds: f64,
 }
 
 /// Runs the scripts; exit code 1 unless all agree with what is recorded.

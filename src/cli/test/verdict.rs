@@ -1,0 +1,37 @@
+//! What came of a script.
+
+use super::judgement::Judged;
+use crate::script::language::expectation::Line;
+use std::path::PathBuf;
+
+/// How a script did.
+#[derive(Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// With this number of statements compared one by one.
+    Agrees(usize),
+    /// The transcript was written.
+    Accepted,
+    /// Its settings say that it is not a test.
+    Skipped,
+    /// There is nothing to compare this transcript with.
+    Unrecorded(String),
+    /// It does not agree with its transcript, which would be the second string.
+    Differs(Vec<Line>, String),
+    /// It does not agree with the result that it embeds; what each statement did.
+    DiffersFromEmbedded(Vec<Line>, Vec<Judged>),
+    Failed(String),
+}
+
+impl Verdict {
+    pub(super) fn is_good(&self) -> bool {
+        matches!(self, Verdict::Agrees(_) | Verdict::Accepted)
+    }
+}
+
+/// A script that was tested.
+pub(super) struct Tested {
+    pub path: PathBuf,
+    pub verdict: Verdict,
+    /// How long it took.
+    pub seconds: f64,
+}
