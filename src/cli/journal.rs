@@ -42,7 +42,12 @@ pub(super) fn journal(arguments: &JournalArgs) -> ExitCode {
     };
     let bytes = match named::read(&arguments.file) {
         Ok(bytes) => bytes,
-        Err(error) => return refused(format!("cannot read `{name}`: {error}")),
+        Err(error) => {
+            return refused(format!(
+                "cannot read `{name}`: {error}\n = help: a run that comes to its end removes its \
+                 checkpoint"
+            ));
+        }
     };
     let readers = [of_run, of_script, of_shard, of_trace];
     let Some(described) = readers.into_iter().find_map(|read| read(&bytes)) else {

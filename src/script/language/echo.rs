@@ -61,6 +61,7 @@ impl Session {
             return;
         }
         self.echo_finished(expression, value);
+        self.keep_answer(value);
         match value {
             Value::Tuple(values) if self.dialect() == Dialect::OpenModelica => {
                 self.answer_outputs(expression, values);
@@ -70,6 +71,14 @@ impl Session {
                 self.echo(&line);
             }
             value => self.answer(value),
+        }
+    }
+
+    /// At a prompt the value remains as the variable `ans`.
+    fn keep_answer(&mut self, value: &Value) {
+        if self.options.echo == Echo::Dialogue && !matches!(value, Value::Tuple(_)) {
+            // A variable that the user has declared under this name keeps its type and its value.
+            let _ = self.workspace.variables.set(Ident::new(ANSWER), value.clone());
         }
     }
 
