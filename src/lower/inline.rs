@@ -10,9 +10,9 @@ use super::component_shape::{Declared, declared};
 use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::execution::Loops;
-use super::expressions::message_parts;
 use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
-use super::function::{component_type, local_value};
+use super::expressions::{message_parts, nth};
+use super::function::{component_type, fails, local_value};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
@@ -269,6 +269,12 @@ impl Call<'_, '_> {
             return self.assertion(call, arguments, loops);
         }
         match self.function(&function.name()) {
+            Some(user) if fails(&user) => {
+                let condition = self.builder.dae.pool.constant(0.0);
+                let text = nth(arguments, 0, "string");
+                self.assert_with(condition, Level::Error, text, call.span, loops);
+                Ok(())
+            }
             Some(user) => {
                 let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
                 self.builder.unused(&outputs, call.span);
@@ -299,12 +305,23 @@ impl Call<'_, '_> {
             _ => Level::Error,
         };
         let condition = self.lowering(loops).scalar(condition)?;
-        let asserted = self.builder.dae.assertions.len();
-        let parts = message_parts(&mut self.lowering(loops), find(1, "message"));
-        self.builder.dae.assertions.truncate(asserted);
-        let assertion = Assertion::new(condition, parts, level, call.span);
-        self.builder.dae.assertions.push(assertion);
+        self.assert_with(condition, level, find(1, "message"), call.span, loops);
         Ok(())
+    }
+
+    /// An assertion; what its text reads need not hold where the condition does.
+    fn assert_with(
+        &mut self,
+        condition: Expr,
+        level: Level,
+        text: Option<&Expression>,
+        span: Span,
+        loops: &Loops,
+    ) {
+        let asserted = self.builder.dae.assertions.len();
+        let parts = message_parts(&mut self.lowering(loops), text);
+        self.builder.dae.assertions.truncate(asserted);
+        self.builder.dae.assertions.push(Assertion::new(condition, parts, level, span));
     }
 
     fn assign(
