@@ -142,6 +142,35 @@ fn a_transcript_holds_statements_and_answers() {
 }
 
 #[test]
+fn parameters_of_every_type_are_set_by_their_values() {
+    let here = folder(&[(
+        "M.mo",
+        "model D type E = enumeration(one, two); parameter E e = E.one; parameter String f = \"a\"; \
+         parameter Boolean b = false; Real x = if e == E.two then 2 else 1; \
+         Real y = if f == \"b.txt\" then 3 else 4; Real z = if b then 5 else 6; end D;",
+    )]);
+    let last = |setting: &str, name: &str| {
+        let (code, out, errors) = gapi(&here, &["simulate", "M.mo", "D", "--set", setting]);
+        assert_eq!(code, 0, "{setting}: {errors}");
+        let line = out.lines().map(str::trim).find(|line| line.starts_with(name));
+        line.and_then(|line| line.split_whitespace().last()?.parse().ok()).unwrap_or(f64::NAN)
+    };
+    for (setting, name, value) in [
+        ("e=E.two", "x", 2.0),
+        ("e=two", "x", 2.0),
+        ("e=2", "x", 2.0),
+        ("f=b.txt", "y", 3.0),
+        ("b=true", "z", 5.0),
+    ] {
+        assert_eq!(last(setting, name), value, "{setting}");
+    }
+    for (wrong, said) in [("e=three", "its literals are one, two"), ("b=maybe", "not a value of")] {
+        let (code, _, errors) = gapi(&here, &["simulate", "M.mo", "D", "--set", wrong]);
+        assert!(code == 1 && errors.contains(said), "{wrong}: {errors}");
+    }
+}
+
+#[test]
 fn simulations_go_to_files() {
     let here = folder(&[("Decay.mo", DECAY)]);
     let base = ["simulate", "Decay.mo", "--model", "Decay"];
