@@ -90,6 +90,8 @@ data = \"d.csv\"
 x = { variable = \"time\", column = \"t\" }
 outputs = { v = \"v\" }
 inputs = { i = \"i\" }
+[method]
+name = \"levenberg_marquardt\"
 ";
 
 /// The cell with R0 0.05, R1 0.03 and C1 600 under steps of the current at 0, 100, 300 …, whose rows
@@ -174,14 +176,17 @@ fn a_result_file_with_events_gives_the_parameter_back() {
     let problem = "model = \"Ball\"
 files = [\"ball.mo\"]
 [parameters]
-e = { min = 0.5, max = 0.9 }
+e = { min = 0.7, max = 0.9 }
+[stop]
+evaluations = 300
 [[experiment]]
-data = \"r.csv\"
+data = \"r.mat\"
+x = { variable = \"time\", column = \"Time\" }
 outputs = { h = \"h\", v = \"v\" }
 ";
     let script = "openModel(\"ball.mo\");
-                  simulateModel(\"Ball(e = 0.8)\", stopTime = 2, numberOfIntervals = 50, tolerance = 1e-10, \
-                  resultFile = \"r\", outputFormat = \"csv\");\n";
+                  simulateModel(\"Ball(e = 0.8)\", stopTime = 1.5, numberOfIntervals = 30, tolerance = 1e-10, \
+                  resultFile = \"r\");\n";
     let at = folder(&[("ball.mo", BALL), ("p.toml", problem), ("s.mos", script)]);
     let (done, output) = gapi(at.path(), &["run", "s.mos"]);
     assert!(done, "{output}");
@@ -230,6 +235,8 @@ data = \"d.csv\"
 x = { variable = \"time\", column = \"t\" }
 outputs = { T = \"T\" }
 inputs = { Ta = { column = \"Ta\", interpolation = \"hold\" } }
+[method]
+name = \"levenberg_marquardt\"
 ";
 
 /// The house with a time constant of 9000 s: 200 rows in quarters of an hour.
@@ -354,6 +361,8 @@ k = { min = 0.001, max = 10 }
 data = \"d.csv\"
 x = { variable = \"time\", column = \"t\" }
 outputs = { y = \"y\" }
+[method]
+name = \"levenberg_marquardt\"
 ";
 
 /// exp(-0.3 t) at ten seconds, whose times are written by `stamp`.
@@ -414,6 +423,15 @@ fn an_experiment_may_begin_with_its_data() {
 }
 
 #[test]
+fn an_experiment_that_was_measured_before_zero_begins_with_its_first_row() {
+    let data = decay("t", |t| (t - 2.0).to_string());
+    let files = [("decay.mo", DECAY), ("p.toml", DECAY_PROBLEM), ("d.csv", data.as_str())];
+    let solved = Solved::of(&folder(&files));
+    solved.is("k", 0.3, 1e-6);
+    solved.says("the simulation begins with the first row, at -2 s");
+}
+
+#[test]
 fn where_the_model_fails_before_the_data_begin_the_start_time_is_the_remedy() {
     let model = "model Pole\n  parameter Real a = 1;\n  output Real y = 1/(a*time);\nend Pole;\n";
     let problem =
@@ -459,6 +477,8 @@ k = { min = 0.001, max = 10 }
 data = \"d.csv\"
 x = { variable = \"time\", column = \"t\" }
 outputs = { dT = \"dT\", rise = \"rise\", T = \"T\" }
+[method]
+name = \"levenberg_marquardt\"
 ";
     let files = [("heater.mo", model), ("p.toml", problem), ("d.csv", data.as_str())];
     let solved = Solved::of(&folder(&files));

@@ -160,7 +160,8 @@ impl Source<'_> {
             start: 0.0,
         };
         comparison.x = abscissa.in_unit(&comparison, notes).map_err(one)?;
-        let settings = self.settings(session, &program, &abscissa.name, &comparison.x);
+        let begin = self.begin(&program, &comparison, notes);
+        let settings = self.settings(session, &program, begin, &comparison);
         let settings = settings.map_err(one)?;
         comparison.start = settings.start;
         let has_states = !program.sorted().states.is_empty();
@@ -264,20 +265,43 @@ impl Source<'_> {
         Ok(Class { name, parameters, observed, is_driven, undecided })
     }
 
+    /// When the simulation begins, if not where the model says or at 0: a part begins with its first
+    /// row, and so does an experiment that was measured before 0.
+    fn begin(
+        &self,
+        program: &Program,
+        comparison: &Comparison<'_>,
+        notes: &mut Notes,
+    ) -> Option<f64> {
+        let first = comparison.x.iter().copied().filter(|x| x.is_finite());
+        let first = first.reduce(f64::min).filter(|_| comparison.x_name == "time");
+        if self.segment.number > 0 {
+            return first;
+        }
+        if self.entry.start_time.is_some() || program.experiment().start_time.is_some() {
+            return self.entry.start_time;
+        }
+        let first = first.filter(|first| *first < 0.0)?;
+        notes.add(format!(
+            "{}: the simulation begins with the first row, at {first} s; the initial values are \
+             those of this time",
+            comparison.experiment
+        ));
+        Some(first)
+    }
+
     fn settings(
         &self,
         session: &Session,
         program: &Program,
-        x_name: &str,
-        x: &[f64],
+        begin: Option<f64>,
+        comparison: &Comparison<'_>,
     ) -> Result<Settings, Fault> {
         let (entry, annotated) = (self.entry, program.experiment());
         let tolerance = annotated.tolerance.map_or(TOLERANCE, |tolerance| tolerance.min(TOLERANCE));
-        let first = x.iter().copied().find(|x| x.is_finite());
-        let begin = first.filter(|_| self.segment.number > 0);
         let options = SimulationOptions {
-            start: begin.or(entry.start_time),
-            stop: stop_time(entry, x_name, x, annotated.stop_time),
+            start: begin,
+            stop: stop_time(entry, comparison.x_name, &comparison.x, annotated.stop_time),
             tolerance: entry.tolerance.or(Some(tolerance)),
             method: entry.integrator.clone(),
             ..SimulationOptions::default()

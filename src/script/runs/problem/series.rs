@@ -123,7 +123,7 @@ impl Comparison<'_> {
             return rows;
         }
         let (early, rows): (Vec<usize>, Vec<usize>) =
-            rows.into_iter().partition(|row| self.x[*row] < self.start);
+            rows.into_iter().partition(|row| Some(self.x[*row]) < self.entry.start_time);
         if let (Some(first), Some(last)) = (early.first(), early.last()) {
             notes.add(format!(
                 "{}: `{y_name}` is not compared before the simulation begins at {} s ({} to {})",
