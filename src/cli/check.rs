@@ -3,13 +3,14 @@
 use super::options::{Global, Limits};
 use super::{limits, session, terminal};
 use crate::diag::{Diagnostic, Fault, Severity};
-use crate::lsp;
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::script::Session;
+use crate::script::access::policy::Grant;
 use crate::script::language::parsing::{self, Reading};
 use crate::script::models::{checking, simulation};
 use crate::source::Span;
 use crate::syntax::errors::NOT_A_SCRIPT;
+use crate::{lsp, models};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -32,6 +33,9 @@ pub(super) struct CheckArgs {
     /// Reject what the specification forbids even where libraries rely on it
     #[arg(long)]
     pub strict: bool,
+    /// Show from where each library was loaded
+    #[arg(long, short)]
+    pub verbose: bool,
     /// Limits
     #[command(flatten)]
     pub limits: Limits,
@@ -68,6 +72,10 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
         Ok(session) => session,
         Err(code) => return code,
     };
+    session.world.grant(Grant::CheckOnly);
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
+    }
     checking::set_strict(&mut session, arguments.strict);
     let wrong = scripts.iter().filter(|script| !check_script(&mut session, script)).count();
     let models = match &class {
@@ -75,14 +83,31 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
         None if files.is_empty() => ExitCode::SUCCESS,
         None => check_all(&mut session, &loaded),
     };
+    if arguments.verbose {
+        let text = loaded_from(&mut session);
+        session.print(&text);
+    }
     if wrong > 0 { ExitCode::FAILURE } else { models }
+}
+
+/// Where each top-level class comes from.
+fn loaded_from(session: &mut Session) -> String {
+    let roots: Vec<Ident> = session.library().roots().collect();
+    let line = |top: Ident| {
+        let file = session.source_file(&Name::from(top))?;
+        Some(match file.starts_with(models::FOLDER) {
+            true => format!("`{top}` is part of gapi\n"),
+            false => format!("`{top}` is loaded from `{}`\n", file.display()),
+        })
+    };
+    roots.into_iter().filter_map(line).collect()
 }
 
 /// Checks a script without running it; whether nothing is wrong.
 fn check_script(session: &mut Session, path: &Path) -> bool {
     session.grant_input(path);
     let name = path.display().to_string();
-    let bytes = match std::fs::read(path) {
+    let bytes = match super::named::read(path) {
         Ok(bytes) => bytes,
         Err(error) => {
             terminal::eprint(&format!("error: {name}: {error}\n"));
@@ -196,6 +221,9 @@ pub(super) fn flatten(arguments: &FlattenArgs, global: &Global) -> ExitCode {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
+    }
     match checking::flat_model(&mut session, &class) {
         Ok(flat) => {
             session.print(&flat.to_string());

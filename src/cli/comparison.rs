@@ -1,6 +1,6 @@
 //! `gapi identify a.toml b.toml`: solves several problems of the same data and compares the models.
 
-use super::disk::write_atomically;
+use super::disk::write_beside;
 use super::identify::IdentifyArgs;
 use super::identify::{Ended, solve_one};
 use super::options::Global;
@@ -53,7 +53,7 @@ pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCod
 fn write(comparison: &Comparison, folder: &Path) -> ExitCode {
     let names: Vec<&str> = comparison.models.iter().map(|model| model.name.as_str()).collect();
     let path = folder.join(format!("comparison-{}.json", names.join("-")));
-    match write_atomically(&path, comparison.to_json().as_bytes()) {
+    match write_beside(&path, comparison.to_json().as_bytes()) {
         Ok(()) => {
             terminal::print(&format!("\n  written to {}\n", path.display()));
             ExitCode::SUCCESS

@@ -17,7 +17,7 @@
 //! ```
 
 use super::Cli;
-use super::options::{Colour, Global};
+use super::options::{ALL_LIBRARIES, Colour, Global};
 use super::output::Output;
 use super::world::SystemWorld;
 use super::{dispatch, session};
@@ -70,7 +70,10 @@ impl Embedding {
             no_cache: !self.cache,
             allow_read: self.read.clone(),
             allow_write: self.write,
-            allow_external: self.external,
+            allow_external: self.external.then(|| ALL_LIBRARIES.to_owned()).into_iter().collect(),
+            deny_read: Vec::new(),
+            allow_env: Vec::new(),
+            show_permissions: false,
         }
     }
 

@@ -8,7 +8,7 @@ use super::{limits, session};
 use crate::ga::operators;
 use crate::identify::problem::{Shard, Solution};
 use crate::script::access::policy::Grant;
-use crate::script::runs::problem::{Division, RunOptions, grant_inputs, solve};
+use crate::script::runs::problem::{Division, RunOptions, solve};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -143,6 +143,25 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
     }
 }
 
+/// How the problem is run.
+fn run_options(arguments: &IdentifyArgs) -> RunOptions {
+    RunOptions {
+        resume: arguments.resume,
+        fresh: arguments.fresh,
+        watch: arguments.watch.clone(),
+        folder: PathBuf::new(),
+        profile: arguments.profile,
+        design: arguments.design,
+        bootstrap: arguments.bootstrap,
+        posterior: arguments.posterior,
+        sensitivity: arguments.sensitivity.clone(),
+        samples: arguments.samples.unwrap_or(0) as usize,
+        evaluations: arguments.evaluations,
+        searches: arguments.searches.map(|count| count as usize),
+        division: arguments.shard.map_or(Division::Whole, Division::Shard),
+    }
+}
+
 /// Solves one problem into its folder below `results`, or into `folder` within the one that is wanted.
 /// The limit of time counts from `started`.
 pub(super) fn solve_one(
@@ -178,24 +197,13 @@ pub(super) fn solve_one(
         Err(code) => return Ended::Not(code),
     };
     let mut session = session::open(global, world);
-    let options = RunOptions {
-        resume: arguments.resume,
-        fresh: arguments.fresh,
-        watch: arguments.watch.clone(),
-        folder: PathBuf::new(),
-        profile: arguments.profile,
-        design: arguments.design,
-        bootstrap: arguments.bootstrap,
-        posterior: arguments.posterior,
-        sensitivity: arguments.sensitivity.clone(),
-        samples: arguments.samples.unwrap_or(0) as usize,
-        evaluations: arguments.evaluations,
-        searches: arguments.searches.map(|count| count as usize),
-        division: arguments.shard.map_or(Division::Whole, Division::Shard),
-    };
-    grant_inputs(&mut session, problem);
+    let options = run_options(arguments);
+    session.grant_input(problem);
     if let Some(file) = &arguments.watch {
         session.world.grant(Grant::Read(file));
+    }
+    if session::lists_permissions(&mut session, global) {
+        return Ended::Not(ExitCode::SUCCESS);
     }
     match solve(&mut session, problem, &options) {
         Ok(_) if session.is_interrupted() => Ended::Not(session::stopped(&mut session)),

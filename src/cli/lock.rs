@@ -5,9 +5,14 @@ use super::disk;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Seek as _, Write as _};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// The file that is locked.
 pub(super) const FILE: &str = "run.lock";
+
+/// How long a lock is waited for, and how long between two attempts.
+const PATIENCE: Duration = Duration::from_secs(1);
+const PAUSE: Duration = Duration::from_millis(20);
 
 /// The lock on an output folder, released when it is dropped.
 #[derive(Debug)]
@@ -28,15 +33,11 @@ impl Lock {
     ///
     /// # Errors
     ///
-    /// Another run holds the lock; the file cannot be written.
+    /// Another run holds the lock; the file cannot be written; it is a link, or has another name.
     pub(super) fn of(folder: &Path) -> io::Result<Lock> {
         let path = folder.join(FILE);
-        if fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
-            return Err(io::Error::other(format!("`{}` is not a file", path.display())));
-        }
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path)?;
-        match file.try_lock() {
+        let mut file = opened(&path)?;
+        match tried(&file) {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(locked(&mut file, folder)),
             // Some file systems have no locks; they are used as before.
@@ -48,6 +49,49 @@ impl Lock {
         disk::remove_temporary_files(folder);
         Ok(Lock(file))
     }
+}
+
+/// Locks the file; a process that is ending may hold it for a moment.
+fn tried(file: &File) -> Result<(), TryLockError> {
+    let begun = Instant::now();
+    loop {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) if begun.elapsed() < PATIENCE => {
+                std::thread::sleep(PAUSE);
+            }
+            tried => return tried,
+        }
+    }
+}
+
+/// Opens the file that is locked, which belongs to the program alone: writing into one that has
+/// another name would change a file of the user.
+fn opened(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false);
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits() as i32);
+    }
+    let is_link = fs::symlink_metadata(path).is_ok_and(|found| !found.is_file());
+    let refused = |why: &str| {
+        let message = format!("`{}` {why}; remove it, or choose another folder", path.display());
+        Err(io::Error::other(message))
+    };
+    if is_link {
+        return refused("is not a file");
+    }
+    let file = options.open(path)?;
+    if !file.metadata()?.is_file() {
+        return refused("is not a file");
+    }
+    #[cfg(unix)]
+    if std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 1 {
+        return refused("has a second name elsewhere (a hard link)");
+    }
+    Ok(file)
 }
 
 fn locked(file: &mut File, folder: &Path) -> io::Error {
@@ -82,10 +126,46 @@ mod tests {
         Lock::of(folder.path()).expect("free again");
     }
 
+    /// As a process that writes its last checkpoint when the next one resumes.
+    #[test]
+    fn a_lock_that_is_given_back_soon_is_waited_for() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = Lock::of(folder.path()).expect("free");
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(100));
+                drop(first);
+            });
+            Lock::of(folder.path()).expect("free in time");
+        });
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_lock_that_is_another_file_is_not_written() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mine, lock) = (folder.path().join("mine"), folder.path().join(FILE));
+        fs::write(&mine, "mine").expect("written");
+        fs::hard_link(&mine, &lock).expect("a hard link");
+        let refused = Lock::of(folder.path()).expect_err("shared").to_string();
+        assert!(refused.contains("second name"), "{refused}");
+        for target in [Path::new("mine"), Path::new("missing"), Path::new("/dev/zero")] {
+            fs::remove_file(&lock).expect("removed");
+            std::os::unix::fs::symlink(target, &lock).expect("a link");
+            let refused = Lock::of(folder.path()).expect_err("a link").to_string();
+            assert!(refused.contains("not a file"), "{refused}");
+        }
+        fs::remove_file(&lock).expect("removed");
+        assert!(std::process::Command::new("mkfifo").arg(&lock).status().expect("run").success());
+        assert!(Lock::of(folder.path()).is_err());
+        assert_eq!(fs::read(&mine).expect("there"), b"mine");
+        assert!(!folder.path().join("missing").exists());
+    }
+
     #[test]
     fn what_killed_runs_left_is_removed() {
         let folder = tempfile::tempdir().expect("a folder");
-        let left = folder.path().join("result.json.0123456789abcdef.tmp");
+        let left = folder.path().join("result.json.0123456789abcdef.gapi-tmp");
         let kept = folder.path().join("notes.tmp");
         for file in [&left, &kept] {
             fs::write(file, "half").expect("written");

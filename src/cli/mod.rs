@@ -111,6 +111,22 @@ fn on_large_stack(work: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode 
 }
 
 fn dispatch(cli: &Cli) -> ExitCode {
+    let lists = matches!(
+        cli.command,
+        Command::Run(_)
+            | Command::Identify(_)
+            | Command::Simulate(_)
+            | Command::Check(_)
+            | Command::Flatten(_)
+            | Command::Repl(_)
+    );
+    if cli.global.show_permissions && !lists {
+        terminal::eprint(
+            "error: `--show-permissions` lists what `run`, `identify`, `simulate`, `check`, \
+             `flatten` and `repl` permit\n",
+        );
+        return ExitCode::from(2);
+    }
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
         Command::Teach(arguments) => teach::teach(arguments, &cli.global),

@@ -45,7 +45,8 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
         Err(code) => return code,
     };
     let output = output(arguments);
-    if session.world.exists(&output) {
+    // A link that leads nowhere is there, too.
+    if session.world.exists(&output) || session.world.is_link(&output) {
         let fault = Fault::new(BAD_OPTION, format!("`{}` already exists", output.display()))
             .help("choose another name with `--output`, or remove it");
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);

@@ -26,14 +26,30 @@ pub(super) struct Global {
     /// not create
     #[arg(long, global = true, help_heading = ALLOWED)]
     pub allow_write: bool,
-    /// Allow libraries to bring functions in C: they are compiled with the system's C compiler and
-    /// can do whatever you can do
+    /// Exclude this folder from what scripts and models read and write, whatever else is allowed
+    /// (repeatable)
+    #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(help_heading = ALLOWED)]
+    pub deny_read: Vec<PathBuf>,
+    /// Allow scripts and models to read this environment variable, besides those that hold no
+    /// secrets (repeatable)
+    #[arg(long, global = true, value_name = "NAME", help_heading = ALLOWED)]
+    pub allow_env: Vec<String>,
+    /// Allow this library to bring functions in C; without LIBRARY, all (repeatable): they are
+    /// compiled with the system's C compiler and can do whatever you can do
+    #[arg(long, global = true, value_name = "LIBRARY", num_args = 0..=1, require_equals = true)]
+    #[arg(default_missing_value = ALL_LIBRARIES, help_heading = ALLOWED)]
+    pub allow_external: Vec<String>,
+    /// List the permissions of scripts and models, and do nothing else
     #[arg(long, global = true, help_heading = ALLOWED)]
-    pub allow_external: bool,
+    pub show_permissions: bool,
 }
 
 /// `--allow-read` without a folder.
 pub(super) const EVERYWHERE: &str = "/";
+
+/// `--allow-external` without a library.
+pub(super) const ALL_LIBRARIES: &str = "*";
 
 /// The heading of the permissions, with what holds without them.
 const ALLOWED: &str = "Permissions of scripts and models. They can read the folder of the \

@@ -5,7 +5,7 @@
 //! to it: the same file is the same problem, however much was changed in it. Beside the folders the
 //! link `latest` leads to the one that was written last.
 
-use super::disk::write_atomically;
+use super::disk::{read_named, write_beside};
 use super::lock::{self, Lock};
 use super::terminal;
 use crate::script::world::normalized;
@@ -79,12 +79,26 @@ impl Output {
     pub(super) fn below(all: &Path, command: &str, input: &Path) -> Result<Output, String> {
         let (all, input) = (absolute(all)?, absolute(input)?);
         let stem = input.file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
-        // The link has this name.
-        let stem = if stem == LATEST { "latest-problem".into() } else { stem };
+        let stem = match &*stem {
+            // The link has this name.
+            LATEST => "latest-problem".into(),
+            // `...mos` would make the folder above the output folder.
+            stem if stem.trim_matches('.').is_empty() => "run".into(),
+            _ => stem,
+        };
+        if is_elsewhere(&all) {
+            return Err(format!(
+                "`{}` is a link to another folder\n = help: name the folder with `--out`, or \
+                 remove the link",
+                all.display()
+            ));
+        }
         let folders = (1..=MOST).map(|k| match k {
             1 => all.join(&*stem),
             k => all.join(format!("{stem}-{k}")),
         });
+        // A link that came with the folder would make another one the output folder.
+        let folders = folders.filter(|folder| !is_elsewhere(folder));
         let mut outputs = folders.map(|folder| Output::at(folder, command, &input));
         let own = outputs.find(|output| match output.holder() {
             Some(origin) => origin == output.origin,
@@ -108,7 +122,7 @@ impl Output {
 
     /// Whose results the folder holds, as its `origin.json` says.
     fn holder(&self) -> Option<String> {
-        fs::read_to_string(self.folder.join(ORIGIN)).ok()
+        text_of(&self.folder.join(ORIGIN))
     }
 
     /// Whether it holds results of version 0.1.0, which did not say whose they were.
@@ -142,23 +156,38 @@ impl Output {
 
     fn describe(&self) -> io::Result<()> {
         if self.holder().as_ref() != Some(&self.origin) {
-            write_atomically(&self.folder.join(ORIGIN), self.origin.as_bytes())?;
+            write_beside(&self.folder.join(ORIGIN), self.origin.as_bytes())?;
         }
         // Without the link the output still says where the results are.
         self.latest.as_ref().map_or(Ok(()), |link| relink(link, &self.folder)).or(Ok(()))
     }
 }
 
-/// The folder with results that is meant: the folder itself, or what its link `latest` leads to.
+/// The folder with results that is meant: the folder itself, or what its link `latest` leads to, if
+/// that is a folder in it.
 pub(super) fn latest_of(folder: &Path) -> PathBuf {
     let latest = folder.join(LATEST);
     if folder.join("result.json").exists() || !latest.exists() {
         return folder.to_owned();
     }
-    match fs::read_to_string(&latest) {
-        Ok(name) => folder.join(name.trim()),
-        Err(_) => latest,
-    }
+    let latest = match text_of(&latest) {
+        Some(name) => folder.join(name.trim()),
+        None => latest,
+    };
+    let is_inside = || Some(latest.canonicalize().ok()?.starts_with(folder.canonicalize().ok()?));
+    if is_inside() == Some(true) { latest } else { folder.to_owned() }
+}
+
+/// The text of a file, no pipe and no device.
+fn text_of(path: &Path) -> Option<String> {
+    String::from_utf8(read_named(path).ok()?).ok()
+}
+
+/// Whether a path leads out of the folder that it is in.
+fn is_elsewhere(path: &Path) -> bool {
+    // A link that leads nowhere may lead to a folder that is made later.
+    let real = || Some(path.canonicalize().ok()?.starts_with(path.parent()?.canonicalize().ok()?));
+    path.is_symlink() && real() != Some(true)
 }
 
 #[cfg(unix)]
@@ -236,6 +265,8 @@ mod tests {
         assert_eq!(of("a/fit.mos"), Path::new("fit"));
         assert_eq!(of("b/fit.mos"), Path::new("fit-2"));
         assert_eq!(of("a/fit.mos"), Path::new("fit"), "the same problem again");
+        assert_eq!(of("a/...mos"), Path::new("run"));
+        assert_eq!(of("a/..mos"), Path::new("run-2"));
         fs::write(all.join("fit/result.json"), "{}").expect("written");
         assert_eq!(latest_of(&all).file_name(), Some("latest".as_ref()));
         assert!(latest_of(&all).join("result.json").exists());

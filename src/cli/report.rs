@@ -9,7 +9,7 @@ use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::runs::problem::{grant_inputs, read_shards, solve};
+use crate::script::runs::problem::{read_shards, solve};
 use crate::source::Span;
 use clap::{Args, ValueHint};
 use std::path::Path;
@@ -83,7 +83,6 @@ fn merge(arguments: &ReportArgs, global: &Global) -> ExitCode {
     };
     world.catch_interrupts();
     let mut session = session::open(global, world);
-    grant_inputs(&mut session, &problem);
     match solve(&mut session, &problem, &options) {
         Ok(_) if session.is_interrupted() => session::stopped(&mut session),
         Ok(_) => ExitCode::SUCCESS,
@@ -93,12 +92,13 @@ fn merge(arguments: &ReportArgs, global: &Global) -> ExitCode {
 
 fn draw(session: &mut Session, folder: &Path, page: Option<&Path>) -> Result<(), Fault> {
     let folder = output::latest_of(folder);
-    session.world.grant(Grant::Read(&folder));
+    // The page in the folder of the results is no more than the rest of it.
+    session.world.grant(Grant::Own(&folder));
     let read = |name: &str| session.read_text(&folder.join(name));
     let (json, history) = (read("result.json")?, read("history.csv")?);
     let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
+    page.into_iter().for_each(|page| session.permit_file(page));
     let page = page.map_or_else(|| folder.join("report.html"), Path::to_owned);
-    session.world.grant(Grant::Named(&page));
     session.print(&solution.text());
     write(session, &page, &solution)?;
     session.print(&format!("\n  written to {}\n", page.display()));

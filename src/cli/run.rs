@@ -118,8 +118,14 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
         session.world.grant(Grant::Named(&start.join(file)));
         session.output.transcript = Some(Transcript::default());
     }
-    if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {
+    let trace = arguments.trace.as_deref();
+    trace.into_iter().for_each(|path| session.permit_file(path));
+    if let Some(fault) = trace.and_then(|path| session.trace_to(path).err()) {
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
+    }
+    session.grant_script(script);
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
     }
     let status = session.run_file(script);
     match write_transcript(&mut session, arguments.transcript.as_deref(), &start) {

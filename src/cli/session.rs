@@ -1,9 +1,9 @@
 //! A session for the commands that work on models, and how they report what is wrong.
 
-use super::options::{EVERYWHERE, Global};
+use super::options::{ALL_LIBRARIES, EVERYWHERE, Global};
 use super::terminal::{self, Terminal};
-use super::translations;
 use super::world::SystemWorld;
+use super::{cache_folder, translations};
 use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
 use crate::script::Session;
@@ -26,6 +26,9 @@ pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     }
     let current = session.world.current_dir();
     session.grant_models(&current);
+    for folder in cache_folder::closed() {
+        session.world.grant(Grant::Deny(&folder));
+    }
     grant_asked(&mut session, global);
     if !global.no_cache {
         session.storage = translations::of_the_user();
@@ -44,7 +47,7 @@ fn offer_neighbours(session: &mut Session, package: &Path) -> bool {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.join("package.mo").is_file() || path.extension().is_some_and(|e| e == "mo") {
-            session.world.grant(Grant::Read(&path));
+            session.world.grant(Grant::Found(&path));
         }
     }
     session.add_library_dir(folder);
@@ -52,7 +55,7 @@ fn offer_neighbours(session: &mut Session, package: &Path) -> bool {
     true
 }
 
-/// What `--allow-read`, `--allow-write` and `--allow-external` allow.
+/// What the options allow and exclude.
 fn grant_asked(session: &mut Session, global: &Global) {
     for folder in &global.allow_read {
         match folder == Path::new(EVERYWHERE) {
@@ -63,8 +66,15 @@ fn grant_asked(session: &mut Session, global: &Global) {
     if global.allow_write {
         session.world.grant(Grant::WriteAll);
     }
-    if global.allow_external {
-        session.world.grant(Grant::ExternalCode);
+    for library in &global.allow_external {
+        let library = Some(library.as_str()).filter(|name| *name != ALL_LIBRARIES);
+        session.world.grant(Grant::ExternalCode(library));
+    }
+    for folder in &global.deny_read {
+        session.world.grant(Grant::Deny(folder));
+    }
+    for name in &global.allow_env {
+        session.allow_variable(name);
     }
 }
 
@@ -141,6 +151,15 @@ fn is_class(text: &str) -> bool {
     };
     let ending = name.rsplit('.').next().unwrap_or_default();
     name.split('.').all(is_identifier) && !["mo", "mos"].contains(&ending)
+}
+
+/// Lists what scripts and models may do, if that is asked for: then nothing else is done.
+pub(super) fn lists_permissions(session: &mut Session, global: &Global) -> bool {
+    if global.show_permissions {
+        let text = session.permissions();
+        session.print(&text);
+    }
+    global.show_permissions
 }
 
 /// Shows what is wrong.

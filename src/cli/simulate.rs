@@ -139,6 +139,9 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
     for file in [&arguments.from, &arguments.input].into_iter().flatten() {
         session.world.grant(Grant::Read(file));
     }
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
+    }
     match run(&mut session, &class, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),

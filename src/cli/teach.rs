@@ -174,6 +174,7 @@ fn recorded(
     let mut session = session::open(global, world).with_options(options);
     session.use_stream(again.run.unwrap_or(0) as u64);
     let file = out.join("run.trace");
+    session.permit_file(&file);
     let prepared = session.trace_to(&file).map_err(|fault| fault.at(Span::NONE));
     let prepared = prepared.and_then(|()| match change {
         Some((generation, statement)) => session.branch_at(generation, statement),
@@ -251,7 +252,7 @@ fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
-    disk::write_named(file, text.as_bytes()).map_err(|error| {
+    disk::write_beside(file, text.as_bytes()).map_err(|error| {
         Trouble::Message(format!("`{}` cannot be written: {error}", file.display()))
     })
 }

@@ -1,10 +1,12 @@
 //! Translated models in the user's cache folder.
 //!
-//! A file is written beside its place and moved there when it is whole; its digest stands first.
+//! A file is written beside its place and moved there when it is whole; its code stands first, which
+//! only this user's program can make. What has another code is translated again.
 //! Its name is that of the model with the version of this program, so that another version finds
 //! nothing. Beyond [`MOST`] bytes what was not used for longest is removed.
 
-use super::cache_folder;
+use super::cache_folder::{self, LENGTH};
+use super::disk::read_named;
 use crate::script::world::Store;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -19,8 +21,6 @@ use std::time::SystemTime;
 const MOST: u64 = 1 << 30;
 /// Bytes from which keeping a model pays: it took about 0.05 s to translate.
 const SMALL: usize = 1 << 16;
-/// Bytes of a digest.
-const DIGEST: usize = 32;
 /// Seconds after which a file that is being written belongs to a process that is gone.
 const FORGOTTEN: u64 = 3600;
 
@@ -33,7 +33,7 @@ struct Translations {
 
 /// The models of the user, if there is a place for them.
 pub(super) fn of_the_user() -> Option<Arc<dyn Store>> {
-    cache_folder::of(FOLDER)?;
+    cache_folder::base()?;
     Some(Arc::new(Translations { version: version()? }))
 }
 
@@ -59,13 +59,15 @@ impl Translations {
     fn write(&self, name: &str, bytes: &[u8]) -> std::io::Result<()> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let folder = cache_folder::made(FOLDER)?;
+        let file_name = self.file_name(name);
+        let code = cache_folder::code(&file_name, bytes).ok_or(std::io::ErrorKind::NotFound)?;
         make_room(&folder, bytes.len() as u64);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let beside = folder.join(format!("{}-{number}.part", std::process::id()));
         let mut file = File::create(&beside)?;
-        let written = file.write_all(&Sha256::digest(bytes)).and_then(|()| file.write_all(bytes));
+        let written = file.write_all(&code).and_then(|()| file.write_all(bytes));
         drop(file);
-        let moved = written.and_then(|()| fs::rename(&beside, folder.join(self.file_name(name))));
+        let moved = written.and_then(|()| fs::rename(&beside, folder.join(file_name)));
         if moved.is_err() {
             _ = fs::remove_file(&beside);
         }
@@ -75,17 +77,18 @@ impl Translations {
 
 impl Store for Translations {
     fn find(&self, name: &str) -> Option<Vec<u8>> {
-        let path = cache_folder::of(FOLDER)?.join(self.file_name(name));
-        let mut bytes = fs::read(&path).ok()?;
-        let content = bytes.get(DIGEST..)?;
-        if Sha256::digest(content)[..] != bytes[..DIGEST] {
+        let file_name = self.file_name(name);
+        let path = cache_folder::of(FOLDER)?.join(&file_name);
+        let mut bytes = read_named(&path).ok()?;
+        let content = bytes.get(LENGTH..)?;
+        if cache_folder::code(&file_name, content)?[..] != bytes[..LENGTH] {
             _ = fs::remove_file(&path);
             return None;
         }
         // When it was used last.
         let used = File::options().append(true).open(&path);
         _ = used.and_then(|file| file.set_modified(SystemTime::now()));
-        bytes.drain(..DIGEST);
+        bytes.drain(..LENGTH);
         Some(bytes)
     }
 
@@ -108,7 +111,9 @@ fn make_room(folder: &Path, wanted: u64) {
         let Ok(used) = metadata.modified() else { continue };
         if path.extension().is_some_and(|extension| extension == "model") {
             known.push((used, metadata.len(), path));
-        } else if used.elapsed().is_ok_and(|age| age.as_secs() > FORGOTTEN) {
+        } else if path.extension().is_some_and(|extension| extension == "part")
+            && used.elapsed().is_ok_and(|age| age.as_secs() > FORGOTTEN)
+        {
             _ = fs::remove_file(path);
         }
     }

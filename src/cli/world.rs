@@ -164,6 +164,10 @@ impl Files for SystemWorld {
         self.disk.grant(grant.with_path(&path));
     }
 
+    fn permissions(&self) -> Vec<(String, String)> {
+        self.disk.permissions()
+    }
+
     fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         self.disk.permits(&self.at(path), access)
     }
@@ -313,10 +317,8 @@ impl Environment for SystemWorld {
     }
 
     fn c_compiler(&self) -> Option<Arc<dyn CCompiler>> {
-        match self.disk.calls_external_code() {
-            true => Some(c_compiler::of_the_system()),
-            false => None,
-        }
+        let allowed = self.disk.external_code();
+        allowed.is_allowed().then(|| c_compiler::for_libraries(allowed))
     }
 
     fn run_command(

@@ -25,8 +25,9 @@ use std::sync::Arc;
 pub type Documents = BTreeMap<String, Arc<Document>>;
 
 /// Bytes of former versions that are kept, at most: a session forgets no text, so that it is replaced by
-/// another one.
-const MOST_FORMER: usize = 8 << 20;
+/// another one. With each byte come about 64 of what was found out about it: measured on 1400 versions
+/// of a file of 6 kB, which took 510 MB.
+const MOST_FORMER: usize = 1 << 20;
 
 /// Classes that are kept when a document is closed, at most. An example of the Modelica Standard Library
 /// reads 74 (`CauerLowPassAnalog`) to 626 (`HeatingSystem`); after twelve of its files, one after the

@@ -16,6 +16,8 @@
 //! References: *MAT-File Format*, The MathWorks, R2024a (version 5: chapter 1; version 4:
 //! appendix).
 
+#[cfg(feature = "xlsx")]
+mod archive;
 mod calendar;
 pub mod errors;
 mod matrix;

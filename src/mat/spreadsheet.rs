@@ -1,8 +1,10 @@
 //! Spreadsheets (XLSX): the first sheet as a table, read as tables of text are.
 
+use super::archive;
 use super::errors::BAD_TABLE;
 use super::matrix::MatFile;
 use super::table;
+use super::v5::MAX_INFLATED;
 use crate::diag::Fault;
 use crate::{bail, fault};
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx};
@@ -25,6 +27,14 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         fault!(BAD_TABLE, "the spreadsheet cannot be read: {error}")
             .help("save it as .xlsx or .csv")
     };
+    if archive::inflated(bytes, MAX_INFLATED).is_none() {
+        bail!(
+            BAD_TABLE,
+            "the compressed data of the spreadsheet inflate to more than {} MiB",
+            MAX_INFLATED >> 20;
+            help: "save it as .csv"
+        );
+    }
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(&error))?;
     let sheets = workbook.sheet_names();
     let Some(sheet) = sheets.first() else {

@@ -19,6 +19,9 @@ pub const ENTRY: Entry<dyn Format> = Entry {
 
 struct Csv;
 
+/// Bytes that a number and its comma take at most.
+const LONGEST: usize = 25;
+
 impl Format for Csv {
     fn extension(&self) -> &'static str {
         "csv"
@@ -26,6 +29,7 @@ impl Format for Csv {
 
     fn write(&self, table: &ResultTable) -> Result<Vec<u8>, Fault> {
         table.check()?;
+        table.has_room(LONGEST)?;
         let mut bytes = Vec::new();
         self.write_to(table, &mut bytes).expect("writing into memory does not fail");
         Ok(bytes)

@@ -36,6 +36,8 @@ impl Format for Mat {
 
     fn write(&self, table: &ResultTable) -> Result<Vec<u8>, Fault> {
         table.check()?;
+        // The matrix of trajectories and the file.
+        table.has_room(2 * size_of::<f64>())?;
         let layout = Layout::new(table);
         let class = Matrix::from_text(&["Atrajectory", "1.1", "", "binTrans"]);
         let names: Vec<&str> = table.names().collect();

@@ -109,6 +109,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_table_without_room_is_a_fault() {
+        let table = ResultTable::new(vec![0.0, 1.0]);
+        assert!(table.has_room(16).is_ok());
+        let fault = table.has_room(usize::MAX).expect_err("no machine has so much");
+        assert!(fault.message.contains("no memory for a result file with 2 values"));
+    }
+
+    #[test]
     fn results_are_recognized_and_data_are_not() {
         let mut table = ResultTable::new(vec![0.0, 1.0]);
         table.series.push(Series::new("x".to_owned(), Values::Trajectory(vec![1.0, 2.0])));

@@ -60,6 +60,18 @@ pub enum Values {
     },
 }
 
+impl ResultTable {
+    /// A fault where there is no memory for a file with so many bytes for each value.
+    pub(super) fn has_room(&self, bytes: usize) -> Result<(), Fault> {
+        let count = self.time.len().saturating_mul(self.series.len() + 1);
+        let room = Vec::<u8>::new().try_reserve_exact(count.saturating_mul(bytes));
+        room.map_err(|_| {
+            fault!(BAD_RESULT_TABLE, "there is no memory for a result file with {count} values";
+                help: "select variables or use fewer intervals, or write `.csv`, which needs less")
+        })
+    }
+}
+
 impl Values {
     /// The same with the other sign if `negated`; aliases of other series stay as they are.
     pub(crate) fn with_sign(mut self, negated: bool) -> Values {

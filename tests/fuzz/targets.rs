@@ -7,12 +7,13 @@ use gapilib::mat::{self, MatFile};
 use gapilib::results;
 use gapilib::script::Session;
 use gapilib::script::runs::problem::{RunOptions, solve};
-use gapilib::script::world::MemoryWorld;
+use gapilib::script::world::{MemoryWorld, Store};
 use gapilib::source::SourceId;
 use gapilib::syntax::ast::StoredDefinition;
 use gapilib::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
 use gapilib::syntax::{decode, parse_script, parse_stored_definition, print};
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 /// How often a session looks whether it has to stop: often enough for small scripts.
 const QUESTIONS: u64 = 3000;
@@ -146,4 +147,55 @@ pub(crate) fn read_journal(bytes: &[u8]) {
             problem::encode(record);
         }
     }
+}
+
+/// A model with all that a translation has: states, events, a function, a nonlinear equation.
+const KEPT: &str = "model Kept
+  function f input Real u; output Real v; algorithm v := u*u + 1; end f;
+  parameter Real p = 2;
+  parameter Integer n = 2;
+  Real x[n](each start = 1, each fixed = true);
+  Real y;
+  Real z(start = 1);
+  discrete Real d(start = 0, fixed = true);
+equation
+  for i in 1:n loop der(x[i]) = -p*x[i]; end for;
+  y = f(x[1]) + (if time > 0.5 then 1 else 0);
+  z^3 + z = y;
+  when sample(0.2, 0.2) then d = pre(d) + 1; end when;
+end Kept;
+";
+
+/// A store that has one entry under every name, and takes another one.
+#[derive(Default)]
+struct OneEntry(Mutex<Option<Vec<u8>>>);
+
+impl Store for OneEntry {
+    fn find(&self, _: &str) -> Option<Vec<u8>> {
+        self.0.lock().expect("one thread").clone()
+    }
+
+    fn keep(&self, _: &str, bytes: &[u8]) {
+        *self.0.lock().expect("one thread") = Some(bytes.to_vec());
+    }
+}
+
+/// A translated model that was kept, whatever its entry contains.
+pub(crate) fn read_cache_entry(bytes: &[u8]) {
+    simulate_kept(OneEntry(Mutex::new(Some(bytes.to_vec()))));
+}
+
+/// The entry that is kept where there was none.
+pub(crate) fn cache_entry() -> Vec<u8> {
+    let kept = simulate_kept(OneEntry::default());
+    kept.find("").expect("the model is kept")
+}
+
+fn simulate_kept(kept: OneEntry) -> Arc<OneEntry> {
+    let world = MemoryWorld::new().with_file("Kept.mo", KEPT).interrupted_after(QUESTIONS);
+    let (mut session, kept) = (Session::new(Box::new(world)), Arc::new(kept));
+    session.storage = Some(kept.clone());
+    session
+        .run_text("fuzz.mos", "openModel(\"Kept.mo\");\nsimulateModel(\"Kept\", stopTime = 1);\n");
+    kept
 }

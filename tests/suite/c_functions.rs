@@ -69,6 +69,49 @@ fn nothing_is_compiled_without_permission() {
     assert!(code == 1 && format!("{out}{errors}").contains("external-refused"), "{out}{errors}");
 }
 
+/// Each library has its own permission.
+#[test]
+fn another_library_is_not_allowed() {
+    let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);
+    let other = ["run", "a.mos", "--library", &library(), "--allow-external=Other"];
+    let (code, out, errors) = gapi(&here, &other);
+    assert!(code == 1 && errors.contains("--allow-external=Foreign"), "{out}{errors}");
+    if is_there_a_compiler() {
+        let own = [&other[..4], &["--allow-external=Foreign"]].concat();
+        let (code, out, errors) = gapi(&here, &own);
+        assert!(code == 0 && out.contains("= 9"), "{out}{errors}");
+    }
+}
+
+/// Not even what runs when a shared object is loaded: a model is only checked.
+#[test]
+#[cfg(unix)]
+fn check_executes_nothing() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let here = folder(&[]);
+    let ran = here.path().join("ran");
+    let code = format!(
+        "#include <stdio.h>\n__attribute__((constructor)) static void at_loading(void) \
+         {{ FILE *file = fopen(\\\"{}\\\", \\\"w\\\"); if (file) fclose(file); }}\n\
+         double twice(double x) {{ return 2*x; }}",
+        ran.display()
+    );
+    let model = format!(
+        "model M function twice input Real x; output Real y; external \"C\" y = twice(x) \
+         annotation(Include = \"{code}\"); end twice; parameter Real p = twice(3); \
+         Real x = p; end M;"
+    );
+    std::fs::write(here.path().join("M.mo"), model).expect("written");
+    for arguments in [&["check", "M.mo"][..], &["check", "M.mo", "--model", "M"]] {
+        let (_, out, errors) = gapi(&here, &[arguments, &["--allow-external"]].concat());
+        assert!(!errors.contains("external-refused") && !ran.exists(), "{out}{errors}");
+    }
+    let (code, out, errors) = gapi(&here, &["simulate", "M.mo", "--allow-external=M"]);
+    assert!(code == 0 && ran.exists(), "{out}{errors}");
+}
+
 #[test]
 fn a_missing_compiler_is_named() {
     let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);

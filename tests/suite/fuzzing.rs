@@ -225,3 +225,9 @@ fn journals() {
     }
     fuzz(targets::read_journal, &[journal], 2000);
 }
+
+/// Their code is right here: what is wrong in them must be found when they are read.
+#[test]
+fn cache_entries() {
+    deep(|| fuzz(targets::read_cache_entry, &[targets::cache_entry()], 300));
+}

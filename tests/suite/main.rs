@@ -37,6 +37,7 @@ mod functions;
 mod fuzzing;
 mod gapilib;
 mod grammar;
+mod grants;
 mod guide;
 mod hangup;
 mod hybrid;

@@ -1,7 +1,7 @@
 //! What scripts and models may do to the disk and to the terminal: the ways around it that were
 //! found stay closed.
 
-use crate::cli::{folder, gapi};
+use crate::cli::{command, folder, gapi};
 use std::fs;
 use std::path::Path;
 
@@ -249,6 +249,11 @@ fn what_exists_outside_is_not_told() {
         "directoryExists(\"PATH\")",
         "Modelica.Utilities.Files.exist(\"PATH\")",
         "readFile(\"PATH/x\")",
+        "Modelica.Utilities.Files.remove(\"PATH\")",
+        "Modelica.Utilities.Files.removeFile(\"PATH\")",
+        "Modelica.Utilities.Files.copy(\"notes.txt\", \"PATH\")",
+        "cd(\"PATH/..\")",
+        "cd(\"PATH\")",
         "runScript(\"PATH.mos\")",
     ] {
         let dialect = if question.contains("Modelica.") { "dymola" } else { "openmodelica" };
@@ -300,4 +305,124 @@ fn the_guide_lists_the_files_that_scripts_create() {
     }
     let listed: Vec<String> = EXCEPTIONS.iter().map(|name| format!("`{name}`")).collect();
     assert!(guide.contains(&listed.join(", ")), "{listed:?}");
+}
+
+/// Secrets have all names there are: only what is known to hold none is read unasked.
+#[test]
+fn environment_variables_are_read_by_name() {
+    let names = ["DATABASE_URL", "MYSQL_PWD", "GH_PAT", "SLACK_WEBHOOK", "home"];
+    let run = |name: &str, more: &[&str]| {
+        let here = home(&format!("print(\"<\" + getEnvironmentVar(\"{name}\") + \">\");\n"));
+        let arguments = [&["run", "job.mos", "--dialect", "openmodelica"], more].concat();
+        let mut command = command(here.path(), &arguments);
+        names.iter().for_each(|name| drop(command.env(name, "s3cret")));
+        let output = command.env("MODELICAPATH", "/libraries").output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    };
+    for name in &names[..4] {
+        let (code, out, errors) = run(name, &[]);
+        assert!(
+            code == Some(1) && errors.contains(&format!("--allow-env={name}")),
+            "{out}{errors}"
+        );
+        assert!(!out.contains("s3cret") && !errors.contains("s3cret"), "{out}{errors}");
+        let (code, out, errors) = run(name, &[&format!("--allow-env={name}")]);
+        assert!(code == Some(0) && out.contains("<s3cret>"), "{out}{errors}");
+    }
+    let (code, out, errors) = run("MODELICAPATH", &[]);
+    assert!(code == Some(0) && out.contains("</libraries>"), "{out}{errors}");
+    let (code, out, errors) = run("NOT_SET_ANYWHERE", &[]);
+    assert!(code == Some(0) && out.contains("<>"), "{out}{errors}");
+}
+
+#[test]
+fn folders_are_excluded_whatever_else_is_allowed() {
+    let here = home("print(readFile(\"private/a.txt\"));\nwriteFile(\"private/b.txt\", \"x\");\n");
+    fs::create_dir(here.path().join("private")).unwrap();
+    fs::write(here.path().join("private/a.txt"), "a secret").unwrap();
+    let base = ["run", "job.mos", "--dialect", "openmodelica"];
+    let (code, out, errors) = gapi(&here, &base);
+    assert!(code == 0 && out.contains("a secret"), "{out}{errors}");
+    fs::remove_file(here.path().join("private/b.txt")).unwrap();
+    let denied = ["--deny-read=private", "--allow-read", "--allow-write"];
+    let (code, out, errors) = gapi(&here, &[&base[..], &denied].concat());
+    assert!(code == 1 && errors.contains("closed to scripts and models"), "{out}{errors}");
+    assert!(!out.contains("a secret") && text(&here, "private/b.txt") == "(missing)", "{out}");
+}
+
+/// The list says what holds, and nothing is done.
+#[test]
+fn permissions_are_listed() {
+    let here = home("writeFile(\"new.txt\", \"x\");\n");
+    let arguments = ["run", "job.mos", "--show-permissions", "--allow-env=MINE", "--deny-read=a"];
+    let (code, out, errors) = gapi(&here, &arguments);
+    assert_eq!(code, 0, "{errors}");
+    let folder = here.path().canonicalize().unwrap();
+    let path = folder.display();
+    let squeezed: Vec<String> =
+        out.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    for row in [
+        format!("read, create new files {path}"),
+        format!("read, create, replace, remove {path}/results/job"),
+        format!("closed {path}/a"),
+        "functions in C none".to_owned(),
+        "start programs none".to_owned(),
+    ] {
+        assert!(squeezed.contains(&row), "{row}: {out}");
+    }
+    assert!(out.contains("OPENMODELICAHOME") && out.contains("MINE"), "{out}");
+    assert_eq!(text(&here, "new.txt"), "(missing)");
+    let (code, _, errors) = gapi(&here, &["test", "job.mos", "--show-permissions"]);
+    assert!(code == 2 && errors.contains("--show-permissions"), "{errors}");
+}
+
+#[test]
+fn check_shows_where_libraries_come_from() {
+    let here = home("");
+    fs::create_dir(here.path().join("models")).unwrap();
+    fs::write(here.path().join("models/P.mo"), "package P constant Real k = 2; end P;").unwrap();
+    fs::write(here.path().join("N.mo"), "model N Modelica.Units.SI.Time t = P.k; end N;").unwrap();
+    let (code, out, errors) = gapi(&here, &["check", "N.mo", "--model", "N", "-v"]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(out.contains("`Modelica` is part of gapi"), "{out}");
+    assert!(out.contains("`P` is loaded from `") && out.contains("models/P.mo`"), "{out}");
+}
+
+/// Who can see a file can know its number and birth: a record that comes with a script gives no access
+/// to it.
+#[test]
+#[cfg(unix)]
+fn a_record_of_a_stranger_opens_nothing() {
+    use std::os::unix::fs::MetadataExt as _;
+    let elsewhere = folder(&[("secret.txt", "a secret")]);
+    let secret = elsewhere.path().canonicalize().unwrap().join("secret.txt");
+    let found = fs::metadata(&secret).unwrap();
+    let Ok(birth) = found.created() else { return };
+    let nanos = birth.duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos();
+    let path = secret.display();
+    let here = home(&format!("print(readFile(\"{path}\"));\nwriteFile(\"{path}\", \"evil\");\n"));
+    fs::create_dir_all(here.path().join("results/job")).unwrap();
+    let origin = "{\n  \"command\": \"gapi run\",\n  \"input\": \"../../job.mos\"\n}\n";
+    fs::write(here.path().join("results/job/origin.json"), origin).unwrap();
+    let record = format!("{} {nanos} {path}\n", found.ino());
+    fs::write(here.path().join("results/job/files_made.txt"), record).unwrap();
+    let (code, out, errors) = gapi(&here, &["run", "job.mos", "--dialect", "openmodelica"]);
+    assert!(code == 1 && !out.contains("a secret"), "{out}{errors}");
+    assert_eq!(text(&elsewhere, "secret.txt"), "a secret");
+}
+
+/// The name of a script does not choose the output folder.
+#[test]
+fn a_script_of_dots_owns_nothing_else() {
+    let here = folder(&[("notes.txt", "mine")]);
+    let script = "Modelica.Utilities.Streams.print(\"evil\", \"notes.txt\");\n";
+    let origin = "{\n  \"command\": \"gapi run\",\n  \"input\": \"...mos\"\n}\n";
+    for name in ["...mos", "..mos", "....mos"] {
+        fs::write(here.path().join(name), script).unwrap();
+        fs::write(here.path().join("origin.json"), origin.replace("...mos", name)).unwrap();
+        let (code, _, errors) = gapi(&here, &["run", name]);
+        assert!(code == 1 && errors.contains("--allow-write"), "{name}: {errors}");
+        assert_eq!(text(&here, "notes.txt"), "mine", "{name}");
+    }
 }

@@ -196,6 +196,7 @@ fn simulated(here: &TempDir, arguments: &[&str]) -> Output {
     all.extend(arguments);
     let mut command = command(here.path(), &all);
     command.env_remove("GAPI_NO_CACHE").env("XDG_CACHE_HOME", here.path().join("cache"));
+    command.env("HOME", here.path().join("home"));
     let done = command.output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     done
@@ -283,4 +284,94 @@ end P;";
     let (first, second) = (run(), run());
     assert_eq!(first.lines().take(4).collect::<Vec<_>>(), ["at 0.25", "at 0.5", "at 0.75", "at 1"]);
     assert_eq!(first, second);
+}
+
+/// A folder with a kept model, and the results of it.
+#[cfg(unix)]
+fn with_kept() -> (TempDir, PathBuf, Vec<u8>) {
+    let here = folder(&[("Large.mo", LARGE)]);
+    simulated(&here, &[]);
+    let results = fs::read(here.path().join("r.csv")).unwrap();
+    let [file] = &kept(&here)[..] else { panic!("one model is kept") };
+    (here, file.clone(), results)
+}
+
+/// Without the key nobody makes an entry that counts.
+#[test]
+#[cfg(unix)]
+fn an_entry_of_somebody_else_is_translated_again() {
+    use std::os::unix::fs::PermissionsExt;
+    let (here, file, results) = with_kept();
+    let key = here.path().join("home/.local/state/gapi/cache.key");
+    assert_eq!(fs::metadata(&key).unwrap().permissions().mode() & 0o777, 0o600);
+    let entry = fs::read(&file).unwrap();
+    // What somebody else's program has kept, with his key.
+    fs::write(&key, [7; 32]).unwrap();
+    simulated(&here, &[]);
+    assert_ne!(fs::read(&file).unwrap(), entry, "it was written anew");
+    assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), results);
+    // The entry of another model under this name.
+    fs::write(here.path().join("Large.mo"), LARGE.replace("Real p = 1", "Real p = 2")).unwrap();
+    simulated(&here, &[]);
+    let changed = fs::read(here.path().join("r.csv")).unwrap();
+    let other = kept(&here).into_iter().find(|path| *path != file);
+    if let Some(other) = other {
+        fs::copy(&file, &other).unwrap();
+        simulated(&here, &[]);
+        assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), changed);
+    }
+}
+
+/// As ssh and git do: what others can write or read is not used.
+#[test]
+#[cfg(unix)]
+fn a_folder_or_key_that_others_can_use_is_not_used() {
+    use std::os::unix::fs::PermissionsExt;
+    let (here, file, results) = with_kept();
+    let models = file.parent().unwrap().to_owned();
+    let set =
+        |path: &Path, mode| fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+    for (path, mode, private) in [
+        (models.clone(), 0o777, 0o700),
+        (models.parent().unwrap().to_owned(), 0o775, 0o700),
+        (here.path().join("home/.local/state/gapi/cache.key"), 0o644, 0o600),
+    ] {
+        fs::remove_file(&file).unwrap_or_default();
+        set(&path, mode);
+        simulated(&here, &[]);
+        assert!(kept(&here).is_empty(), "{}", path.display());
+        assert_eq!(fs::read(here.path().join("r.csv")).unwrap(), results);
+        set(&path, private);
+        simulated(&here, &[]);
+        assert_eq!(kept(&here).len(), 1, "{}", path.display());
+    }
+    // A folder elsewhere, in which old files would be removed.
+    let elsewhere = folder(&[("old.txt", "mine")]);
+    fs::remove_dir_all(&models).unwrap();
+    std::os::unix::fs::symlink(elsewhere.path(), &models).unwrap();
+    simulated(&here, &[]);
+    assert_eq!(fs::read_dir(elsewhere.path()).unwrap().count(), 1);
+}
+
+/// Scripts neither read nor write the cache and the key, whatever they are allowed.
+#[test]
+#[cfg(unix)]
+fn the_cache_is_closed_to_scripts() {
+    let (here, file, _) = with_kept();
+    let entry = fs::read(&file).unwrap();
+    let name = file.strip_prefix(here.path()).unwrap().display();
+    let script = format!(
+        "writeFile(\"{name}\", \"evil\");\ndeleteFile(\"{name}\");\nreadFile(\"{name}\");\n\
+         writeFile(\"cache/gapi/models/new.model\", \"evil\");\n\
+         readFile(\"home/.local/state/gapi/cache.key\");\n"
+    );
+    fs::write(here.path().join("a.mos"), script).unwrap();
+    let arguments = ["run", "a.mos", "--dialect", "openmodelica", "--allow-write", "--allow-read"];
+    let mut command = command(here.path(), &arguments);
+    command.env("XDG_CACHE_HOME", here.path().join("cache"));
+    let done = command.env("HOME", here.path().join("home")).output().unwrap();
+    let errors = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(errors.matches("closed to scripts and models").count(), 5, "{errors}");
+    assert_eq!(fs::read(&file).unwrap(), entry);
+    assert_eq!(kept(&here).len(), 1);
 }

@@ -7,7 +7,7 @@ use gapilib::cli::embedding::Embedding;
 use gapilib::identify::problem::Solution;
 use gapilib::script::Session as Engine;
 use gapilib::script::access::policy::Grant;
-use gapilib::script::runs::problem::{RunOptions, grant_inputs, solve};
+use gapilib::script::runs::problem::{RunOptions, solve};
 use indexmap::IndexMap;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -95,7 +95,7 @@ fn solved(
     options: &RunOptions,
 ) -> Answer<(Solved, bool)> {
     engine.world.grant(Grant::Read(problem));
-    grant_inputs(engine, problem);
+    engine.grant_input(problem);
     let solution = solve(engine, problem, options);
     let solution = checked(engine, solution)?;
     let interrupted = engine.is_interrupted();

@@ -1,11 +1,12 @@
-//! Shared objects in the user's cache folder, by the digest of what they were made of.
+//! Shared objects in the user's cache folder, by the digest of what they were made of. Beside each
+//! stands its code, which only this user's program can make: any other object is compiled again.
 
 use super::hex;
 use crate::cli::cache_folder;
+use crate::cli::disk::read_named;
 use crate::diag::Fault;
 use crate::external::errors::EXTERNAL_COMPILER;
 use crate::fault;
-use sha2::{Digest, Sha256};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ pub(super) fn cannot(error: &io::Error) -> Fault {
 }
 
 const FOLDER: &str = "external";
+/// The ending of the file with the code of an object.
+const CODE: &str = "code";
 
 /// The folder, made so that nobody else can put anything there.
 fn made_folder() -> Result<PathBuf, Fault> {
@@ -49,25 +52,24 @@ impl Drop for Scratch {
     }
 }
 
-fn digest(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
 /// The shared object of a key, if it is as it was written.
 pub(super) fn find(key: &str) -> Option<PathBuf> {
     let object = cache_folder::of(FOLDER)?.join(format!("{key}.so"));
-    let written = fs::read_to_string(object.with_extension("sha256")).ok()?;
-    let is_whole = digest(&fs::read(&object).ok()?) == written.trim();
-    is_whole.then_some(object)
+    let written = read_named(&object.with_extension(CODE)).ok()?;
+    let code = cache_folder::code(key, &read_named(&object).ok()?)?;
+    (hex(&code).as_bytes() == written).then_some(object)
 }
 
 /// Keeps a shared object under a key.
 pub(super) fn keep(key: &str, made: &Path) -> Result<PathBuf, Fault> {
     let object = made_folder()?.join(format!("{key}.so"));
     let bytes = fs::read(made).map_err(|error| cannot(&error))?;
-    let own = made.with_extension("sha256");
-    fs::write(&own, digest(&bytes)).map_err(|error| cannot(&error))?;
     fs::rename(made, &object).map_err(|error| cannot(&error))?;
-    fs::rename(&own, object.with_extension("sha256")).map_err(|error| cannot(&error))?;
+    // Without a key the object is compiled again by the next process.
+    if let Some(code) = cache_folder::code(key, &bytes) {
+        let own = made.with_extension(CODE);
+        fs::write(&own, hex(&code)).map_err(|error| cannot(&error))?;
+        fs::rename(&own, object.with_extension(CODE)).map_err(|error| cannot(&error))?;
+    }
     Ok(object)
 }

@@ -9,8 +9,9 @@ mod cache;
 mod library;
 
 use crate::diag::Fault;
-use crate::external::c::{CCompiler, CLibrary, HEADER, UTILITIES, Unit};
+use crate::external::c::{CCompiler, CLibrary, Frame, HEADER, UTILITIES, Unit};
 use crate::external::errors::EXTERNAL_COMPILER;
+use crate::script::access::policy::ExternalCode;
 use crate::{bail, fault};
 use library::Loaded;
 use sha2::{Digest, Sha256};
@@ -60,10 +61,46 @@ const STANDARD_LIBRARY: &str = "ModelicaExternalC";
 /// Longest part of a compiler's complaints that is shown, in lines.
 const SHOWN: usize = 12;
 
-/// The one compiler of the process: what is loaded stays loaded.
-pub(super) fn of_the_system() -> Arc<dyn CCompiler> {
+/// The compiler for libraries that the user allows.
+pub(super) fn for_libraries(allowed: ExternalCode) -> Arc<dyn CCompiler> {
+    /// The one of the process: what is loaded stays loaded.
     static COMPILER: LazyLock<Arc<SystemCompiler>> = LazyLock::new(Arc::default);
-    COMPILER.clone()
+    Arc::new(Allowed { libraries: allowed, compiler: COMPILER.clone() })
+}
+
+/// The compiler for some libraries.
+#[derive(Debug)]
+struct Allowed {
+    libraries: ExternalCode,
+    compiler: Arc<SystemCompiler>,
+}
+
+impl CCompiler for Allowed {
+    fn permits(&self, class: &str) -> bool {
+        self.libraries.permits(class)
+    }
+
+    fn load(&self, unit: &Unit) -> Result<Arc<dyn CLibrary>, Fault> {
+        match self.libraries.is_only_checked {
+            true => Ok(Arc::new(NotCalled { key: hex(&Sha256::digest(format!("{unit:?}"))) })),
+            false => self.compiler.load(unit),
+        }
+    }
+}
+
+/// A unit whose models are only checked: not even what runs when a library is loaded is executed.
+struct NotCalled {
+    key: String,
+}
+
+impl CLibrary for NotCalled {
+    fn key(&self) -> &str {
+        &self.key
+    }
+
+    fn invoke(&self, _: usize, _: &mut Frame) -> Result<(), String> {
+        Err("functions in C are not called while a model is only checked".to_owned())
+    }
 }
 
 #[derive(Default)]
@@ -91,7 +128,7 @@ fn state_of(path: PathBuf) -> FileState {
     (path, state)
 }
 
-impl CCompiler for SystemCompiler {
+impl SystemCompiler {
     fn load(&self, unit: &Unit) -> Result<Arc<dyn CLibrary>, Fault> {
         let name = format!("{unit:?}");
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);

@@ -247,7 +247,7 @@ fn every_step(job: Job, failure: Failure) -> usize {
             let (left, found): (Vec<_>, Vec<_>) = place
                 .results()
                 .into_iter()
-                .partition(|(name, _)| name.ends_with(".journal") || name.ends_with(".tmp"));
+                .partition(|(name, _)| name.ends_with(".journal") || name.ends_with(".gapi-tmp"));
             same(&found, &expected, &name, &text);
             if left.is_empty() {
                 continue;

@@ -10,9 +10,10 @@ mod place;
 mod place;
 mod record;
 mod steps;
+mod temporary;
 
 use crate::models;
-use crate::script::access::policy::{Access, Change, Grant, Policy, RECORD, Refusal};
+use crate::script::access::policy::{Access, Change, ExternalCode, Grant, Policy, RECORD, Refusal};
 use crate::script::world::{Content, FileReader, normalized};
 use place::Place;
 use record::{Lines, Record};
@@ -35,9 +36,29 @@ struct State {
     /// What the user has named to be read or written, as it was written: pipes and devices have no
     /// real path.
     named: BTreeSet<(Access, PathBuf)>,
+    /// Owners of what the user has named: what is found there may belong to them.
+    owners: BTreeSet<u32>,
+    /// Folders in which what killed processes have left was removed.
+    cleaned: BTreeSet<PathBuf>,
     /// What was made outside of the first output folder; read when it is first needed.
     record: Option<Record>,
 }
+
+impl State {
+    /// Whether something lies where it was found and belongs to whom the user trusts there.
+    fn is_as_found(&self, path: &Path, found: &Place) -> Result<(), Refusal> {
+        let folder = path.parent().and_then(|folder| Place::of(folder, true).ok());
+        if !folder.is_some_and(|folder| found.real.starts_with(&folder.real)) {
+            return Err(Refusal::Link);
+        }
+        let is_trusted =
+            |owner| [place::user(), SUPERUSER].contains(&owner) || self.owners.contains(&owner);
+        if found.owner.is_none_or(is_trusted) { Ok(()) } else { Err(Refusal::Owner) }
+    }
+}
+
+/// Whom the files of the system belong to.
+const SUPERUSER: u32 = 0;
 
 impl Disk {
     fn state(&self) -> MutexGuard<'_, State> {
@@ -47,20 +68,42 @@ impl Disk {
     /// Allows something from here on.
     pub(super) fn grant(&self, grant: Grant<'_>) {
         let path = grant.path().unwrap_or(Path::new("/"));
-        // What cannot be resolved is not opened either.
-        let real = Place::of(path, true).map_or_else(|_| path.to_owned(), |place| place.real);
+        let place = Place::of(path, true).ok();
         let mut state = self.state();
         match grant {
             Grant::Named(_) => drop(state.named.insert((Access::Write, path.to_owned()))),
             Grant::Read(_) => drop(state.named.insert((Access::Read, path.to_owned()))),
             _ => {}
         }
+        match (grant, &place) {
+            (Grant::Read(_) | Grant::Create(_), Some(named)) => state.owners.extend(named.owner),
+            (Grant::Found(_), Some(found)) => {
+                if let Err(why) = state.is_as_found(path, found) {
+                    return state.policy.pass_over(found.real.clone(), why);
+                }
+            }
+            _ => {}
+        }
+        // What cannot be resolved is not opened either.
+        let real = place.map_or_else(|| path.to_owned(), |place| place.real);
         state.policy.grant(grant, real);
     }
 
-    /// Whether functions in C may be compiled and called.
-    pub(super) fn calls_external_code(&self) -> bool {
-        self.state().policy.calls_external_code()
+    /// The functions in C that may be compiled and called.
+    pub(super) fn external_code(&self) -> ExternalCode {
+        self.state().policy.external_code().clone()
+    }
+
+    /// What is allowed and excluded, for people; folders that do not exist are left out.
+    pub(super) fn permissions(&self) -> Vec<(String, String)> {
+        let state = self.state();
+        let is_shown = |(meaning, path): &(String, PathBuf)| {
+            !meaning.starts_with("read") || path.exists() || meaning.contains("remove")
+        };
+        let rows = state.policy.listed().into_iter().filter(is_shown);
+        let rows = rows.map(|(meaning, path)| (meaning, path.display().to_string()));
+        let functions = state.policy.external_code().listed();
+        rows.chain([("functions in C".to_owned(), functions)]).collect()
     }
 
     /// # Errors
@@ -85,10 +128,6 @@ impl Disk {
             }
         };
         let read = self.state().policy.may_read(&place.real);
-        if read == Err(Refusal::Reading) {
-            self.know_record();
-            self.state().policy.may_read(&place.real)?;
-        }
         Ok(read.map(|()| place)?)
     }
 
@@ -115,9 +154,9 @@ impl Disk {
             return;
         }
         let own = state.policy.own_folders().next().map(|own| own.join(RECORD));
-        let text = own.and_then(|file| fs::read_to_string(file).ok()).unwrap_or_default();
-        let record = Record::read(&text);
-        record.unchanged().for_each(|path| state.policy.note_made(path.to_owned()));
+        let bytes = own.and_then(|file| Place::of(&file, false).ok()?.read().ok());
+        let record = Record::read(&String::from_utf8_lossy(&bytes.unwrap_or_default()));
+        record.unchanged().for_each(|path| state.policy.note_recorded(path.to_owned()));
         state.record = Some(record);
     }
 
@@ -159,7 +198,17 @@ impl Disk {
             return filled(&fs::OpenOptions::new().write(true).open(path)?, content);
         }
         let place = self.to_write(path)?;
+        self.clean(&place);
         place.write(content, |file| self.note_made(&place.real, file))
+    }
+
+    /// Removes what killed processes have left where a file is going to be written, once.
+    fn clean(&self, place: &Place) {
+        let Some(folder) = place.real.parent() else { return };
+        if self.state().cleaned.insert(folder.to_owned()) {
+            // What cannot be removed does no harm.
+            let _ = place.remove_abandoned();
+        }
     }
 
     /// Opens a file to write behind its end.
@@ -232,7 +281,8 @@ impl FileReader for Disk {
     }
 
     fn is_file(&self, path: &Path) -> bool {
-        models::read(path).is_some() || path.is_file()
+        // Whether there is a file that may not be read is not told.
+        models::read(path).is_some() || path.is_file() && self.to_read(path).is_ok()
     }
 }
 
@@ -240,6 +290,13 @@ impl FileReader for Disk {
 pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
     Place::of(&path, true)?.write(&mut |file| file.write_all(bytes), |_| Ok(()))
+}
+
+/// Writes a file of the program beside one that the command line names, or in such a folder: all of it
+/// or nothing, and not where a link of this name leads, which the file replaces.
+pub(super) fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let path = std::path::absolute(path)?;
+    Place::of(&path, false)?.replace_link().write(&mut |file| file.write_all(bytes), |_| Ok(()))
 }
 
 /// Reads a file that the command line names, no pipe and no device.
@@ -266,16 +323,11 @@ pub(super) fn create_named_folders(path: &Path) -> io::Result<()> {
     Place::of(&std::path::absolute(path)?, true)?.create_folders().map(drop)
 }
 
-/// Removes the files in a folder that writing has left behind which did not come to its end.
+/// Removes the files in a folder that writing has left behind which did not come to its end: whoever
+/// has locked the folder knows that nobody else writes in it.
 pub(super) fn remove_temporary_files(folder: &Path) {
-    let is_temporary = |name: &str| {
-        let random = name.strip_suffix(".tmp").and_then(|name| name.rsplit_once('.'));
-        random.is_some_and(|(_, random)| {
-            random.len() == 16 && random.bytes().all(|b| b.is_ascii_hexdigit())
-        })
-    };
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if is_temporary(&entry.file_name().to_string_lossy()) {
+        if temporary::is_temporary(&entry.file_name()) {
             // What cannot be removed does no harm.
             let _ = fs::remove_file(entry.path());
         }

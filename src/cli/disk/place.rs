@@ -5,14 +5,14 @@
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
 use super::steps::step;
+use super::temporary::{is_old, is_temporary, temporary_name};
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
-use rustix::fs::{self, AtFlags, FileType, Mode, OFlags};
+use rustix::fs::{self, AtFlags, FileType, Mode, OFlags, Stat};
 use rustix::io::Errno;
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
-use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read as _};
 use std::os::fd::OwnedFd;
 use std::os::unix::ffi::OsStringExt as _;
@@ -32,6 +32,8 @@ pub(super) struct Place {
     pub real: PathBuf,
     kind: Option<FileType>,
     mode: u32,
+    /// The number of the user whom it belongs to, if it exists.
+    pub owner: Option<u32>,
 }
 
 /// The folders walked through, from the root.
@@ -69,7 +71,7 @@ impl Walk {
     }
 
     /// Where the walk ends: at an entry of the folder that it is in.
-    fn end(mut self, name: OsString, kind: Option<FileType>, mode: u32) -> io::Result<Place> {
+    fn end(mut self, name: OsString, found: Option<&Stat>) -> io::Result<Place> {
         let mut parts: Vec<OsString> = std::iter::once(name).chain(self.ahead.drain(..)).collect();
         if parts.iter().any(|part| part == "..") {
             return Err(io::ErrorKind::NotFound.into());
@@ -78,16 +80,18 @@ impl Walk {
         real.extend(self.names.iter().chain(&parts));
         let name = parts.pop().unwrap_or_default();
         let folder = self.folders.pop().ok_or(io::ErrorKind::NotFound)?;
-        Ok(Place { folder, missing: parts, name, real, kind, mode })
+        let kind = found.map(|stat| FileType::from_raw_mode(stat.st_mode));
+        let mode = found.map_or(0, |stat| stat.st_mode & 0o777);
+        let owner = found.map(|stat| stat.st_uid);
+        Ok(Place { folder, missing: parts, name, real, kind, mode, owner })
     }
 
     /// Where the walk ends: at the folder that it is in.
     fn end_in_folder(mut self) -> io::Result<Place> {
-        let Some(name) = self.names.pop() else {
-            return self.end(".".into(), Some(FileType::Directory), 0o755);
-        };
+        let stat = fs::fstat(self.here()?)?;
+        let Some(name) = self.names.pop() else { return self.end(".".into(), Some(&stat)) };
         self.folders.pop();
-        self.end(name, Some(FileType::Directory), 0o755)
+        self.end(name, Some(&stat))
     }
 }
 
@@ -109,7 +113,7 @@ impl Place {
             let is_last = walk.ahead.is_empty();
             let stat = match fs::statat(walk.here()?, &part, AtFlags::SYMLINK_NOFOLLOW) {
                 Ok(stat) => stat,
-                Err(Errno::NOENT) => return walk.end(part, None, 0),
+                Err(Errno::NOENT) => return walk.end(part, None),
                 Err(error) => return Err(error.into()),
             };
             match FileType::from_raw_mode(stat.st_mode) {
@@ -126,11 +130,19 @@ impl Place {
                     walk.folders.push(folder);
                     walk.names.push(part);
                 }
-                kind if is_last => return walk.end(part, Some(kind), stat.st_mode & 0o777),
+                _ if is_last => return walk.end(part, Some(&stat)),
                 _ => return Err(Errno::NOTDIR.into()),
             }
         }
         walk.end_in_folder()
+    }
+
+    /// The same where a link is written over as if there were none.
+    pub(super) fn replace_link(mut self) -> Place {
+        if self.kind == Some(FileType::Symlink) {
+            self.kind = None;
+        }
+        self
     }
 
     pub(super) fn exists(&self) -> bool {
@@ -213,6 +225,8 @@ impl Place {
         }
         let temporary = temporary_name(&self.name);
         let file = self.create(&temporary)?;
+        // Until the process ends, others know that the file is still written.
+        let _ = file.try_lock();
         let written = self
             .fill(&file, content)
             .and_then(|()| note(&file))
@@ -223,6 +237,32 @@ impl Place {
             let _ = fs::unlinkat(&self.folder, &temporary, AtFlags::empty());
         }
         written
+    }
+
+    /// Removes the temporary files beside this one that killed processes have left.
+    pub(super) fn remove_abandoned(&self) -> io::Result<()> {
+        if !self.missing.is_empty() {
+            return Ok(());
+        }
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        let folder = fs::openat(&self.folder, ".", flags, Mode::empty())?;
+        for entry in fs::Dir::read_from(&folder)?.flatten() {
+            let name = OsString::from_vec(entry.file_name().to_bytes().to_vec());
+            if is_temporary(&name) && self.is_abandoned(&name).unwrap_or(false) {
+                fs::unlinkat(&self.folder, &name, AtFlags::empty())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a temporary file belongs to the user and to no process any more.
+    fn is_abandoned(&self, name: &OsStr) -> io::Result<bool> {
+        use std::os::unix::fs::MetadataExt as _;
+        let flags = OFlags::RDWR | OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::CLOEXEC;
+        let file = File::from(fs::openat(&self.folder, name, flags, Mode::empty())?);
+        let found = file.metadata()?;
+        let is_ours = found.is_file() && found.nlink() == 1 && found.uid() == user();
+        Ok(is_ours && is_old(&found) && file.try_lock().is_ok())
     }
 
     /// A file that was not there before.
@@ -288,6 +328,11 @@ impl Place {
     }
 }
 
+/// The number of the user.
+pub(super) fn user() -> u32 {
+    rustix::process::geteuid().as_raw()
+}
+
 /// A folder as a step of a walk: it need not be readable.
 fn folder_flags() -> OFlags {
     let flags = OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
@@ -307,11 +352,4 @@ fn is_made_up(file: &File) -> bool {
 #[cfg(not(target_os = "linux"))]
 fn is_made_up(_: &File) -> bool {
     false
-}
-
-/// A name beside this one that nobody can know before.
-pub(super) fn temporary_name(name: &OsStr) -> OsString {
-    let mut temporary = name.to_owned();
-    temporary.push(format!(".{:016x}.tmp", RandomState::new().hash_one(std::process::id())));
-    temporary
 }

@@ -1,11 +1,10 @@
 //! A path resolved once, where the calls of POSIX are missing: the folder is taken from the system
 //! in its real form, and the entry in it is judged and opened by that path.
 
+use super::temporary::{is_old, is_temporary, temporary_name};
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
-use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
-use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -14,6 +13,8 @@ pub(super) struct Place {
     /// The path without links and dots.
     pub real: PathBuf,
     kind: Option<fs::FileType>,
+    /// The number of the user whom it belongs to: unknown here.
+    pub owner: Option<u32>,
 }
 
 impl Place {
@@ -27,17 +28,23 @@ impl Place {
         {
             let folder = path.parent().unwrap_or(path).canonicalize()?;
             let real = path.file_name().map_or(folder.clone(), |name| folder.join(name));
-            return Ok(Place { real, kind: Some(kind) });
+            return Ok(Place { real, kind: Some(kind), owner: None });
         }
         for known in path.ancestors() {
             if let Ok(real) = known.canonicalize() {
                 let rest = path.strip_prefix(known).unwrap_or(Path::new(""));
                 let real = if rest.as_os_str().is_empty() { real } else { real.join(rest) };
                 let kind = fs::metadata(&real).ok().map(|found| found.file_type());
-                return Ok(Place { real, kind });
+                return Ok(Place { real, kind, owner: None });
             }
         }
         Err(io::ErrorKind::NotFound.into())
+    }
+
+    /// The same where a link is written over as if there were none.
+    pub fn replace_link(mut self) -> Place {
+        self.kind.take_if(|kind| kind.is_symlink());
+        self
     }
 
     pub fn exists(&self) -> bool {
@@ -77,6 +84,21 @@ impl Place {
         Ok(names)
     }
 
+    /// Removes the temporary files beside this one that killed processes have left.
+    pub fn remove_abandoned(&self) -> io::Result<()> {
+        for entry in fs::read_dir(self.real.parent().unwrap_or(&self.real))?.flatten() {
+            if !is_temporary(&entry.file_name()) {
+                continue;
+            }
+            let file = OpenOptions::new().write(true).open(entry.path())?;
+            if is_old(&file.metadata()?) && file.try_lock().is_ok() {
+                drop(file);
+                fs::remove_file(entry.path())?;
+            }
+        }
+        Ok(())
+    }
+
     pub fn write(
         &self,
         content: Content<'_>,
@@ -88,6 +110,8 @@ impl Place {
         let name = self.real.file_name().unwrap_or_default();
         let temporary = self.real.with_file_name(temporary_name(name));
         let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        // Until the process ends, others know that the file is still written.
+        let _ = file.try_lock();
         let written = super::filled(&file, content).and_then(|()| file.sync_data());
         let written = written.and_then(|()| note(&file));
         drop(file);
@@ -118,9 +142,7 @@ impl Place {
     }
 }
 
-/// A name beside this one that nobody can know before.
-pub(super) fn temporary_name(name: &OsStr) -> OsString {
-    let mut temporary = name.to_owned();
-    temporary.push(format!(".{:016x}.tmp", RandomState::new().hash_one(std::process::id())));
-    temporary
+/// The number of the user.
+pub(super) fn user() -> u32 {
+    0
 }

@@ -112,8 +112,42 @@ mod links {
         symlink("../../private/secret", root.join("run/results").join(foreseen)).expect("a link");
         disk.write(&root.join("run/results/a.csv"), b"x").expect("written");
         assert_eq!(fs::read(root.join("private/secret")).expect("there"), b"mine");
-        let names = [0; 4].map(|_| place::temporary_name("a".as_ref()));
+        let names = [0; 4].map(|_| temporary::temporary_name("a".as_ref()));
         assert!(names.iter().collect::<BTreeSet<_>>().len() == 4, "{names:?}");
+    }
+
+    #[test]
+    fn what_killed_processes_left_is_removed_and_nothing_else() {
+        let (_folder, root, disk) = run();
+        let left = |number: u32| root.join(format!("run/a.mat.{number:016x}.gapi-tmp"));
+        let old = std::time::SystemTime::now() - std::time::Duration::from_secs(3600);
+        let written = |path: &Path| {
+            let file = File::create(path).expect("made");
+            file.set_modified(old).expect("set");
+            file
+        };
+        written(&left(1));
+        let locked = written(&left(2));
+        locked.lock().expect("locked");
+        fs::write(left(3), "young").expect("written");
+        let others = ["run/a.tmp", "run/b.0123456789abcdef.tmp"].map(|name| root.join(name));
+        others.iter().for_each(|path| drop(written(path)));
+        symlink("../private/secret", left(4)).expect("a link");
+        fs::hard_link(root.join("private/secret"), left(5)).expect("a hard link");
+        disk.write(&root.join("run/a.mat"), b"x").expect("written");
+        assert!(!left(1).exists());
+        for path in [2, 3, 5].map(left).iter().chain(&others) {
+            assert!(path.exists(), "{}", path.display());
+        }
+        assert!(left(4).is_symlink() && root.join("private/secret").exists());
+    }
+
+    /// As long as the file system allows.
+    #[test]
+    fn long_names_are_written() {
+        let (_folder, root, disk) = run();
+        let name = format!("{}.csv", "é".repeat(125));
+        disk.write(&root.join("run").join(&name), b"x").expect("written");
     }
 
     #[test]

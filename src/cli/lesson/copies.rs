@@ -56,7 +56,7 @@ impl Copies<'_> {
                 let own = named::read(&file).map_err(|error| failed(&file, &error))?;
                 if own != text.as_bytes() {
                     let beside = self.file(&format!("{name}.old"));
-                    disk::write_named(&beside, &own).map_err(|error| failed(&beside, &error))?;
+                    disk::write_beside(&beside, &own).map_err(|error| failed(&beside, &error))?;
                     kept.push((file, beside));
                 }
             }
@@ -112,7 +112,7 @@ impl Copies<'_> {
     fn write(&self, name: &str, text: &str) -> Result<(), String> {
         let file = self.file(name);
         let folders = file.parent().map_or(Ok(()), disk::create_named_folders);
-        let written = folders.and_then(|()| disk::write_named(&file, text.as_bytes()));
+        let written = folders.and_then(|()| disk::write_beside(&file, text.as_bytes()));
         written.map_err(|error| failed(&file, &error))
     }
 }

@@ -26,7 +26,6 @@ use lsp_types::{InitializeParams, InitializeResult, ServerInfo};
 use queue::Queue;
 use serde::de::DeserializeOwned;
 use std::io::{self, BufRead};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -67,8 +66,7 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
     // A connection that ends before it begins has no client.
     let who = started.recv().unwrap_or_default();
     let mut embedding = Embedding { cache: false, ..Embedding::default() };
-    let folders: Vec<PathBuf> = who.folders.iter().map(|folder| holder(folder)).collect();
-    let libraries = global.library.iter().chain(&who.libraries).chain(&folders);
+    let libraries = global.library.iter().chain(&who.libraries).chain(&who.folders);
     embedding.libraries = libraries.cloned().collect();
     embedding.read = global.allow_read.clone();
     let code = match embedding.session(Box::new(Silent), Arc::default()) {
@@ -84,12 +82,6 @@ pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
         Ok(Ok(())) => code,
         _ => ExitCode::FAILURE,
     }
-}
-
-/// The folder in which the packages of a folder of the workspace are found by name.
-fn holder(folder: &Path) -> PathBuf {
-    let around = folder.parent().filter(|_| folder.join("package.mo").is_file());
-    around.unwrap_or(folder).to_owned()
 }
 
 fn workspace(who: Client, embedding: Embedding, first: Session) -> Workspace {

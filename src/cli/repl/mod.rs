@@ -73,6 +73,9 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
         ..options
     });
     let mut dialogue = Dialogue::default();
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
+    }
     if let Some(script) = &arguments.script {
         let _watch =
             match limits::watch(&arguments.freedom.limits, Instant::now(), stopping.clone()) {

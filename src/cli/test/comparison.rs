@@ -101,7 +101,7 @@ impl Comparison<'_> {
         match lines {
             Some(None) => Ok(Verdict::Agrees(0)),
             _ if self.accept => {
-                disk::write_named(&transcript_of(path), transcript.as_bytes())?;
+                disk::write_beside(&transcript_of(path), transcript.as_bytes())?;
                 Ok(Verdict::Accepted)
             }
             Some(Some(lines)) => Ok(Verdict::Differs(lines, transcript)),

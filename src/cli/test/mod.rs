@@ -218,7 +218,7 @@ fn review(tested: &mut Tested) {
     if read.is_err() || !answer.trim().eq_ignore_ascii_case("y") {
         return;
     }
-    tested.verdict = match disk::write_named(&transcript_of(&tested.path), transcript.as_bytes()) {
+    tested.verdict = match disk::write_beside(&transcript_of(&tested.path), transcript.as_bytes()) {
         Ok(()) => Verdict::Accepted,
         Err(error) => Verdict::Failed(error.to_string()),
     };

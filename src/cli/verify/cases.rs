@@ -5,7 +5,7 @@
 //!   collection is the name of the model;
 //! - that of BuildingsPy: one file `Library_Examples_Model.txt` a model.
 
-use crate::cli::disk::list_named;
+use crate::cli::disk::{list_named, read_named};
 use crate::name::{Ident, Name};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,7 @@ pub(super) fn find(root: &Path, filter: Option<&str>, classes: Classes) -> io::R
 
 /// Whether a file of BuildingsPy has trajectories; that of a model which is only exported has none.
 fn holds_samples(path: &Path) -> io::Result<bool> {
-    let text = std::fs::read(path)?;
+    let text = read_named(path)?;
     Ok(text.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"time=[")))
 }
 

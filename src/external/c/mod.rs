@@ -41,6 +41,8 @@ pub struct Unit {
 
 /// Compiles and loads C.
 pub trait CCompiler: fmt::Debug + Send + Sync {
+    /// Whether functions of the library with this class may be compiled.
+    fn permits(&self, class: &str) -> bool;
     /// The shared object of a unit, compiled unless it is known.
     ///
     /// # Errors

@@ -70,10 +70,7 @@ impl Instantiation<'_> {
                 let operand = sub(self, operand)?;
                 return self.unary(*operator, operand, local, e.span);
             }
-            ExpressionKind::Binary { operator, left, right } => {
-                let sides = (sub(self, left)?, sub(self, right)?);
-                return self.binary(*operator, sides, local, e.span);
-            }
+            ExpressionKind::Binary { .. } => return self.chain(e, context, local),
             ExpressionKind::If { branches, otherwise } => {
                 return self.if_expression(e.span, branches, otherwise, context, local);
             }
@@ -138,6 +135,27 @@ impl Instantiation<'_> {
         }
         let kind = ExpressionKind::Unary { operator, operand: Box::new(operand) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// A chain of operations that leans to the left, as the terms of a sum do: it is no deeper than
+    /// its operands.
+    fn chain(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let (mut operations, mut first) = (Vec::new(), e);
+        while let ExpressionKind::Binary { operator, left, right } = &first.kind {
+            operations.push((*operator, &**right, first.span));
+            first = left;
+        }
+        let mut resolved = self.resolve(first, context, local)?;
+        for (operator, right, span) in operations.into_iter().rev() {
+            let right = self.resolve(right, context, local)?;
+            resolved = self.binary(operator, (resolved, right), local, span)?;
+        }
+        Ok(resolved)
     }
 
     fn binary(

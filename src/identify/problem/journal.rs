@@ -75,6 +75,16 @@ pub fn encode(record: &Record) -> Vec<u8> {
     frame(&payload)
 }
 
+/// A journal without the times that its run took; what is none stays as it is.
+pub fn without_times(bytes: &[u8]) -> Vec<u8> {
+    let Some(journal) = decode(bytes) else { return bytes.to_vec() };
+    let mut timeless = header(&journal.origins);
+    for record in journal.records {
+        timeless.extend(encode(&Record { seconds: 0.0, ..record }));
+    }
+    timeless
+}
+
 /// Reads a journal as far as it is whole; `None` when it is none at all.
 pub fn decode(bytes: &[u8]) -> Option<Journal> {
     let mut reader = Reader { bytes };

@@ -64,7 +64,7 @@ pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred, infer};
-pub use journal::{Journal, Record, decode, encode, header};
+pub use journal::{Journal, Record, decode, encode, header, without_times};
 pub use linearization::Linearization;
 pub use non_identifiable::{Form, NonIdentifiable};
 use parts::other_shards;

@@ -7,7 +7,7 @@ use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
-use crate::syntax::ast::{BinaryOperator, Expression};
+use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::value::check_length;
 use std::sync::Arc;
 
@@ -29,7 +29,27 @@ impl<T: Target> Lowering<'_, T> {
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let a = match self.lower(left)? {
+        // A chain that leans to the left, as the terms of a sum do, is no deeper than its operands.
+        let (mut operations, mut first) = (vec![(operator, left, right, span)], left);
+        while let ExpressionKind::Binary { operator, left, right } = &first.kind {
+            operations.push((*operator, &**left, &**right, first.span));
+            first = left;
+        }
+        let mut lowered = self.lower(first)?;
+        for (operator, left, right, span) in operations.into_iter().rev() {
+            lowered = self.operation(operator, (lowered, left), right, span)?;
+        }
+        Ok(lowered)
+    }
+
+    fn operation(
+        &mut self,
+        operator: BinaryOperator,
+        (lowered, left): (Lowered<T::Scalar>, &Expression),
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let a = match lowered {
             Lowered::Text(a) => return self.texts(operator, (a, left), right, span),
             Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
             Lowered::Array(a) => a,

@@ -26,6 +26,7 @@ use layout::Layout;
 use moment::{Kind, Moment};
 use records::{Record, Separator};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// How places in a table are named.
@@ -134,6 +135,10 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
         })
         .collect();
     let dates = only_dates(&headings, &parsed);
+    let mut named: HashMap<&str, Vec<usize>> = HashMap::new();
+    for heading in &headings {
+        named.entry(heading.name).or_default().push(heading.column);
+    }
     for (heading, parsed) in headings.iter().zip(&parsed) {
         let Some(parsed) = parsed else {
             if !cells(layout, heading, places, strict).is_empty() {
@@ -142,10 +147,9 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
             }
             continue;
         };
-        let same = |other: &&Heading<'_>| other.name == heading.name;
-        let columns: Vec<usize> = headings.iter().filter(same).map(|other| other.column).collect();
         let name = heading.name.to_owned();
-        if let [first, second, ..] = columns[..] {
+        if let Some([first, second, ..]) = named.get(heading.name).map(Vec::as_slice) {
+            let (first, second) = (*first, *second);
             file.fail(name, two_columns(heading.name, layout.head.line, [first, second], places));
             continue;
         }

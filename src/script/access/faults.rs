@@ -53,7 +53,8 @@ fn escape_of(c: char) -> Option<(&'static str, &'static str)> {
 /// The fault of a file that the policy does not let us use.
 fn refused(refusal: Refusal, path: &Path) -> Fault {
     let verb = if refusal.is_of() == Access::Read { "read" } else { "changed" };
-    let verb = if refusal == Refusal::System { "opened" } else { verb };
+    let is_closed = matches!(refusal, Refusal::System | Refusal::Denied);
+    let verb = if is_closed { "opened" } else { verb };
     let message = format!("`{}` cannot be {verb}: {}", path.display(), refusal.reason());
     Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
 }

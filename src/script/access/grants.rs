@@ -1,4 +1,9 @@
-//! Files and folders that a session may use, as the user names them.
+//! Files and folders that a session may use: the one place that derives them from what the user has
+//! named or stands in.
+//!
+//! What the user names on the command line is granted where it leads. What is found beside or above it
+//! is granted as [`Grant::Found`]: no link leads elsewhere. What files of others name, such as a
+//! problem or a script, is not granted at all: it must lie in what is granted already.
 
 use super::faults::{cannot, escape_help, shown};
 use super::policy::{Access, Grant};
@@ -38,6 +43,14 @@ impl Session {
         self.grant_models(folder);
     }
 
+    /// The user has named this script: new files may be made in its folder.
+    pub fn grant_script(&mut self, path: &Path) {
+        self.grant_input(path);
+        if let Some(folder) = self.world.absolute(path).parent() {
+            self.world.grant(Grant::Create(folder));
+        }
+    }
+
     /// Results may be written into this folder of a model that a script has opened, which is where
     /// Dymola puts them, if the folder may be read.
     pub(in crate::script) fn trust_results(&mut self, folder: &Path) {
@@ -51,11 +64,30 @@ impl Session {
         self.world.grant(Grant::Named(path));
     }
 
-    /// The folders `models` in a folder and above it may be read.
+    /// The folders `models` in a folder and above it may be read, where no link leads elsewhere and
+    /// nobody else has put them there.
     pub fn grant_models(&mut self, folder: &Path) {
         for folder in folder.ancestors() {
-            self.world.grant(Grant::Read(&folder.join("models")));
+            self.world.grant(Grant::Found(&folder.join("models")));
         }
+    }
+
+    /// What scripts and models may do, as a table for people.
+    pub fn permissions(&self) -> String {
+        let is_free = self.options.permissions.system;
+        let variables = if is_free { "all".to_owned() } else { self.process.listed() };
+        let programs = if is_free { "all" } else { "none" };
+        let mut rows = self.world.permissions();
+        rows.push(("start programs".to_owned(), programs.to_owned()));
+        rows.push(("environment variables".to_owned(), variables));
+        let width = rows.iter().map(|(meaning, _)| meaning.chars().count()).max().unwrap_or(0);
+        let row = |(meaning, subject): &(String, String)| format!("{meaning:width$}  {subject}\n");
+        rows.iter().map(row).collect()
+    }
+
+    /// The user lets scripts and models read this environment variable.
+    pub fn allow_variable(&mut self, name: &str) {
+        self.process.allow(name);
     }
 
     /// The content of an environment variable; `None` if it is not set.

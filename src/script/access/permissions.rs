@@ -7,6 +7,6 @@ pub struct Permissions {
     pub read: bool,
     /// To write and remove files anywhere, those too that the run has not made.
     pub write: bool,
-    /// To run programs, and to read environment variables whose names look like those of secrets.
+    /// To run programs, and to read all environment variables.
     pub system: bool,
 }

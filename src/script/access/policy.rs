@@ -4,7 +4,7 @@
 //! `..` included, asks here, and acts on what it has resolved. So a name that leads somewhere else
 //! is judged by where it leads.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -47,6 +47,10 @@ impl Change {
 pub enum Grant<'a> {
     /// To read what is in this folder, or this file or device, which the user has named.
     Read(&'a Path),
+    /// To read what is in this folder, or this file, which was found beside or above one that the
+    /// user has named: if its real path lies in the folder where it was found, and if it belongs to
+    /// the user, to the system or to the owner of what the user has named.
+    Found(&'a Path),
     /// To make new files in this folder.
     Create(&'a Path),
     /// To make new files of results and data in this folder, not below it.
@@ -55,14 +59,18 @@ pub enum Grant<'a> {
     Replace(&'a Path),
     /// To make, replace and remove files in this folder, which holds the results of the run.
     Own(&'a Path),
-    /// To write this one file or device, whatever it is: the user has named it.
+    /// To write this one file or device, whatever it is: the user has named it on the command line.
     Named(&'a Path),
+    /// Nothing in this folder, whatever else is allowed.
+    Deny(&'a Path),
     /// To read all files.
     ReadAll,
     /// To write and remove all files.
     WriteAll,
-    /// To compile and call functions in C of libraries.
-    ExternalCode,
+    /// To compile and call functions in C of a library, or of all.
+    ExternalCode(Option<&'a str>),
+    /// Functions in C are not called, even if they are allowed: the models are only checked.
+    CheckOnly,
 }
 
 impl<'a> Grant<'a> {
@@ -70,12 +78,14 @@ impl<'a> Grant<'a> {
     pub fn path(self) -> Option<&'a Path> {
         match self {
             Grant::Read(path)
+            | Grant::Found(path)
             | Grant::Create(path)
             | Grant::Results(path)
             | Grant::Replace(path)
             | Grant::Own(path)
-            | Grant::Named(path) => Some(path),
-            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => None,
+            | Grant::Named(path)
+            | Grant::Deny(path) => Some(path),
+            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode(_) | Grant::CheckOnly => None,
         }
     }
 
@@ -84,12 +94,14 @@ impl<'a> Grant<'a> {
     pub fn with_path(self, path: &'a Path) -> Grant<'a> {
         match self {
             Grant::Read(_) => Grant::Read(path),
+            Grant::Found(_) => Grant::Found(path),
             Grant::Create(_) => Grant::Create(path),
             Grant::Results(_) => Grant::Results(path),
             Grant::Replace(_) => Grant::Replace(path),
             Grant::Own(_) => Grant::Own(path),
             Grant::Named(_) => Grant::Named(path),
-            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode => self,
+            Grant::Deny(_) => Grant::Deny(path),
+            Grant::ReadAll | Grant::WriteAll | Grant::ExternalCode(_) | Grant::CheckOnly => self,
         }
     }
 }
@@ -99,6 +111,12 @@ impl<'a> Grant<'a> {
 pub enum Refusal {
     /// Reading outside of the folders that may be read.
     Reading,
+    /// Reading what a link leads to that was found beside or above a file of the user.
+    Link,
+    /// Reading what was found there and belongs to somebody else.
+    Owner,
+    /// What the user or the program excludes.
+    Denied,
     /// Writing outside of the folders that may be written.
     Outside,
     /// A file of the operating system, or one that is neither a file nor a folder.
@@ -120,6 +138,9 @@ impl Refusal {
     pub fn reason(self) -> &'static str {
         match self {
             Refusal::Reading => "it is outside the folders that may be read",
+            Refusal::Link => "a link leads there, out of the folders that may be read",
+            Refusal::Owner => "it belongs to another user",
+            Refusal::Denied => "it is closed to scripts and models",
             Refusal::Outside => "it is outside the directory where the run started",
             Refusal::System => "it belongs to the operating system",
             Refusal::Hidden => "its name starts with a dot",
@@ -136,8 +157,10 @@ impl Refusal {
     /// What the user can do about it.
     pub fn help(self) -> Option<&'static str> {
         match self {
-            Refusal::Reading => Some("allow it with `--allow-read`, or `--allow-read=DIR`"),
-            Refusal::System | Refusal::Reserved => None,
+            Refusal::Reading | Refusal::Link | Refusal::Owner => {
+                Some("allow it with `--allow-read=DIR`, or `--allow-read` for all files")
+            }
+            Refusal::System | Refusal::Reserved | Refusal::Denied => None,
             Refusal::Kind => {
                 Some("write it to the output folder, or allow it with `--allow-write`")
             }
@@ -147,7 +170,10 @@ impl Refusal {
 
     /// Whether it was about reading.
     pub fn is_of(self) -> Access {
-        if self == Refusal::Reading { Access::Read } else { Access::Write }
+        match self {
+            Refusal::Reading | Refusal::Link | Refusal::Owner => Access::Read,
+            _ => Access::Write,
+        }
     }
 }
 
@@ -204,21 +230,59 @@ pub const EXCEPTIONS: &[&str] = &[
 #[derive(Debug, Clone, Default)]
 pub struct Policy {
     readable: BTreeSet<PathBuf>,
+    denied: BTreeSet<PathBuf>,
+    passed_over: BTreeMap<PathBuf, Refusal>,
     creatable: BTreeSet<PathBuf>,
     results: BTreeSet<PathBuf>,
     own: BTreeSet<PathBuf>,
     named: BTreeSet<PathBuf>,
     made: BTreeSet<PathBuf>,
+    /// What earlier runs have made, as their record says: it may be replaced, not read for that.
+    recorded: BTreeSet<PathBuf>,
     reads_all: bool,
     writes_all: bool,
-    external_code: bool,
+    external_code: ExternalCode,
+}
+
+/// Functions in C that may be called.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ExternalCode {
+    /// Those of these libraries.
+    libraries: BTreeSet<String>,
+    /// Those of all.
+    all: bool,
+    /// Whether they are only checked.
+    pub is_only_checked: bool,
+}
+
+impl ExternalCode {
+    /// The libraries, for people.
+    pub fn listed(&self) -> String {
+        match (self.all, self.libraries.is_empty()) {
+            (true, _) => "of all libraries".to_owned(),
+            (false, true) => "none".to_owned(),
+            _ => self.libraries.iter().cloned().collect::<Vec<_>>().join(", "),
+        }
+    }
+
+    /// Whether functions of any library are allowed.
+    pub fn is_allowed(&self) -> bool {
+        self.all || !self.libraries.is_empty()
+    }
+
+    /// Whether those of the library with this class are allowed.
+    pub fn permits(&self, class: &str) -> bool {
+        let library = class.split('.').next().unwrap_or_default();
+        self.all || self.libraries.contains(library)
+    }
 }
 
 impl Policy {
     /// Allows something; `real` is the real path of the one that the grant names.
     pub fn grant(&mut self, grant: Grant<'_>, real: PathBuf) {
         match grant {
-            Grant::Read(_) => drop(self.readable.insert(real)),
+            Grant::Read(_) | Grant::Found(_) => drop(self.readable.insert(real)),
+            Grant::Deny(_) => drop(self.denied.insert(real)),
             Grant::Create(_) => drop(self.creatable.insert(real)),
             Grant::Results(_) => drop(self.results.insert(real)),
             Grant::Replace(_) => self.note_made(real),
@@ -226,13 +290,48 @@ impl Policy {
             Grant::Named(_) => drop(self.named.insert(real)),
             Grant::ReadAll => self.reads_all = true,
             Grant::WriteAll => self.writes_all = true,
-            Grant::ExternalCode => self.external_code = true,
+            Grant::ExternalCode(Some(library)) => {
+                self.external_code.libraries.insert(library.to_owned());
+            }
+            Grant::ExternalCode(None) => self.external_code.all = true,
+            Grant::CheckOnly => self.external_code.is_only_checked = true,
         }
+    }
+
+    /// What is allowed and excluded: what it means, and the real path where it is one.
+    pub fn listed(&self) -> Vec<(String, PathBuf)> {
+        let mut rows = Vec::new();
+        let mut list = |meaning: &str, paths: &BTreeSet<PathBuf>| {
+            rows.extend(paths.iter().map(|path| (meaning.to_owned(), path.clone())));
+        };
+        list("read", &self.readable);
+        list("read, create new files", &self.creatable);
+        list("create results", &self.results);
+        list("read, create, replace, remove", &self.own);
+        list("write this file", &self.named);
+        list("closed", &self.denied);
+        let everywhere = [("read", self.reads_all), ("write", self.writes_all)];
+        for (verb, _) in everywhere.into_iter().filter(|(_, all)| *all) {
+            rows.push((format!("{verb} everywhere"), PathBuf::from("/")));
+        }
+        let passed = self.passed_over.iter();
+        rows.extend(passed.map(|(path, why)| (format!("not read: {why}"), path.clone())));
+        rows
+    }
+
+    /// Notes why a file or folder that was found is not granted.
+    pub fn pass_over(&mut self, real: PathBuf, why: Refusal) {
+        self.passed_over.insert(real, why);
     }
 
     /// Notes that the run has made this file or folder.
     pub fn note_made(&mut self, real: PathBuf) {
         self.made.insert(real);
+    }
+
+    /// Notes that an earlier run has made this file or folder.
+    pub fn note_recorded(&mut self, real: PathBuf) {
+        self.recorded.insert(real);
     }
 
     /// Whether the run has made this file or folder.
@@ -243,6 +342,7 @@ impl Policy {
     /// Notes that the file or folder is gone.
     pub fn note_removed(&mut self, real: &Path) {
         self.made.remove(real);
+        self.recorded.remove(real);
     }
 
     /// Whether all files may be written.
@@ -250,9 +350,9 @@ impl Policy {
         self.writes_all
     }
 
-    /// Whether functions in C may be compiled and called.
-    pub fn calls_external_code(&self) -> bool {
-        self.external_code
+    /// The functions in C that may be compiled and called.
+    pub fn external_code(&self) -> &ExternalCode {
+        &self.external_code
     }
 
     /// Whether the user has named this file.
@@ -273,28 +373,37 @@ impl Policy {
     /// # Errors
     /// The file or folder may not be read.
     pub fn may_read(&self, real: &Path) -> Result<(), Refusal> {
-        if self.named.contains(real) {
-            return Ok(());
-        }
-        if is_of_system(real) {
-            return Err(Refusal::System);
+        if let Some(decided) = self.decided(real) {
+            return decided;
         }
         let known = [&self.readable, &self.creatable, &self.own];
         let is_readable = known.into_iter().any(|folders| deepest(folders, real).is_some());
         match is_readable || self.reads_all || self.made.contains(real) {
             true => Ok(()),
-            false => Err(Refusal::Reading),
+            false => Err(self.why_not_read(real)),
+        }
+    }
+
+    fn why_not_read(&self, real: &Path) -> Refusal {
+        let known = real.ancestors().find_map(|folder| self.passed_over.get(folder));
+        known.copied().unwrap_or(Refusal::Reading)
+    }
+
+    /// What holds whatever else is granted.
+    fn decided(&self, real: &Path) -> Option<Result<(), Refusal>> {
+        match () {
+            () if self.named.contains(real) => Some(Ok(())),
+            () if is_of_system(real) => Some(Err(Refusal::System)),
+            () if deepest(&self.denied, real).is_some() => Some(Err(Refusal::Denied)),
+            () => None,
         }
     }
 
     /// # Errors
     /// The file or folder may not be made, changed or removed.
     pub fn may_write(&self, real: &Path, change: Change) -> Result<(), Refusal> {
-        if self.named.contains(real) {
-            return Ok(());
-        }
-        if is_of_system(real) {
-            return Err(Refusal::System);
+        if let Some(decided) = self.decided(real) {
+            return decided;
         }
         let own = deepest(&self.own, real);
         if own.is_some() && real.file_name().is_some_and(|name| name == RECORD) {
@@ -313,7 +422,7 @@ impl Policy {
         }
         match change {
             _ if own.is_some() => Ok(()),
-            Change::Existing if self.made.contains(real) => Ok(()),
+            Change::Existing if self.made.contains(real) || self.recorded.contains(real) => Ok(()),
             Change::Existing => Err(Refusal::Existing),
             Change::NewFile if !is_created(real) => Err(Refusal::Kind),
             Change::NewFile | Change::NewFolder => Ok(()),

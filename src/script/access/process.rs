@@ -6,20 +6,78 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::script::errors::REFUSED;
 use crate::script::world::Environment;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Words in the names of environment variables that hold secrets.
-const SECRETIVE: &[&str] =
-    &["AUTH", "COOKIE", "CREDENTIAL", "KEY", "PASS", "PRIVATE", "SECRET", "TOKEN"];
+/// Environment variables that hold no secrets: folders, languages, the machine, the tools that
+/// scripts are written for. Secrets have all names there are.
+pub const HARMLESS: &[&str] = &[
+    "APPDATA",
+    "COMPUTERNAME",
+    "DYMOLA",
+    "DYMOLAPATH",
+    "DYMOLAWORK",
+    "HOME",
+    "HOMEDRIVE",
+    "HOMEPATH",
+    "HOSTNAME",
+    "LANG",
+    "LANGUAGE",
+    "LC_ALL",
+    "LC_CTYPE",
+    "LC_MESSAGES",
+    "LC_NUMERIC",
+    "LC_TIME",
+    "LOCALAPPDATA",
+    "LOGNAME",
+    "MODELICAPATH",
+    "NUMBER_OF_PROCESSORS",
+    "OMDEV",
+    "OMP_NUM_THREADS",
+    "OPENMODELICAHOME",
+    "OPENMODELICALIBRARY",
+    "OS",
+    "OSTYPE",
+    "PATH",
+    "PROCESSOR_ARCHITECTURE",
+    "PROGRAMFILES",
+    "PWD",
+    "SHELL",
+    "SYSTEMROOT",
+    "TEMP",
+    "TERM",
+    "TMP",
+    "TMPDIR",
+    "TZ",
+    "USER",
+    "USERNAME",
+    "USERPROFILE",
+    "XDG_CACHE_HOME",
+    "XDG_CONFIG_HOME",
+    "XDG_DATA_HOME",
+    "XDG_RUNTIME_DIR",
+];
 
 /// The environment variables that scripts set, before those of the process.
 #[derive(Debug, Clone, Default)]
 pub struct Process {
     variables: BTreeMap<String, String>,
+    /// Names that the user allows besides the harmless ones.
+    allowed: BTreeSet<String>,
 }
 
 impl Process {
+    /// Lets an environment variable be read.
+    pub fn allow(&mut self, name: &str) {
+        self.allowed.insert(name.to_owned());
+    }
+
+    /// The names of the environment variables that may be read, for people.
+    pub(super) fn listed(&self) -> String {
+        let names = HARMLESS.iter().copied().chain(self.allowed.iter().map(String::as_str));
+        names.collect::<Vec<_>>().join(", ")
+    }
+
     /// Sets an environment variable, for the scripts and for the programs that they start.
     pub fn set(&mut self, name: String, content: String) {
         self.variables.insert(name, content);
@@ -28,7 +86,7 @@ impl Process {
     /// The content of an environment variable, of the session's own first; `None` if it is not set.
     ///
     /// # Errors
-    /// The variable may hold a secret.
+    /// The variable is set and may hold a secret.
     pub fn variable(
         &self,
         of_system: impl Fn(&str) -> Option<String>,
@@ -38,16 +96,17 @@ impl Process {
         if let Some(own) = self.variables.get(name) {
             return Ok(Some(own.clone()));
         }
-        let capitals = name.to_ascii_uppercase();
-        let is_secretive = SECRETIVE.iter().any(|word| capitals.contains(word));
-        if is_secretive && !permissions.system {
+        let content = of_system(name);
+        let is_harmless = HARMLESS.iter().any(|known| known.eq_ignore_ascii_case(name));
+        if content.is_some() && !is_harmless && !self.allowed.contains(name) && !permissions.system
+        {
             bail!(
                 REFUSED,
                 "the environment variable `{name}` cannot be read: it may hold a secret";
-                help: "allow it with `--allow-system`"
+                help: "allow it with `--allow-env={name}`"
             );
         }
-        Ok(of_system(name))
+        Ok(content)
     }
 
     /// Runs a command of the operating system; its exit status and what it printed.

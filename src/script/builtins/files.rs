@@ -102,7 +102,7 @@ fn copy(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 fn copy_file(session: &mut Session, old: &Path, new: &Path, replace: bool) -> Result<(), Fault> {
-    if session.world.exists(new) && !replace {
+    if session.kind_of(new)?.is_some() && !replace {
         bail!(FILE_ERROR, "`{}` already exists", new.display(); help: "set `replace = true` to \
             overwrite it");
     }
@@ -137,7 +137,7 @@ end remove;
 
 fn remove(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("name")?);
-    if session.world.exists(&path) {
+    if session.kind_of(&path)?.is_some() {
         remove_tree(session, &path)?;
     }
     Ok(Value::nothing())
@@ -162,11 +162,10 @@ end removeFile;
 
 fn remove_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("fileName")?);
-    if session.world.is_dir(&path) {
-        bail!(FILE_ERROR, "`{}` is a directory", path.display());
-    }
-    if session.world.exists(&path) {
-        session.remove_file(&path)?;
+    match session.kind_of(&path)? {
+        Some(true) => bail!(FILE_ERROR, "`{}` is a directory", path.display()),
+        Some(false) => session.remove_file(&path)?,
+        None => {}
     }
     Ok(Value::nothing())
 }

@@ -4,7 +4,7 @@ use super::parsed_scripts::Parsed;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::script::access::faults::{cannot, escape_help, shown};
-use crate::script::access::policy::{Access, Grant};
+use crate::script::access::policy::Access;
 use crate::script::builtins::Failure;
 use crate::script::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use crate::script::language::execution::Stop;
@@ -22,10 +22,7 @@ const MAX_DEPTH: usize = 64;
 impl Session {
     /// Runs a script from the command line as the outermost one.
     pub fn run_file(&mut self, path: &Path) -> RunStatus {
-        self.grant_input(path);
-        if let Some(folder) = self.world.absolute(path).parent() {
-            self.world.grant(Grant::Create(folder));
-        }
+        self.grant_script(path);
         let name = path.to_string_lossy().into_owned();
         if let Err(diagnostics) = self.run_named(&name) {
             diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));

@@ -4,6 +4,7 @@ use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
+use crate::script::access::policy::Access;
 use crate::script::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
 use crate::script::{Session, builtins};
 use crate::source::{Span, Spanned};
@@ -203,6 +204,11 @@ impl Session {
     /// Changes the working directory.
     pub(in crate::script) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
         let path = self.expanded(Path::new(path));
+        // What folders exist elsewhere is not told; those that the run lies in are known.
+        let absolute = self.world.absolute(&path);
+        if !self.world.current_dir().starts_with(&absolute) {
+            self.may(Access::Read, &absolute)?;
+        }
         let changed = self.world.set_current_dir(&path);
         changed.map_err(|error| crate::script::access::faults::cannot("change to", &path, &error))
     }

@@ -44,6 +44,12 @@ pub(super) fn compiled(
     files: &dyn FileReader,
     find: Find<'_>,
 ) -> Result<&'static Entry, Fault> {
+    let is_allowed = |declaration: &&Declaration| {
+        compiler.is_some_and(|compiler| compiler.permits(&declaration.class))
+    };
+    if let Some(one) = request.declarations.iter().find(|one| !is_allowed(one)) {
+        return Err(refused(one, files, find));
+    }
     let Some(compiler) = compiler else { return Err(refused(request.wanted(), files, find)) };
     let library = compiler.load(&unit(&request.declarations, files, find))?;
     Ok(entry(request, &library))
@@ -99,7 +105,11 @@ fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) ->
         .filter(|path| files.is_file(path))
         .map(|path| format!("`{}`", path.display()))
         .collect();
-    named.extend(declaration.libraries.iter().map(|library| format!("the library `{library}`")));
+    let linked = |library: &String| match find(library).filter(|path| files.is_file(path)) {
+        Some(path) => format!("the library `{}`", path.display()),
+        None => format!("the library `{library}`"),
+    };
+    named.extend(declaration.libraries.iter().map(linked));
     if named.is_empty() {
         named.push("its annotation `Include`".to_owned());
     }
@@ -110,8 +120,9 @@ fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) ->
         declaration.class,
         declaration.function,
         named.join(", ");
-        help: "if you trust this library, allow it with `--allow-external`: the code can do \
-               whatever you can do on this machine"
+        help: "if you trust this library, allow it with `--allow-external={}`: the code can do \
+               whatever you can do on this machine",
+        declaration.class.split('.').next().unwrap_or_default()
     )
 }
 

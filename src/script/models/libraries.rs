@@ -6,7 +6,8 @@ use crate::flatten::LibraryFiles;
 use crate::models;
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::errors::OTHER_VERSION;
+use crate::script::access::policy::{Access, Refusal, refusal_of};
+use crate::script::errors::{FILE_ERROR, OTHER_VERSION};
 use crate::script::world::normalized;
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
@@ -100,12 +101,33 @@ impl Session {
     }
 
     fn folders(&self) -> Vec<PathBuf> {
-        let current = self.world.current_dir();
-        let frames = self.execution.folders().flat_map(Path::ancestors);
-        let models = frames.chain(current.ancestors()).map(|folder| folder.join("models"));
-        let own = self.classes.directories().iter().cloned().chain([current.clone()]);
+        let may_read = |folder: &PathBuf| self.world.permits(folder, Access::Read).is_ok();
+        let own = self.classes.directories().iter().cloned().chain([self.world.current_dir()]);
+        let models = self.models_folders().into_iter().filter(may_read);
         let all = own.chain(models).chain([PathBuf::from(models::FOLDER)]);
         all.map(|folder| normalized(&folder)).collect()
+    }
+
+    /// The folders `models` beside the scripts being run and the working directory, or above them.
+    fn models_folders(&self) -> Vec<PathBuf> {
+        let current = self.world.current_dir();
+        let frames = self.execution.folders().flat_map(Path::ancestors);
+        frames.chain(current.ancestors()).map(|folder| folder.join("models")).collect()
+    }
+
+    /// Warnings about folders `models` in which a class would be found and is not looked for.
+    pub(super) fn passed_over(&self, name: Ident) -> Vec<Fault> {
+        let why = |folder: &Path| {
+            let refused = self.world.permits(folder, Access::Read).err()?;
+            let refusal = refusal_of(&refused)?;
+            matches!(refusal, Refusal::Link | Refusal::Owner).then_some(refusal)
+        };
+        let warning = |folder: &PathBuf| {
+            let refusal = why(folder).filter(|_| self.class_in(folder, name.as_str()).is_some())?;
+            Some(fault!(FILE_ERROR, "`{name}` is not taken from `{}`: {refusal}", folder.display();
+                help: "if you trust this library, give its folder with `--library`"))
+        };
+        self.models_folders().iter().filter_map(warning).collect()
     }
 
     /// The folder `Name 1.2.3`, also with more behind it: `Name 1.2.3+build.4`.

@@ -175,6 +175,9 @@ impl Session {
     }
 
     fn load_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
+        for fault in self.passed_over(name) {
+            self.report(fault.at(self.call_site()).warning());
+        }
         let Some(path) = self.search_class(name) else {
             self.classes.note_nowhere(name);
             return Ok(false);
@@ -313,7 +316,7 @@ impl Session {
     }
 
     /// The file a class was loaded from, if it was loaded from one.
-    pub(in crate::script) fn source_file(&self, name: &Name) -> Option<PathBuf> {
+    pub fn source_file(&self, name: &Name) -> Option<PathBuf> {
         self.classes.file_of(&Name::new(name.first())).cloned()
     }
 }

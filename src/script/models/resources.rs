@@ -128,12 +128,13 @@ impl Provide for ModelFiles {
 
     fn read(&self, name: &str) -> Result<Vec<u8>, Fault> {
         let path = self.found(name)?;
-        if !self.files.is_file(&path) {
+        let read = self.files.read(&path);
+        if read.as_ref().is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
             let folders = self.folders.iter().map(|f| format!("`{}`", f.display()));
             let folders = folders.collect::<Vec<_>>().join(", ");
             return Err(missing(name).help(format!("relative paths start from {folders}")));
         }
-        self.files.read(&path).map_err(|error| cannot("read", &path, &error))
+        read.map_err(|error| cannot("read", &path, &error))
     }
 
     fn c_function(&self, request: &Request) -> Result<&'static Entry, Fault> {

@@ -34,15 +34,20 @@ const ATTEMPTS: usize = 20;
 /// Seconds between two times that the file is made safe against a power cut.
 const SAFE: f64 = 2.0;
 
-/// Gives a journal of an earlier run the next free number, and says where it is.
-pub(super) fn keep_old(session: &mut Session, path: &Path) -> Result<PathBuf, Fault> {
+/// The path with the next free number.
+pub(super) fn numbered(session: &Session, path: &Path) -> PathBuf {
     let numbered = |number: u32| {
         let mut name = path.as_os_str().to_owned();
         name.push(format!(".{number}"));
         PathBuf::from(name)
     };
     let free = (1..=u32::MAX).map(numbered).find(|old| !session.world.exists(old));
-    let old = free.unwrap_or_else(|| numbered(0));
+    free.unwrap_or_else(|| numbered(0))
+}
+
+/// Gives a journal of an earlier run the next free number, and says where it is.
+pub(super) fn keep_old(session: &mut Session, path: &Path) -> Result<PathBuf, Fault> {
+    let old = numbered(session, path);
     let bytes = session.read_bytes(path)?;
     session.write_file(&old, &bytes)?;
     // What cannot be removed is written over.

@@ -184,7 +184,7 @@ impl Session {
         while let Some(source) = self.sources.get(SourceId(*seen)) {
             *seen += 1;
             if source.name.ends_with(".mo") {
-                origins.add(format!("`{}`", source.name), source.text.as_bytes());
+                origins.add_modelica(format!("`{}`", source.name), &source.text);
             }
         }
     }

@@ -3,7 +3,6 @@
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::{Quantity, Study};
 use crate::script::Session;
-use crate::script::access::policy::Grant;
 use crate::source::Span;
 use crate::teach::{Place, Subject, Tracer};
 use std::path::{Path, PathBuf};
@@ -18,15 +17,14 @@ pub(super) struct Tracing {
 }
 
 impl Session {
-    /// Records the calls of the paper's functions from here on in a file, written anew.
+    /// Records the calls of the paper's functions from here on in a file, written anew. Whoever asks
+    /// for the trace has permitted the file ([`Session::permit_file`]): scripts do not.
     ///
     /// # Errors
     ///
     /// `file-error` when it cannot be written.
     pub fn trace_to(&mut self, path: &Path) -> Result<(), Fault> {
         let path = self.world.absolute(path);
-        // Whoever asks for the trace names the file: scripts do not.
-        self.world.grant(Grant::Named(&path));
         self.write_file(&path, &[])?;
         self.extension::<Tracing>().active = Some((path, Tracer::default()));
         self.at_end(write_rest);

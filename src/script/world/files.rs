@@ -29,6 +29,10 @@ pub type Content<'a> = &'a mut dyn FnMut(&mut dyn io::Write) -> io::Result<()>;
 pub trait Files {
     /// Allows something from here on: whoever starts the run does, never a script.
     fn grant(&mut self, grant: Grant<'_>);
+    /// What is allowed and excluded, for people: what it means, and the path or whatever it is about.
+    fn permissions(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
     /// Whether a path may be read or written.
     ///
     /// # Errors

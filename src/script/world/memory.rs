@@ -39,6 +39,7 @@ impl Streams {
 pub struct MemoryWorld {
     policy: Policy,
     files: BTreeMap<PathBuf, Vec<u8>>,
+    variables: BTreeMap<String, String>,
     dirs: BTreeSet<PathBuf>,
     current: PathBuf,
     changes: u64,
@@ -65,6 +66,7 @@ impl Default for MemoryWorld {
         MemoryWorld {
             policy,
             files: BTreeMap::new(),
+            variables: BTreeMap::new(),
             dirs: [PathBuf::from("/"), PathBuf::from("/memory")].into(),
             current: PathBuf::from("/memory"),
             changes: 0,
@@ -88,6 +90,13 @@ impl MemoryWorld {
     #[must_use]
     pub fn with_file(mut self, path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> MemoryWorld {
         self.store(path.as_ref(), bytes.as_ref().to_vec());
+        self
+    }
+
+    /// The same with an environment variable.
+    #[must_use]
+    pub fn with_variable(mut self, name: &str, content: &str) -> MemoryWorld {
+        self.variables.insert(name.to_owned(), content.to_owned());
         self
     }
 
@@ -278,8 +287,8 @@ impl Files for MemoryWorld {
 }
 
 impl Environment for MemoryWorld {
-    fn env(&self, _name: &str) -> Option<String> {
-        None
+    fn env(&self, name: &str) -> Option<String> {
+        self.variables.get(name).cloned()
     }
 
     fn monotonic_seconds(&self) -> f64 {

@@ -85,7 +85,7 @@ pub(super) fn build(
     let file = &*file;
     check_class(session, file)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    origins.add("the problem", text.as_bytes());
+    origins.add_problem(text);
     let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
     let free = free_parameters(file, &data).map_err(one)?;
     let mut read = experiments(session, file, &data, &free, &mut notes)?;

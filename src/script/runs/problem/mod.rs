@@ -3,7 +3,8 @@
 //! The checkpoint is the journal of the run in the folder of the results: every answer of the
 //! simulator, appended from time to time. A run that resumes asks the same questions again, is
 //! answered from the journal as far as it goes, and so ends with the same bytes as a run that was
-//! never interrupted. It is removed when the results have been written.
+//! never interrupted. It is removed when the results have been written; that of a run that ended at a
+//! limit is kept for one that continues with a higher limit.
 
 mod build;
 mod calibration;
@@ -19,6 +20,7 @@ mod failing;
 pub(super) mod fault_codes;
 mod file;
 mod flat;
+mod former;
 mod forms;
 mod inference;
 mod inputs;
@@ -42,12 +44,12 @@ mod time_axis;
 use super::checkpoint::{self, Checkpoint, keep_old};
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::problem::{
-    self as solving, Importance, ModelSimulator, Origins, Run, Simulate, Solution, SolvedSeries,
+    self as solving, EndingKind, Importance, ModelSimulator, Origins, Run, Simulate, Solution,
+    SolvedSeries,
 };
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
-use crate::script::access::policy::Grant;
 use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
@@ -67,6 +69,8 @@ const OPTIONAL: [&str; 5] =
     ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv", "searches.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
+/// The journal of a run that ended at a limit.
+const FINISHED: &str = "finished.journal";
 
 /// How a problem is run.
 #[derive(Debug, Clone, Default)]
@@ -105,22 +109,6 @@ struct Journalled<'a> {
     origins: &'a Origins,
     /// Questions and seconds between two checkpoints.
     every: (Option<u64>, f64),
-}
-
-/// The user has named this problem file: the data and the models that it names may be read.
-pub fn grant_inputs(session: &mut Session, path: &Path) {
-    session.grant_input(path);
-    let Ok(text) = session.read_text(path) else { return };
-    let source = session.sources.add(path.display().to_string(), text.as_str());
-    // What is wrong with the problem shows when it is solved.
-    let Ok(file) = file::read(source, &text) else { return };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    for models in &file.files {
-        session.grant_input(&folder.join(models));
-    }
-    for experiment in &file.experiment {
-        session.world.grant(Grant::Read(&folder.join(&experiment.data)));
-    }
 }
 
 /// Solves the problem in the file `path`; writes the results into the world's folder for them.
@@ -279,12 +267,30 @@ fn solve_built(
     let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
+    former::keep(session, &folder, &origins)?;
     write(session, &folder, &solution, seconds)?;
     if !is_interrupted {
         keep(session, &run)?;
     }
+    if !is_interrupted && solution.ending.kind == EndingKind::Budget {
+        keep_finished(session, (&checkpoint, &folder), options);
+    }
     close(session, (&checkpoint, &folder), is_interrupted);
     Ok(solution)
+}
+
+/// Keeps the journal of a run that ended at a limit, for one with a higher limit.
+fn keep_finished(
+    session: &mut Session,
+    (checkpoint, folder): (&Checkpoint, &Path),
+    options: &RunOptions,
+) {
+    let is_alone = options.searches.unwrap_or(1) == 1 && options.division.is_whole();
+    let journal = session.read_bytes(checkpoint.path());
+    let Ok(journal) = journal.map(|bytes| solving::without_times(&bytes)) else { return };
+    if is_alone && session.write_file(&folder.join(FINISHED), &journal).is_ok() {
+        session.print("\n  continue from here with higher limits in `[stop]` and --resume\n");
+    }
 }
 
 /// Adds what the data say about the parameters; whether the user has interrupted that.
@@ -352,10 +358,12 @@ fn open(
         );
     }
     let mut bytes = solving::header(origins);
-    let known = match known {
-        Some(journal) => Some(journal.to_vec()),
-        None if options.resume && exists => Some(session.read_bytes(path)?),
-        None => None,
+    let finished = path.with_file_name(FINISHED);
+    let left = [path, &finished].into_iter().find(|path| session.world.exists(path));
+    let known = match (known, left) {
+        (Some(journal), _) => Some(journal.to_vec()),
+        (None, Some(journal)) if options.resume => Some(session.read_bytes(journal)?),
+        _ => None,
     };
     if let Some(old) = known {
         let Some(journal) = solving::decode(&old) else {
@@ -373,9 +381,7 @@ fn open(
         run.resume(&journal.records)?;
         let lost = match journal.lost {
             0 => String::new(),
-            lost => {
-                format!("; {lost} damaged or incomplete bytes at its end are recomputed")
-            }
+            lost => format!("; {lost} damaged or incomplete bytes at its end are recomputed"),
         };
         let text = format!(
             "resumed after {} generations, {} evaluations{lost}\n",
@@ -389,6 +395,7 @@ fn open(
         keep_old(session, path)?;
     }
     session.write_file(path, &bytes)?;
+    discard(session, &finished);
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
 

@@ -4,7 +4,7 @@
 use super::RunOptions;
 use crate::diag::Fault;
 use crate::identify::problem::{
-    Origins, Parts, Run, Shard, ShardFile, decode, listed, missing_shards,
+    Origins, Parts, Run, Shard, ShardFile, decode, listed, missing_shards, without_times,
 };
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
@@ -37,6 +37,11 @@ impl Division {
         }
     }
 
+    /// Whether nothing is divided.
+    pub(super) fn is_whole(&self) -> bool {
+        matches!(self, Division::Whole)
+    }
+
     /// The journal of the search, where it is known.
     pub(super) fn journal(&self) -> Option<&[u8]> {
         match self {
@@ -57,7 +62,8 @@ pub(super) fn keep(
     let problem = problem.to_string_lossy();
     let mut file = ShardFile::new(&run.evaluation.parts, shard, origins, &problem);
     file.wanted = wanted(options);
-    file.journal = session.read_bytes(journal)?;
+    // How long it took differs between equal runs.
+    file.journal = without_times(&session.read_bytes(journal)?);
     session.write_file(&folder.join(FILE), &file.to_bytes())
 }
 
@@ -86,7 +92,7 @@ pub fn read_shards(
     let mut files: Vec<(PathBuf, ShardFile)> = Vec::new();
     for folder in folders {
         let path = folder.join(FILE);
-        session.world.grant(Grant::Read(&path));
+        session.world.grant(Grant::Found(&path));
         if !session.world.exists(&path) {
             bail!(BAD_OPTION, "`{}` contains no shard", folder.display(); help: "give the folders that `gapi identify --shard` has written with `--out`, and wait until all shards have ended");
         }
