@@ -21,6 +21,7 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/check.rs", "CheckOnly", 1),
     ("cli/identify.rs", "Read", 1),
     ("cli/new.rs", "Named", 1),
+    ("cli/repl/commands.rs", "Named", 1),
     ("cli/report.rs", "Own", 1),
     ("cli/run.rs", "Named", 1),
     ("cli/scratch.rs", "Create", 1),
