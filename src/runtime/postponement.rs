@@ -69,11 +69,16 @@ impl System {
         if self.to_postpone(t).next().is_none() {
             return attempt(self);
         }
-        let registers = self.registers.clone();
+        // Results that have had values before the event have some after it.
+        let had_values = self.unread_have_values().is_ok();
+        let (registers, log) = (self.registers.clone(), self.log.clone());
         let relations = (self.has_changed.clone(), self.held.clone(), self.excused.clone());
-        let first = attempt(self).and_then(|done| self.unread_have_values().map(|()| done));
+        let mut first = attempt(self);
+        if had_values && first.is_ok() {
+            first = self.unread_have_values().and(first);
+        }
         if first.is_err() {
-            self.registers = registers;
+            (self.registers, self.log) = (registers, log);
             (self.has_changed, self.held, self.excused) = relations;
             self.postpone(t);
             return attempt(self).or(first);
