@@ -20,7 +20,6 @@ const FILES: &[(&str, &str)] = &[
     ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
     ("short.mos", SHORT),
     ("long.mos", LONG),
-    ("long.toml", PROBLEM),
     ("new.mos", "x = 1\n"),
 ];
 const SHORT: &str = "(S, M, Xexp, Yexp) := Exp_Adq_SISO(\"d.csv\", \"t\", \"y\");\n\
@@ -31,11 +30,6 @@ const LONG: &str = "(S, M, Xexp, Yexp) := Exp_Adq_SISO(\"d.csv\", \"t\", \"y\");
                     for k in 1:100000000 loop\n  P[1, 1] := k;\n\
                     F := Fit(Eval(\"Line.mo\", \"Line\", Xexp, P, {\"a\", \"b\"}, \"x\", \"y\"), Yexp);\n\
                     end for\n";
-const PROBLEM: &str = "model = \"Line\"\nfiles = [\"Line.mo\"]\n[parameters]\n\
-                       a = { min = 0, max = 5 }\nb = { min = 0, max = 5 }\n[[experiment]]\n\
-                       data = \"d.csv\"\nx = { variable = \"x\", column = \"t\" }\n\
-                       outputs = { y = \"y\" }\n[method]\nname = \"genetic\"\n\
-                       [stop]\nevaluations = 1000000000\n";
 /// What shows the screen of a run.
 const SCREEN: &str = "\u{1b}[?1049h";
 
@@ -83,10 +77,7 @@ fn ends(child: &mut Child) -> bool {
 fn commands_end_with_their_terminal() {
     for (arguments, shown) in [
         (&["run", "long.mos"][..], SCREEN),
-        (&["run", "long.mos", "--plain"], "genetic"),
-        (&["identify", "long.toml"], SCREEN),
         (&["teach", "short.mos"], SCREEN),
-        (&["teach", "short.mos", "--plain", "--quiz"], "> "),
         (&["repl"], "> "),
         (&["lesson", "1", "--watch"], "Waiting for the next save"),
         (&["test", "new.mos", "--review"], "accept this transcript?"),
@@ -105,17 +96,13 @@ fn results(here: &TempDir, name: &str) -> Vec<String> {
 
 #[test]
 fn a_run_saves_what_it_has_when_its_terminal_is_closed() {
-    for (arguments, journal) in
-        [(&["run", "long.mos"][..], "script.journal"), (&["identify", "long.toml"], "run.journal")]
-    {
-        let here = folder(FILES);
-        let (mut child, terminal) = started(command(here.path(), arguments), SCREEN);
-        drop(terminal);
-        assert!(ends(&mut child), "{arguments:?}");
-        let written = results(&here, "long");
-        for name in ["result.json", journal] {
-            assert!(written.iter().any(|file| file == name), "{name}: {written:?}");
-        }
+    let here = folder(FILES);
+    let (mut child, terminal) = started(command(here.path(), &["run", "long.mos"]), SCREEN);
+    drop(terminal);
+    assert!(ends(&mut child), "it continues without its terminal");
+    let written = results(&here, "long");
+    for name in ["result.json", "script.journal"] {
+        assert!(written.iter().any(|file| file == name), "{name}: {written:?}");
     }
 }
 
