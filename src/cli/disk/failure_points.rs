@@ -174,6 +174,22 @@ fn run(world: DiskWorld, resume: bool) -> bool {
     session.run_text("job.mos", SCRIPT).code == 0
 }
 
+#[test]
+fn only_what_has_to_be_safe_waits_for_the_disk() {
+    let place = Place::new();
+    let steps = |work: fn(&mut DiskWorld) -> io::Result<()>| {
+        PLAN.set(Plan::default());
+        let mut world = DiskWorld::new(&place.root);
+        work(&mut world).expect("written");
+        PLAN.replace(Plan::default()).done
+    };
+    let safe = steps(|world| world.write(Path::new("safe.txt"), b"content"));
+    let buffered = steps(|world| {
+        world.write_with(Path::new("buffered.txt"), &mut |to| to.write_all(b"content"))
+    });
+    assert_eq!(safe, buffered + 1, "one step makes the content safe");
+}
+
 /// A folder of a run, and what happened there.
 struct Place {
     _folder: tempfile::TempDir,

@@ -30,6 +30,15 @@ pub(super) struct Disk {
     state: Mutex<State>,
 }
 
+/// Whether a file has to be on the disk before its name leads to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Safety {
+    /// After a power cut the name leads to the old content or to the new one.
+    OnDisk,
+    /// After a power cut the new content may be lost.
+    Buffered,
+}
+
 #[derive(Debug, Default)]
 struct State {
     policy: Policy,
@@ -187,19 +196,23 @@ impl Disk {
         self.to_read(path)?.read_start(most as u64)
     }
 
-    /// Writes a file anew, all of it or nothing.
+    /// Writes a file anew, all of it or nothing, safe against a power cut.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.write_with(path, &mut |file| file.write_all(bytes))
+        self.write_as(path, &mut |file| file.write_all(bytes), Safety::OnDisk)
     }
 
-    /// The same, as `content` writes it.
+    /// The same as `content` writes it; the system decides when it reaches the disk.
     pub(super) fn write_with(&self, path: &Path, content: Content<'_>) -> io::Result<()> {
+        self.write_as(path, content, Safety::Buffered)
+    }
+
+    fn write_as(&self, path: &Path, content: Content<'_>, safety: Safety) -> io::Result<()> {
         if self.is_named_device(Access::Write, path) {
             return filled(&fs::OpenOptions::new().write(true).open(path)?, content);
         }
         let place = self.to_write(path)?;
         self.clean(&place);
-        place.write(content, |file| self.note_made(&place.real, file))
+        place.write(content, safety, |file| self.note_made(&place.real, file))
     }
 
     /// Removes what killed processes have left where a file is going to be written, once.
@@ -258,7 +271,10 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
     let place = Place::of(&own.join(RECORD), false)?;
     match lines {
         Lines::Further(line) => Stepwise(&place.open_to_append(false)?).write_all(line.as_bytes()),
-        Lines::All(lines) => place.write(&mut |file| file.write_all(lines.as_bytes()), |_| Ok(())),
+        Lines::All(lines) => {
+            let mut content = |file: &mut dyn io::Write| file.write_all(lines.as_bytes());
+            place.write(&mut content, Safety::OnDisk, |_| Ok(()))
+        }
     }
 }
 
@@ -289,14 +305,16 @@ impl FileReader for Disk {
 /// Writes a file of the program itself, all of it or nothing.
 pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
-    Place::of(&path, true)?.write(&mut |file| file.write_all(bytes), |_| Ok(()))
+    let mut content = |file: &mut dyn io::Write| file.write_all(bytes);
+    Place::of(&path, true)?.write(&mut content, Safety::OnDisk, |_| Ok(()))
 }
 
 /// Writes a file of the program beside one that the command line names, or in such a folder: all of it
 /// or nothing, and not where a link of this name leads, which the file replaces.
 pub(super) fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
-    Place::of(&path, false)?.replace_link().write(&mut |file| file.write_all(bytes), |_| Ok(()))
+    let mut content = |file: &mut dyn io::Write| file.write_all(bytes);
+    Place::of(&path, false)?.replace_link().write(&mut content, Safety::OnDisk, |_| Ok(()))
 }
 
 /// Reads a file that the command line names, no pipe and no device.

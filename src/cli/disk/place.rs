@@ -4,6 +4,7 @@
 //! This is what `openat2` does with `RESOLVE_NO_MAGICLINKS`, in the portable calls of POSIX.1-2008
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
+use super::Safety;
 use super::steps::step;
 use super::temporary::{is_old, is_temporary, temporary_name};
 use crate::script::access::policy::Refusal;
@@ -212,6 +213,7 @@ impl Place {
     pub(super) fn write(
         &self,
         content: Content<'_>,
+        safety: Safety,
         note: impl FnOnce(&File) -> io::Result<()>,
     ) -> io::Result<()> {
         if self.is_folder() {
@@ -228,7 +230,7 @@ impl Place {
         // Until the process ends, others know that the file is still written.
         let _ = file.try_lock();
         let written = self
-            .fill(&file, content)
+            .fill(&file, content, safety)
             .and_then(|()| note(&file))
             .and_then(|()| step(|| ()))
             .and_then(|()| Ok(fs::renameat(&self.folder, &temporary, &self.folder, &self.name)?));
@@ -273,12 +275,15 @@ impl Place {
         Ok(fs::openat(&self.folder, name, flags, Mode::from_raw_mode(0o666))?.into())
     }
 
-    fn fill(&self, file: &File, content: Content<'_>) -> io::Result<()> {
+    fn fill(&self, file: &File, content: Content<'_>, safety: Safety) -> io::Result<()> {
         if self.exists() {
             step(|| ())?;
             fs::fchmod(file, Mode::from_raw_mode(self.mode as _))?;
         }
         super::filled(file, content)?;
+        if safety == Safety::Buffered {
+            return Ok(());
+        }
         // After a power cut the name must not lead to a file without its content.
         step(|| ())?;
         file.sync_data()

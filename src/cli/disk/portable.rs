@@ -1,6 +1,7 @@
 //! A path resolved once, where the calls of POSIX are missing: the folder is taken from the system
 //! in its real form, and the entry in it is judged and opened by that path.
 
+use super::Safety;
 use super::temporary::{is_old, is_temporary, temporary_name};
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
@@ -102,6 +103,7 @@ impl Place {
     pub fn write(
         &self,
         content: Content<'_>,
+        safety: Safety,
         note: impl FnOnce(&File) -> io::Result<()>,
     ) -> io::Result<()> {
         if self.is_device() {
@@ -112,7 +114,10 @@ impl Place {
         let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
         // Until the process ends, others know that the file is still written.
         let _ = file.try_lock();
-        let written = super::filled(&file, content).and_then(|()| file.sync_data());
+        let written = super::filled(&file, content).and_then(|()| match safety {
+            Safety::OnDisk => file.sync_data(),
+            Safety::Buffered => Ok(()),
+        });
         let written = written.and_then(|()| note(&file));
         drop(file);
         let written = written.and_then(|()| fs::rename(&temporary, &self.real));

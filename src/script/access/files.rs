@@ -73,6 +73,19 @@ impl Session {
     /// Writes a file anew, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
+        self.write_by(&path, &mut |session| {
+            session.world.write_with(&path, &mut |to| to.write_all(bytes))
+        })
+    }
+
+    /// The same, safe against a power cut: for journals and what a run comes to. Of what scripts write in
+    /// loops it would take far longer than the simulations.
+    pub(in crate::script) fn write_safely(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+    ) -> Result<(), Fault> {
+        let path = self.expanded(path);
         self.write_by(&path, &mut |session| session.world.write(&path, bytes))
     }
 

@@ -49,7 +49,7 @@ pub(super) fn numbered(session: &Session, path: &Path) -> PathBuf {
 pub(super) fn keep_old(session: &mut Session, path: &Path) -> Result<PathBuf, Fault> {
     let old = numbered(session, path);
     let bytes = session.read_bytes(path)?;
-    session.write_file(&old, &bytes)?;
+    session.write_safely(&old, &bytes)?;
     // What cannot be removed is written over.
     let _ = session.world.remove(path);
     Ok(old)

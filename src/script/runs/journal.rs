@@ -249,7 +249,7 @@ impl Session {
             let generations =
                 entries.iter().filter(|entry| matches!(entry, Entry::Simulated { .. })).count();
             self.extension::<Journal>().replay = entries.into();
-            self.write_file(&path, &old[..whole])?;
+            self.write_safely(&path, &old[..whole])?;
             checkpoint = checkpoint.after(old[..whole].to_vec());
             self.world.eprint(&format!(
                 "resumed: {generations} calls of Eval are replayed from `{}`\n",

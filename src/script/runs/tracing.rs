@@ -25,7 +25,7 @@ impl Session {
     /// `file-error` when it cannot be written.
     pub fn trace_to(&mut self, path: &Path) -> Result<(), Fault> {
         let path = self.world.absolute(path);
-        self.write_file(&path, &[])?;
+        self.write_safely(&path, &[])?;
         self.extension::<Tracing>().active = Some((path, Tracer::default()));
         self.at_end(write_rest);
         Ok(())

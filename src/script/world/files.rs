@@ -46,9 +46,10 @@ pub trait Files {
         bytes.truncate(most);
         Ok(bytes)
     }
-    /// Writes a file anew.
+    /// Writes a file anew, safe against a power cut.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-    /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory.
+    /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory, and
+    /// leaves it to the system when it reaches the disk.
     fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
         let mut bytes = Vec::new();
         content(&mut bytes)?;

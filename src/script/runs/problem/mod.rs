@@ -336,7 +336,7 @@ fn analysed(
         return Ok(None);
     };
     session.print(&found.text());
-    session.write_file(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
+    session.write_safely(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
     Ok(Some(found))
 }
 
@@ -394,7 +394,7 @@ fn open(
     if exists && !options.resume {
         keep_old(session, path)?;
     }
-    session.write_file(path, &bytes)?;
+    session.write_safely(path, &bytes)?;
     discard(session, &finished);
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
@@ -470,7 +470,7 @@ pub(super) fn write(
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
     for (name, text) in files {
-        if let Err(fault) = session.write_file(&folder.join(&name), text.as_bytes()) {
+        if let Err(fault) = session.write_safely(&folder.join(&name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
         }

@@ -64,7 +64,7 @@ pub(super) fn keep(
     file.wanted = wanted(options);
     // How long it took differs between equal runs.
     file.journal = without_times(&session.read_bytes(journal)?);
-    session.write_file(&folder.join(FILE), &file.to_bytes())
+    session.write_safely(&folder.join(FILE), &file.to_bytes())
 }
 
 /// What is asked for beyond the fit.
