@@ -49,6 +49,8 @@ struct Plots {
     drawn: usize,
     last_drawn: Option<Figure>,
     last_results: Option<String>,
+    /// The result files of all simulations, in order.
+    results: Vec<Kept>,
     /// What `plotArray`, `plotArrays` and `plotScatter` draw on: drawn already when it has series.
     vectors: Option<Figure>,
 }
@@ -58,9 +60,57 @@ pub(super) fn last_results(session: &mut Session) -> Option<String> {
     session.extension::<Plots>().last_results.clone()
 }
 
+/// A result file under the names that paths such as `Name[end].variable` have for it.
+struct Kept {
+    /// Of the model, and of the file.
+    names: [String; 2],
+    file: String,
+}
+
 /// Notes the result file that plots take where they name none.
 pub(super) fn note_results(session: &mut Session, file: &str) {
-    session.extension::<Plots>().last_results = Some(file.to_owned());
+    let problem = session.last_model().map(|model| model.problem.clone()).unwrap_or_default();
+    let model = problem.split('(').next().unwrap_or_default().trim().to_owned();
+    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let plots = session.extension::<Plots>();
+    // A file that is written again holds the last results alone.
+    plots.results.retain(|known| known.file != file);
+    plots.results.push(Kept { names: [model, stem], file: file.to_owned() });
+    plots.last_results = Some(file.to_owned());
+}
+
+/// The results and the variable in them that a path names: a variable of the last results, or
+/// `Name[end].variable` of the last ones of a model or a result file.
+pub(super) fn curve(
+    session: &mut Session,
+    path: &str,
+) -> Result<(Arc<ResultTable>, String), Fault> {
+    let last = results(session, "")?;
+    let named = path.split_once("].").and_then(|(start, variable)| {
+        let (name, number) = start.rsplit_once('[')?;
+        Some((name, number, variable))
+    });
+    let Some((name, number, variable)) = named.filter(|_| last.column(path).is_err()) else {
+        return Ok((last, path.to_owned()));
+    };
+    let plots = session.extension::<Plots>();
+    let mut known = plots.results.iter().rev();
+    let found = known.find(|known| known.names.iter().any(|own| own == name));
+    let Some(file) = found.map(|found| found.file.clone()) else {
+        bail!(
+            BAD_ARGUMENT,
+            "`{path}`: there is no result of `{name}`";
+            help: "name the model or the result file of a simulation of this script"
+        )
+    };
+    if number != "end" {
+        bail!(
+            BAD_ARGUMENT,
+            "`{path}`: of each result file the last content is kept";
+            help: "write `{name}[end].{variable}`, and give simulations different result files"
+        );
+    }
+    Ok((super::results::table(session, &file)?, variable.to_owned()))
 }
 
 const PLOT: &str = r#"

@@ -77,8 +77,6 @@ pub(super) const FAMILY: Family = Family {
         "plotWindowRefresh",
         "plotRowColumnLabels",
         "plotSignalDifference",
-        "plotSignalOperator",
-        "plotSignalOperatorHarmonic",
         "setPlotColor",
         "variablesSetup",
         "logCommand",
