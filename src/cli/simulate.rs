@@ -12,6 +12,7 @@ use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::errors::FILE_ERROR;
+use crate::script::models::final_state::FinalState;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::script::runs::problem;
@@ -229,7 +230,8 @@ fn begin_with(
     let table = results::format_of_file(&path.to_string_lossy())?.read(&bytes)?;
     let last = || table.time.last().copied().unwrap_or(0.0);
     let time = time.unwrap_or_else(last);
-    simulation::begin_with(session, model, &table, time)?;
+    let state = FinalState::in_result(model, &table, time)?;
+    session.continue_from(&state, &path.to_string_lossy())?;
     Ok(time)
 }
 

@@ -76,16 +76,17 @@ pub trait Host {
         Ok(false)
     }
 
-    /// Told when a script gives one of its variables a value as a whole; `before` is the value
-    /// that a variable without a declared type had.
+    /// Told when a script assigns a value to a simple name; `before` is the value that a variable
+    /// without a declared type had. Whether the name is one of the host's, which has taken the value:
+    /// then the script has no variable of the name.
     fn assigned(
         &mut self,
         name: Ident,
         before: Option<&Value>,
         value: &Value,
-    ) -> Result<(), Fault> {
+    ) -> Result<bool, Fault> {
         let _ = (name, before, value);
-        Ok(())
+        Ok(false)
     }
 
     /// Called before a script evaluates what it assigns to a variable or tests in a condition.

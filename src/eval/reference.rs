@@ -97,7 +97,9 @@ impl Evaluator<'_> {
                 let before = self.scope.variables.get(&name);
                 let undeclared = before.filter(|variable| variable.declared.is_none());
                 let before = undeclared.map(|variable| &variable.value);
-                self.host.assigned(name, before, &value).at(span)?;
+                if self.host.assigned(name, before, &value).at(span)? {
+                    return Ok(());
+                }
             }
             return self.scope.set(name, value).at(span);
         }
@@ -125,7 +127,8 @@ impl Evaluator<'_> {
         value: Value,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        if self.host.assign(target, value, span)? {
+        let literal = self.with_literal_subscripts(target)?;
+        if self.host.assign(&literal, value, span)? {
             return Ok(());
         }
         Err(self.scope.unknown(target.parts[0].name).at(target.span))
@@ -158,6 +161,12 @@ impl Evaluator<'_> {
         if let Some(value) = self.part_of_global(reference)? {
             return Ok(value);
         }
+        if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
+            let literal = self.with_literal_subscripts(reference)?;
+            if let Some(value) = self.host.variable(&literal)? {
+                return Ok(value);
+            }
+        }
         let fault = match reference.as_ident() {
             Some(name) => self.scope.unknown(name),
             None => {
@@ -184,6 +193,50 @@ impl Evaluator<'_> {
         let root = self.scope.variables.shift_remove(&root);
         let (path, Some(root)) = (path?, root) else { return Ok(None) };
         root.value.part(&path).map(Some).at(reference.span)
+    }
+
+    /// The reference with the values of its subscripts in their place.
+    fn with_literal_subscripts(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<ComponentReference, Diagnostic> {
+        let mut literal = ComponentReference { parts: Vec::new(), ..reference.clone() };
+        for part in &reference.parts {
+            let name = part.name;
+            literal.parts.push(ReferencePart { name, subscripts: Vec::new() });
+            let is_literal = part.subscripts.iter().all(is_literal);
+            let subscripts = match is_literal {
+                true => part.subscripts.clone(),
+                false => {
+                    let dims = self.sizes_of_global(&literal, &part.subscripts)?;
+                    let indices = self.subscripts(&part.subscripts, &dims)?;
+                    let pairs = indices.into_iter().zip(&part.subscripts);
+                    pairs.map(|(index, own)| index_literal(index, own.span())).collect()
+                }
+            };
+            if let Some(last) = literal.parts.last_mut() {
+                last.subscripts = subscripts;
+            }
+        }
+        Ok(literal)
+    }
+
+    /// The sizes of a global array whose subscripts may ask for them: `a[end]`.
+    fn sizes_of_global(
+        &mut self,
+        array: &ComponentReference,
+        subscripts: &[Subscript],
+    ) -> Result<Vec<usize>, Diagnostic> {
+        let is_name = |subscript: &Subscript| match subscript {
+            Subscript::All(_) => true,
+            Subscript::Index(expression) => {
+                matches!(expression.kind, ExpressionKind::Integer(_) | ExpressionKind::Reference(_))
+            }
+        };
+        if subscripts.iter().all(is_name) {
+            return Ok(Vec::new());
+        }
+        Ok(self.host.variable(array)?.map_or(Vec::new(), |value| value.dims().to_vec()))
     }
 
     /// The stored value, whether complete or not.
@@ -346,6 +399,25 @@ impl Evaluator<'_> {
             });
         }
         Ok(indices)
+    }
+}
+
+fn is_literal(subscript: &Subscript) -> bool {
+    match subscript {
+        Subscript::All(_) => true,
+        Subscript::Index(expression) => matches!(expression.kind, ExpressionKind::Integer(_)),
+    }
+}
+
+fn index_literal(index: Index, span: Span) -> Subscript {
+    let integer = |at: i64| Expression::new(ExpressionKind::Integer(at), span);
+    match index {
+        Index::One(at) => Subscript::Index(integer(at)),
+        Index::Many(all) => {
+            let elements = all.into_iter().map(integer).collect();
+            Subscript::Index(Expression::new(ExpressionKind::Array(elements), span))
+        }
+        Index::All => Subscript::All(span),
     }
 }
 

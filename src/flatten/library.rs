@@ -36,6 +36,7 @@ use legacy::LegacyConstructs;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// A class of a [`Library`].
@@ -54,6 +55,8 @@ pub struct Library {
     roots: IndexMap<Ident, ClassId>,
     /// Top-level names that were looked for and are not loaded.
     missing: Mutex<BTreeSet<Ident>>,
+    /// The same since [`Library::forget_uses`].
+    absent: Mutex<BTreeSet<Ident>>,
     /// What the classes extend, found so far; another cache as soon as a class is added.
     bases: Arc<Mutex<BaseCache>>,
     /// The classes that were asked for and could not be read.
@@ -74,6 +77,7 @@ impl Clone for Library {
             classes: self.classes.clone(),
             roots: self.roots.clone(),
             missing: Mutex::default(),
+            absent: Mutex::default(),
             bases: self.bases.clone(),
             broken: Mutex::default(),
             legacy: self.legacy.clone(),
@@ -103,6 +107,18 @@ struct Slot {
     declared: Declared,
     origin: Origin,
     class: OnceLock<Class>,
+    /// Whether something was looked up in it since [`Library::forget_uses`].
+    is_used: Flag,
+}
+
+/// What many threads may raise.
+#[derive(Debug, Default)]
+struct Flag(AtomicBool);
+
+impl Clone for Flag {
+    fn clone(&self) -> Flag {
+        Flag(AtomicBool::new(self.0.load(Ordering::Relaxed)))
+    }
 }
 
 /// What the class around it says of a class.
@@ -278,7 +294,8 @@ impl Library {
             None => Name::from(name),
         };
         let class = OnceLock::new();
-        ClassId(self.classes.push(Slot { name, parent, declared, origin, class }) as u32)
+        let is_used = Flag::default();
+        ClassId(self.classes.push(Slot { name, parent, declared, origin, class, is_used }) as u32)
     }
 
     fn class_mut(&mut self, id: ClassId) -> Option<&mut Class> {
@@ -442,12 +459,28 @@ impl Library {
         let found = self.roots.get(&name).copied();
         if found.is_none() {
             locked(&self.missing).insert(name);
+            locked(&self.absent).insert(name);
         }
         found
     }
 
+    /// From here on it is noted which classes are used: see [`Library::uses`].
+    pub fn forget_uses(&self) {
+        self.classes.iter().for_each(|(_, slot)| slot.is_used.0.store(false, Ordering::Relaxed));
+        locked(&self.absent).clear();
+    }
+
+    /// The top-level names on which everything depends that was looked up since
+    /// [`Library::forget_uses`]: those of the classes, and those that no class had.
+    pub fn uses(&self) -> BTreeSet<Ident> {
+        let used = self.classes.iter().filter(|(_, slot)| slot.is_used.0.load(Ordering::Relaxed));
+        let roots = used.filter_map(|(_, slot)| slot.name.first());
+        roots.chain(locked(&self.absent).iter().copied()).collect()
+    }
+
     /// A class, read now if it was not.
     pub(super) fn class(&self, id: ClassId) -> &Class {
+        self.slot(id).is_used.0.store(true, Ordering::Relaxed);
         let class = self.seen(id);
         if !class.problems.is_empty() {
             locked(&self.broken).insert(id);

@@ -39,6 +39,7 @@ mod variables;
 
 pub use balance::LocalBalance;
 pub use declared::{Declared, Member};
+pub use flat_expression::flat_reference;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 

@@ -73,6 +73,8 @@ pub struct PortableModel {
     pub name: String,
     /// See [`Model::driven`].
     pub driven: Option<(String, String)>,
+    /// Positions of parameters, and values that they have in place of those of the model.
+    pub values: Vec<(usize, f64)>,
     /// [`Program::to_bytes`](crate::codegen::Program::to_bytes).
     pub program: Vec<u8>,
 }

@@ -54,6 +54,8 @@ pub struct CompiledModel {
     name: String,
     program: Arc<Program>,
     driven: Option<(String, String)>,
+    /// Positions of parameters, and values that they have in place of those of the model.
+    values: Vec<(usize, f64)>,
     sensitivities: Arc<Sensitivities>,
 }
 
@@ -85,12 +87,18 @@ impl Sensitivities {
 impl CompiledModel {
     /// Names a program; the name carries the modification.
     pub fn new(name: impl Into<String>, program: Arc<Program>) -> CompiledModel {
-        CompiledModel { name: name.into(), program, driven: None, sensitivities: Arc::default() }
+        let (driven, values, sensitivities) = (None, Vec::new(), Arc::default());
+        CompiledModel { name: name.into(), program, driven, values, sensitivities }
     }
 
     /// The input `x_name` has the value of `parameter`: a static curve, see [`Model::driven`].
     pub fn driven_by(self, x_name: &str, parameter: &str) -> CompiledModel {
         CompiledModel { driven: Some((x_name.to_owned(), parameter.to_owned())), ..self }
+    }
+
+    /// Parameters, by their positions in [`Program::parameters`], have these values unless they vary.
+    pub fn with_values(self, values: Vec<(usize, f64)>) -> CompiledModel {
+        CompiledModel { values, ..self }
     }
 
     fn variable(&self, name: &str) -> Option<&VariableInfo> {
@@ -186,7 +194,8 @@ impl Model for CompiledModel {
         let Some(program) = bytes else {
             return Err("calls functions in C, or is too large".to_owned());
         };
-        Ok(PortableModel { name: self.name.clone(), driven: self.driven.clone(), program })
+        let (name, driven, values) = (self.name.clone(), self.driven.clone(), self.values.clone());
+        Ok(PortableModel { name, driven, values, program })
     }
 
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {
@@ -200,6 +209,9 @@ impl Model for CompiledModel {
             .collect::<Result<_, _>>()?;
         let mut system = self.program.system();
         system.observe_only(&positions);
+        for (parameter, value) in &self.values {
+            system.set_parameter(*parameter, *value)?;
+        }
         let sensitivities = self.sensitivities.clone();
         Ok(Box::new(CompiledInstance { system, slots, positions, sensitivities }))
     }

@@ -243,6 +243,17 @@ impl System {
         }
     }
 
+    /// Gives discrete variables, by their positions in [`Program::variables`], values that hold from the
+    /// next event on. Those that follow from others are computed again there.
+    pub fn set_discrete(&mut self, values: &[(usize, f64)]) {
+        for (variable, value) in values {
+            let Some(info) = self.program.variables().get(*variable) else { continue };
+            if self.program.events.discrete.contains(&info.variable) {
+                self.registers[info.variable.0 as usize] = *value;
+            }
+        }
+    }
+
     pub(super) fn load(&mut self, t: f64, y: &[f64]) {
         self.registers[0] = t;
         let registers = &mut self.registers[..];
@@ -334,7 +345,11 @@ impl System {
         Err(Failure::Domain { origin, operation: Operation::OTHER })
     }
 
-    fn evaluate_parameters(&mut self) -> Result<(), Failure> {
+    /// Computes all parameters from those that are set.
+    ///
+    /// # Errors
+    /// One of them cannot be computed.
+    pub fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
         self.lacking = None;
         self.registers.calls.restart();

@@ -46,11 +46,11 @@ fn experiment(portable: PortableExperiment, clock: fn() -> f64) -> Result<Experi
 }
 
 fn model(portable: PortableModel) -> Result<Arc<dyn Model>, Fault> {
-    let PortableModel { name, driven, program } = portable;
+    let PortableModel { name, driven, values, program } = portable;
     let Some(program) = Program::from_bytes(&program) else {
         return Err(fault!(BAD_OPTION, "the compiled model `{name}` cannot be read"));
     };
-    let model = CompiledModel::new(name, program);
+    let model = CompiledModel::new(name, program).with_values(values);
     Ok(Arc::new(match driven {
         Some((x_name, parameter)) => model.driven_by(&x_name, &parameter),
         None => model,

@@ -4,7 +4,8 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
-use crate::script::models::simulation::{Translated, begin_with};
+use crate::script::models::final_state::FinalState;
+use crate::script::models::simulation::Translated;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use indexmap::IndexMap;
@@ -29,35 +30,24 @@ fn model(session: &Session, command: &str) -> Result<Arc<Translated>, Fault> {
 }
 
 const IMPORT_INITIAL: &str = r#"
-function importInitial "The next simulations continue from the end of the last one: its states, its time and the length of its interval."
-  input String dsName = "dsfinal.txt" "only this name: the end of the last simulation of this session";
+function importInitial "The next simulations begin at a final state: its states, discrete variables and parameters, its time, and an interval of the same length."
+  input String dsName = "dsfinal.txt" "the end of the last simulation, or a copy of it";
   output Boolean ok;
 end importInitial;
 "#;
 
 fn import_initial(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("dsName")?;
-    if file != "dsfinal.txt" {
-        bail!(
-            BAD_ARGUMENT,
-            "`importInitial` continues from the last simulation of this session; it does not \
-             read `{file}`";
-            help: "read the values of a result file with `importInitialResult(\"result.mat\", \
-                   time)`"
-        );
-    }
     model(session, "importInitial")?;
-    let Some(end) = session.last_end().cloned() else {
-        bail!(BAD_ARGUMENT, "there is no final state to continue from: no model has been simulated")
-    };
-    session.import_states(end.states);
-    let (start, stop) = end.span;
-    super::simulation::begin_at(session, stop, Some(stop + (stop - start)));
+    let state = super::final_states::final_state(session, &file)?;
+    session.continue_from(&state, &file)?;
+    let (start, stop) = state.span;
+    super::simulation::begin_at(session, start, Some(stop));
     Ok(true.into())
 }
 
 const IMPORT_INITIAL_RESULT: &str = r#"
-function importInitialResult "The next simulations start from the states and parameters of a result file at a given time."
+function importInitialResult "The next simulations start from the states, discrete variables and parameters of a result file at a given time."
   input String dsResName "result file";
   input Real atTime "s";
   output Boolean ok;
@@ -68,7 +58,8 @@ fn import_initial_result(session: &mut Session, mut args: Args) -> Result<Value,
     let (file, time): (String, f64) = (args.take("dsResName")?, args.take("atTime")?);
     let model = model(session, "importInitialResult")?;
     let table = super::results::table(session, &file)?;
-    begin_with(session, &model, &table, time)?;
+    let state = FinalState::in_result(&model, &table, time)?;
+    session.continue_from(&state, &file)?;
     super::simulation::begin_at(session, time, None);
     Ok(true.into())
 }

@@ -13,6 +13,7 @@ mod executable;
 mod extended;
 pub mod extensions;
 mod files;
+mod final_states;
 mod gapilib;
 mod header;
 mod initial;
@@ -36,6 +37,7 @@ mod results;
 mod scanning;
 mod scripts;
 mod settings;
+mod signal_operators;
 mod simflags;
 mod simulation;
 mod streams;
@@ -147,6 +149,7 @@ pub static FAMILIES: &[&Family] = &[
     &scripts::OPENMODELICA,
     &settings::FAMILY,
     &settings::LIST_FAMILY,
+    &signal_operators::FAMILY,
     &simulation::FAMILY,
     &streams::FAMILY,
     &streams::BARE_PRINT,

@@ -55,6 +55,7 @@ end clearVariables;
 
 fn clear_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
     session.workspace.variables.clear();
+    session.models.forget_variables();
     Ok(true.into())
 }
 

@@ -204,11 +204,12 @@ fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Di
     if !problem.trim().is_empty() {
         return simulation::translate(session, problem.trim());
     }
-    session.last_model().ok_or_else(|| {
+    let last = session.last_model().ok_or_else(|| {
         let fault = Fault::new(NO_TRANSLATED_MODEL, "no model has been translated yet")
             .help("name the model: `simulateModel(\"Package.Model\")`");
         vec![fault.at(session.call_site())]
-    })
+    })?;
+    simulation::translate(session, &last.problem)
 }
 
 /// The model of a problem; `None` if it cannot be translated, which has been reported.
@@ -239,6 +240,7 @@ pub(super) fn run_model(
     let table = super::output::stored(session, model, &simulated.table, &grid);
     let written = write(session, table, file).at(session.call_site());
     written.map_err(|error| vec![error])?;
+    super::final_states::write_final(session);
     Ok(simulated)
 }
 

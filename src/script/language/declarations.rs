@@ -23,6 +23,7 @@ impl Session {
             if clause.type_prefixes.variability == Some(VariabilityPrefix::Constant) {
                 self.workspace.variables.freeze(component.name.node);
             }
+            self.models.note_own(component.name.node);
             self.follow_ups.found(component.name.node);
         }
         Ok(())

@@ -120,7 +120,7 @@ impl Host for Session {
         {
             return Err(note);
         }
-        self.assign_dotted(target, value, span)
+        self.assign_dotted(target, &value, span)
     }
 
     fn assigned(
@@ -128,12 +128,18 @@ impl Host for Session {
         name: Ident,
         before: Option<&Value>,
         value: &Value,
-    ) -> Result<(), Fault> {
+    ) -> Result<bool, Fault> {
         if self.dialect() == Dialect::Dymola {
             check_type(name, before, value)?;
         }
         self.follow_ups.found(name);
-        self.share_with_model(name, value)
+        match self.is_of_model(name) {
+            true => self.assign_to_model(name, value),
+            false => {
+                self.keep_from_model(name);
+                Ok(false)
+            }
+        }
     }
 
     fn begin_use(&mut self, value: &Expression) {

@@ -188,6 +188,7 @@ impl Session {
     /// Forgets variables, flags, imports and classes.
     pub(in crate::script) fn clear(&mut self) {
         self.workspace.clear();
+        self.models.forget_variables();
         self.forget_classes();
     }
 

@@ -38,6 +38,7 @@ impl Session {
         if !is_identifier {
             bail!(BAD_OPTION, "`{name}` cannot be the name of a variable");
         }
+        self.models.note_own(Ident::new(name));
         self.workspace.variables.set(Ident::new(name), value)
     }
 

@@ -1,9 +1,13 @@
 //! The models that a session has compiled, and the one that dotted names of scripts refer to.
 
-use super::changes::Changes;
+use super::changes::{Changes, Given, literal};
+use super::final_state::FinalState;
 use super::translated::Translated;
+use super::uses::Uses;
+use crate::flatten::BaseType;
 use crate::name::Ident;
 use crate::source::Span;
+use crate::syntax::print;
 use indexmap::IndexMap;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
@@ -12,25 +16,20 @@ use std::sync::Arc;
 /// The compiled models of a session.
 #[derive(Default)]
 pub struct CompiledModels {
-    /// By the class with its modification, each with the revision of the classes then.
-    known: FxHashMap<String, (u64, Arc<Translated>)>,
+    /// By the class with its modification, each with what it depends on.
+    known: FxHashMap<String, (Uses, Arc<Translated>)>,
     /// The model translated last.
     pub current: Option<Current>,
     /// Where the last simulation ended.
-    pub end: Option<End>,
+    pub end: Option<FinalState>,
     /// The warnings reported so far.
     reported: FxHashSet<(Span, String)>,
     /// Names of parameters about which a note was reported.
     noted: BTreeSet<Ident>,
-}
-
-/// The end of a simulation: what a later one may begin with.
-#[derive(Debug, Clone)]
-pub struct End {
-    /// Start and stop time, seconds.
-    pub span: (f64, f64),
-    /// The states.
-    pub states: IndexMap<Arc<str>, f64>,
+    /// What was set by hand on models whose place another one has taken.
+    left: FxHashMap<String, Vec<String>>,
+    /// Variables that are the scripts' own, whatever parameter has the same name.
+    own: FxHashSet<Ident>,
 }
 
 /// The model translated last, with the values that scripts gave to its parameters.
@@ -38,11 +37,11 @@ pub struct End {
 pub struct Current {
     /// The model.
     pub model: Arc<Translated>,
-    /// Values by the index of the parameter.
-    pub overrides: IndexMap<usize, f64>,
+    /// Values of parameters by their names.
+    pub overrides: IndexMap<Arc<str>, f64>,
     /// Values that another translation needs.
     pub changes: Changes,
-    /// Values that the states have at the start in place of those of the initial equations.
+    /// Values that states and discrete variables have at the start in place of those of the initial equations.
     pub imported: IndexMap<Arc<str>, f64>,
 }
 
@@ -52,37 +51,46 @@ impl Current {
         let (overrides, imported) = (IndexMap::new(), IndexMap::new());
         Current { model, overrides, changes: Changes::default(), imported }
     }
+
+    /// What scripts set by hand, as they could write it.
+    pub fn set_by_hand(&self) -> Vec<String> {
+        let changes = self.changes.shown();
+        let number = |(name, value): (&Arc<str>, &f64)| {
+            format!("{name} = {}", shown(&self.model, name, *value))
+        };
+        changes.chain(self.overrides.iter().map(number)).collect()
+    }
+}
+
+/// The value of a parameter as Modelica writes it.
+fn shown(model: &Translated, name: &str, value: f64) -> String {
+    let mut parameters = model.program.parameters().iter();
+    let base = parameters.find(|known| &*known.name == name).map(|known| &known.base);
+    print::expression(&literal(base.unwrap_or(&BaseType::Real), Given::Number(value)))
 }
 
 impl CompiledModels {
-    /// A model compiled when the classes had this revision.
-    pub fn get(&self, problem: &str, revision: u64) -> Option<Arc<Translated>> {
-        let (then, model) = self.known.get(problem)?;
-        (*then == revision).then(|| model.clone())
+    /// A model, and what it depends on.
+    pub fn get(&self, problem: &str) -> Option<&(Uses, Arc<Translated>)> {
+        self.known.get(problem)
     }
 
-    /// Keeps a model, compiled when the classes had this revision.
-    pub fn keep(&mut self, revision: u64, model: &Arc<Translated>) {
-        self.known.insert(model.problem.clone(), (revision, model.clone()));
+    /// Keeps a model that depends on these classes.
+    pub fn keep(&mut self, uses: Uses, model: &Arc<Translated>) {
+        self.known.insert(model.problem.clone(), (uses, model.clone()));
     }
 
     /// Forgets all models.
     pub fn forget(&mut self) {
         self.known.clear();
         self.reported.clear();
+        self.left.clear();
         self.current = None;
     }
 
     /// The model translated last.
     pub fn last(&self) -> Option<&Arc<Translated>> {
         self.current.as_ref().map(|current| &current.model)
-    }
-
-    /// Makes a model the one that dotted names refer to; it keeps its values if it was it already.
-    pub fn refer_to(&mut self, model: &Arc<Translated>) {
-        if !self.last().is_some_and(|last| Arc::ptr_eq(last, model)) {
-            self.refer_anew_to(model);
-        }
     }
 
     /// Makes a model, with the values that it has itself, the one that dotted names refer to.
@@ -95,17 +103,36 @@ impl CompiledModels {
         self.reported.insert((span, message.to_owned()))
     }
 
+    /// Another model takes the place of the current one.
+    pub fn leave(&mut self, before: &Current) {
+        let values = before.set_by_hand();
+        if !values.is_empty() {
+            self.left.insert(before.model.problem.clone(), values);
+        }
+    }
+
+    /// What was set by hand on a model before another one took its place.
+    pub fn take_left(&mut self, problem: &str) -> Option<Vec<String>> {
+        self.left.remove(problem)
+    }
+
+    /// A script has a variable of this name that has nothing to do with a model.
+    pub fn note_own(&mut self, name: Ident) {
+        self.own.insert(name);
+    }
+
+    /// Whether a variable is the scripts' own, whatever parameter has the same name.
+    pub fn is_own(&self, name: Ident) -> bool {
+        self.own.contains(&name)
+    }
+
+    /// The scripts' variables are gone.
+    pub fn forget_variables(&mut self) {
+        self.own.clear();
+    }
+
     /// Whether a note about a parameter is to be reported: there was none yet.
     pub fn is_new_note(&mut self, name: Ident) -> bool {
         self.noted.insert(name)
-    }
-
-    /// The value that a parameter of the model translated last has, or `None` if the model has no
-    /// such parameter.
-    pub fn parameter_value(&self, name: &str) -> Option<f64> {
-        let current = self.current.as_ref()?;
-        let index = current.model.program.find_parameter(name).ok()?;
-        let default = current.model.program.parameters()[index].default;
-        Some(current.overrides.get(&index).copied().unwrap_or(default))
     }
 }

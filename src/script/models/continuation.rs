@@ -3,25 +3,36 @@
 use crate::runtime::System;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
-/// A system whose states have given values at the start, whatever its initial equations say; all
-/// other variables follow from them. Discrete variables keep the values that initialization gave
-/// them.
+/// A system whose states and discrete variables have given values at the start, whatever its initial
+/// equations say; all other variables follow from them.
 pub(super) struct Continued {
     /// The system, whose parameters can be read afterwards.
     pub system: System,
     /// Positions among the states, and values.
     pub states: Vec<(usize, f64)>,
+    /// Positions of discrete variables among the variables, and values.
+    pub discrete: Vec<(usize, f64)>,
+}
+
+impl Continued {
+    fn set(&mut self, y: &mut [f64]) {
+        for (state, value) in &self.states {
+            y[*state] = *value;
+        }
+        self.system.set_discrete(&self.discrete);
+    }
 }
 
 impl DaeSystem for Continued {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.system.initialize(t, y)?;
-        if self.states.is_empty() {
+        if self.states.is_empty() && self.discrete.is_empty() {
             return Ok(());
         }
-        for (state, value) in &self.states {
-            y[*state] = *value;
-        }
+        // Conditions that become true here were true before: what they do is taken back.
+        self.set(y);
+        self.system.handle_event(t, y)?;
+        self.set(y);
         self.system.handle_event(t, y).map(|_| ())
     }
 

@@ -7,6 +7,7 @@ use crate::flatten::{self, ClassId, Library};
 use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::models::left_open::LeftOpen;
+use crate::script::models::uses::names_in;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::BTreeSet;
@@ -93,6 +94,8 @@ impl Session {
         if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
             self.autoload_class(package)?;
         }
+        let revision = self.classes.revision();
+        self.classes.texts.note(&names_in(&file), &revision.to_string());
         self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))
     }
 

@@ -1,6 +1,7 @@
 //! Loading classes: from files, folders and libraries, when somebody names them.
 
 use super::classes::Enclosing;
+use super::uses::names_in;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::Function;
 use crate::flatten::Library;
@@ -123,6 +124,9 @@ impl Session {
         let names =
             self.ask_library(|library| library.load_lazily(&files, folder, around).map_err(one))?;
         self.classes.note_files(&names, folder);
+        // Its files are read later: nobody knows yet whether they are the same.
+        let revision = self.classes.revision();
+        self.classes.texts.note(&names, &format!("{}\n{revision}", folder.display()));
         self.supply_units(&names).map_err(one)?;
         self.note_versions(&names);
         Ok(names)
@@ -151,6 +155,8 @@ impl Session {
         if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
             self.autoload_class(package)?;
         }
+        // Before: a text of which only a part can be loaded changes classes, too.
+        self.classes.texts.note(&names_in(&file), &format!("{shown}\n{text}"));
         let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
         self.note_versions(&names);
         Ok(names)
@@ -225,8 +231,10 @@ impl Session {
         class: &Arc<ClassDefinition>,
     ) -> Result<(), Diagnostic> {
         self.classes.invalidate();
-        let text = self.sources.text(class.span).to_owned();
+        // An edited class still has the place of the text that it was read from.
+        let text = syntax::print::class(class);
         self.classes.history.note("class", &text);
+        self.classes.texts.note(&[class.name.node.into()], &text);
         self.classes.library.define(class).map(|_| ())
     }
 
@@ -237,7 +245,9 @@ impl Session {
         enclosing: Enclosing,
     ) -> Result<(), Diagnostic> {
         self.classes.invalidate();
-        self.classes.history.note("enclosing", &syntax::print::class(&class));
+        let text = syntax::print::class(&class);
+        self.classes.history.note("enclosing", &text);
+        self.classes.texts.note(&[class.name.node.into()], &text);
         self.classes.enclosing.retain(|known| known.name != enclosing.name);
         self.classes.enclosing.push(enclosing);
         self.classes.library.define(&Arc::new(class)).map(|_| ())
@@ -252,6 +262,7 @@ impl Session {
     pub(in crate::script) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.invalidate();
         self.classes.history.note("remove", &name.to_string());
+        self.classes.texts.remove(name);
         name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
     }
 

@@ -1,5 +1,6 @@
 //! The models of a session: classes and libraries, translation, simulation, linearization.
 
+mod addressing;
 mod along;
 mod c_functions;
 pub mod changes;
@@ -9,7 +10,9 @@ pub mod compiled;
 pub mod constant_cache;
 mod continuation;
 pub mod documents;
+pub mod final_state;
 pub mod hardest;
+pub(in crate::script) mod in_use;
 mod left_open;
 mod libraries;
 pub mod library_files;
@@ -18,10 +21,14 @@ mod loading;
 mod measured_units;
 pub mod modification;
 mod parameters;
+mod reading;
 mod resources;
+mod restart;
 pub mod simulation;
 pub(in crate::script) mod static_curve;
 pub mod stored;
 pub mod translated;
+mod typed;
+pub(in crate::script) mod uses;
 pub mod verification;
 mod warnings;

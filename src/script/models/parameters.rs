@@ -1,67 +1,118 @@
 //! Values of the model translated last: its parameters and start values, as scripts set them.
 
-use super::changes::Changed;
-use super::compiled::{Current, End};
+use super::addressing::{Addressed, addressed, all_indices, flat_name};
+use super::changes::{Changed, Given};
+use super::compiled::Current;
+use super::final_state::FinalState;
 use super::translated::Translated;
+use super::typed::{may_be, number_in, number_of, unquoted};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::name::Ident;
-use crate::script::Session;
 use crate::script::errors::{
     BAD_PARAMETER_VALUE, SHARED_NAME, TRANSLATED_AGAIN, UNKNOWN_PARAMETER,
 };
+use crate::script::{Dialect, Session};
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, Subscript};
-use crate::value::Value;
+use crate::syntax::ast::{ComponentReference, ReferencePart};
+use crate::value::{ArrayValue, Value, sizes};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
 impl Session {
-    /// The value that a parameter of the model translated last has.
-    pub(in crate::script) fn model_value(
-        &mut self,
-        reference: &ComponentReference,
-    ) -> Result<Option<Value>, Diagnostic> {
-        let value = flat_name(reference).and_then(|name| self.models.parameter_value(&name));
-        Ok(value.map(Value::Real))
-    }
-
     /// Sets a flag, or a parameter of the model translated last.
     pub(in crate::script) fn assign_dotted(
         &mut self,
         target: &ComponentReference,
-        value: Value,
+        value: &Value,
         span: Span,
     ) -> Result<bool, Diagnostic> {
-        if self.workspace.set_flag(target, &value) {
+        if self.workspace.set_flag(target, value) {
             return Ok(true);
         }
         if self.models.last().is_none() {
             return Err(self.nothing_translated(target).at(target.span));
         }
-        let Some(name) = flat_name(target) else {
-            let message = "subscripts of a model component must be Integers";
-            return Err(Fault::new(BAD_PARAMETER_VALUE, message).at(target.span));
-        };
-        let number = match value {
-            Value::Boolean(value) => f64::from(value),
-            Value::Enumeration(value) => value.ordinal as f64,
-            other => match other.as_real() {
-                Some(number) => number,
-                None => {
-                    return Err(fault!(
-                        BAD_PARAMETER_VALUE,
-                        "`{name}` cannot be set to {}", other.type_name();
-                        help: "assign a number, or the elements of an array one by one"
-                    )
-                    .at(span));
-                }
-            },
-        };
-        self.set_parameter(&name, number).at(span)?;
+        self.set_values(target, value).at(span)?;
         Ok(true)
+    }
+
+    /// Gives a parameter of the model translated last, an array of them or a part of one, a value.
+    fn set_values(&mut self, target: &ComponentReference, value: &Value) -> Result<(), Fault> {
+        let Some(name) = flat_name(target) else {
+            bail!(BAD_PARAMETER_VALUE, "subscripts of a model component must be Integers")
+        };
+        let (target, suffix) = without_start(target);
+        let found = self.shaped_models().find_map(|model| addressed(&model, &target));
+        let Some(found) = found else {
+            let Some(number) = value.as_real() else {
+                return Err(match self.models.last() {
+                    Some(model) => not_tunable(model, &name),
+                    None => no_model(&name),
+                });
+            };
+            return self.set_parameter(&name, number);
+        };
+        if let (BaseType::String, Value::String(text)) = (&found.declaration.base, value) {
+            return self
+                .change_structure(&format!("{}{suffix}", found.names[0]), Given::Text(text));
+        }
+        let numbers = numbers(&found, &name, value)?;
+        let before = self.models.current.clone();
+        let done = self.set_elements(&found, suffix, &numbers);
+        done.inspect_err(|_| self.models.current = before)
+    }
+
+    /// What scripts changed the model translated last to, and the model itself.
+    fn shaped_models(&self) -> impl Iterator<Item = Arc<Translated>> + use<> {
+        let current = self.models.current.as_ref();
+        let changed = current.and_then(|current| current.changes.model()).cloned();
+        changed.into_iter().chain(current.map(|current| current.model.clone()))
+    }
+
+    /// Gives scalars values: each by itself, or with the array that it is an element of where that has
+    /// shaped the model.
+    fn set_elements(
+        &mut self,
+        found: &Addressed,
+        suffix: &str,
+        numbers: &[f64],
+    ) -> Result<(), Fault> {
+        let has_slot = |name: &String| {
+            self.shaped_models().any(|model| model.program.find_parameter(name).is_ok())
+        };
+        let is_tunable = suffix.is_empty() && found.names.iter().all(has_slot);
+        let array = found.array().filter(|_| !is_tunable && suffix.is_empty());
+        let Some((array, all)) = array else {
+            let pairs = found.names.iter().zip(numbers);
+            let mut pairs = pairs.map(|(name, number)| (format!("{name}{suffix}"), number));
+            return pairs.try_for_each(|(name, number)| self.set_parameter(&name, *number));
+        };
+        let mut elements = match all == found.names {
+            true => numbers.to_vec(),
+            false => self.elements(&all)?,
+        };
+        for (name, number) in found.names.iter().zip(numbers) {
+            if let Some(at) = all.iter().position(|own| own == name) {
+                elements[at] = *number;
+            }
+        }
+        if let Some(current) = &mut self.models.current {
+            current.overrides.retain(|name, _| !all.iter().any(|own| **own == **name));
+        }
+        let dims = found.declaration.dims.clone();
+        self.change_structure(&array, Given::Array(&dims, &elements))
+    }
+
+    /// The values that the elements of an array have.
+    fn elements(&mut self, names: &[String]) -> Result<Vec<f64>, Fault> {
+        let Some(last) = self.models.last().cloned() else { return Err(no_model(&names[0])) };
+        let fault = |error: Diagnostic| Fault::new(error.code, error.message.clone());
+        let model = self.shaped_model(&last).map_err(fault)?;
+        let numbers = self.numbers_of(&model, names).map_err(fault)?;
+        numbers.ok_or_else(|| not_tunable(&model, &names[0]))
     }
 
     /// Gives a parameter of the model translated last a value, by its full name.
@@ -69,28 +120,34 @@ impl Session {
     /// # Errors
     /// A name that is no parameter, or one that cannot be set without translating again.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Fault> {
-        let Some(current) = &mut self.models.current else {
-            bail!(
-                crate::script::errors::NO_TRANSLATED_MODEL,
-                "`{name}` refers to a component of a model, but no model has been translated";
-                help: "call `translateModel(\"Package.Model\")` first"
-            )
-        };
-        match current.model.program.find_parameter(name) {
-            Ok(index) => {
-                check_value(&current.model, index, value)?;
-                current.overrides.insert(index, value);
+        let model = self.shaped_models().find(|model| model.program.find_parameter(name).is_ok());
+        let Some(current) = &mut self.models.current else { return Err(no_model(name)) };
+        if let Some(model) = model {
+            check_value(&model, name, value)?;
+            current.overrides.insert(name.into(), value);
+            return Ok(());
+        }
+        match name.strip_suffix(".start") {
+            // There is no modification of a single element.
+            Some(state) if state.contains('[') && is_state(&current.model, state) => {
+                current.imported.insert(state.into(), value);
                 Ok(())
             }
-            Err(_) => match current.changes.set(&current.model, name, value) {
-                Some(Changed::Structure) => {
-                    let problem = current.model.problem.clone();
-                    self.note_structural(name, &problem);
-                    Ok(())
-                }
-                Some(Changed::Start) => Ok(()),
-                None => Err(not_tunable(&current.model, name)),
-            },
+            _ => self.change_structure(name, Given::Number(value)),
+        }
+    }
+
+    /// Gives what has no slot in the program a value.
+    fn change_structure(&mut self, name: &str, value: Given<'_>) -> Result<(), Fault> {
+        let Some(current) = &mut self.models.current else { return Err(no_model(name)) };
+        match current.changes.set(&current.model, name, value) {
+            Some(Changed::Structure) => {
+                let problem = current.model.problem.clone();
+                self.note_structural(name, &problem);
+                Ok(())
+            }
+            Some(Changed::Start) => Ok(()),
+            None => Err(not_tunable(&current.model, name)),
         }
     }
 
@@ -100,21 +157,14 @@ impl Session {
     /// # Errors
     /// Also a text that is no value of the parameter's type.
     pub fn set_parameter_text(&mut self, name: &str, text: &str) -> Result<(), Fault> {
-        let Some(current) = &mut self.models.current else {
-            return self.set_parameter(name, f64::NAN);
-        };
-        let model = current.model.clone();
+        let Some(model) = self.models.last().cloned() else { return Err(no_model(name)) };
         let whole = name.split_once('[').map_or(name, |(whole, _)| whole);
         let owner = whole.strip_suffix(".start").unwrap_or(whole);
         let base = model.declarations.get(owner).map(|variable| &variable.base);
         if base == Some(&BaseType::String) {
-            if !current.changes.set_text(&model, name, unquoted(text)) {
-                return Err(not_tunable(&model, name));
-            }
-            self.note_structural(name, &model.problem);
-            return Ok(());
+            return self.change_structure(name, Given::Text(unquoted(text)));
         }
-        let value = number_of(name, text.trim(), base)?;
+        let value = number_in(name, text.trim(), base)?;
         self.set_parameter(name, value)
     }
 
@@ -129,11 +179,11 @@ impl Session {
     }
 
     /// Where the last simulation ended.
-    pub(in crate::script) fn last_end(&self) -> Option<&End> {
+    pub(in crate::script) fn last_end(&self) -> Option<&FinalState> {
         self.models.end.as_ref()
     }
 
-    /// Gives the states of the model translated last values at the start of its next simulations,
+    /// Gives states and discrete variables of the model translated last values at the start of its next simulations,
     /// whatever its initial equations say; none to take them back.
     pub(in crate::script) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
         if let Some(current) = &mut self.models.current {
@@ -141,45 +191,59 @@ impl Session {
         }
     }
 
-    /// A script variable with the name of a parameter of the model translated last gives the
-    /// parameter its value too; said once for each name.
-    pub(in crate::script) fn share_with_model(
+    /// Whether a name that a script assigns to means a parameter of the model translated last: no script
+    /// has had a variable of the name before.
+    pub(in crate::script) fn is_of_model(&self, name: Ident) -> bool {
+        if self.models.is_own(name) || self.dialect() != Dialect::Dymola {
+            return false;
+        }
+        let declared = self.models.last().and_then(|model| model.declarations.get(name.as_str()));
+        declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter)
+    }
+
+    /// Gives the parameter of the model translated last that has this name a value; said once for each
+    /// name. `false` if the value cannot be meant for it: then it is a variable of the script.
+    pub(in crate::script) fn assign_to_model(
         &mut self,
         name: Ident,
         value: &Value,
-    ) -> Result<(), Fault> {
-        let Some(current) = &self.models.current else { return Ok(()) };
-        let model = current.model.clone();
-        let declared = model.declarations.get(name.as_str());
+    ) -> Result<bool, Fault> {
+        let Some(model) = self.models.last().cloned() else { return Ok(false) };
+        if let Some(why) = unlike(&model, name, value) {
+            self.models.note_own(name);
+            self.note_shared_name(name, &format!("the parameter keeps its value: {why}"));
+            return Ok(false);
+        }
+        self.set_values(&ComponentReference::from_name(&name.into(), Span::NONE), value)?;
+        self.note_shared_name(name, "it is set");
+        Ok(true)
+    }
+
+    /// A variable of scripts has got a value that has the name of a parameter; the parameter keeps
+    /// its own.
+    pub(in crate::script) fn keep_from_model(&mut self, name: Ident) {
+        let declared = self.models.last().and_then(|model| model.declarations.get(name.as_str()));
         let is_parameter =
             declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
-        if !is_parameter {
-            return Ok(());
-        }
-        let is_tunable = model.program.find_parameter(name.as_str()).is_ok();
-        let number = value.as_real().or(match value {
-            Value::Boolean(value) => Some(f64::from(*value)),
-            _ => None,
-        });
-        let set = match number {
-            Some(number) if is_tunable => self.set_parameter(name.as_str(), number).map(|()| true),
-            Some(number) => Ok(self.set_parameter(name.as_str(), number).is_ok()),
-            None => Ok(false),
-        };
-        let consequence = match set? {
-            true => "the parameter is set as well".to_owned(),
-            false => {
-                format!("the parameter keeps its value: {}", not_tunable(&model, name.as_str()))
-            }
-        };
-        if self.models.is_new_note(name) {
-            let problem = &model.problem;
-            self.note(
-                SHARED_NAME,
-                format!("`{name}` is also a parameter of `{problem}`: {consequence}"),
+        if is_parameter && self.dialect() == Dialect::Dymola {
+            self.note_shared_name(
+                name,
+                "the parameter keeps its value, because the script had the variable before the \
+                 model was translated",
             );
+        } else {
+            self.models.note_own(name);
         }
-        Ok(())
+    }
+
+    fn note_shared_name(&mut self, name: Ident, consequence: &str) {
+        if self.models.is_new_note(name)
+            && let Some(model) = self.models.last()
+        {
+            let problem = &model.problem;
+            let text = format!("`{name}` is a parameter of `{problem}`: {consequence}");
+            self.note(SHARED_NAME, text);
+        }
     }
 
     /// Reports once for each name that a parameter shapes the equations.
@@ -193,43 +257,93 @@ impl Session {
     }
 }
 
-/// A text without the quotes around it.
-fn unquoted(text: &str) -> &str {
-    let inner = text.trim().strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-    inner.unwrap_or(text)
-}
-
-/// The number that stands for a value: of a literal its ordinal.
-fn number_of(name: &str, text: &str, base: Option<&BaseType>) -> Result<f64, Fault> {
-    if let Some(BaseType::Enumeration(definition)) = base {
-        let literal = text.rsplit('.').next().unwrap_or(text);
-        if let Some(at) = definition.literals.iter().position(|known| *known == literal) {
-            return Ok(at as f64 + 1.0);
-        }
-        let literals = definition.literals.iter().map(|known| known.as_str());
-        return text.parse().map_err(|_| {
-            fault!(
-                BAD_PARAMETER_VALUE,
-                "`{text}` is not a literal of `{}`, the type of `{name}`",
-                definition.name
-            )
-            .help_if(suggest::did_you_mean(literal, literals.clone()))
-            .help(format!("its literals are {}", literals.collect::<Vec<_>>().join(", ")))
+impl Addressed {
+    /// The declared array that all of these are elements of, with the names of its elements; `None` for
+    /// scalars, and for arrays in elements of arrays, which no modification can name.
+    fn array(&self) -> Option<(String, Vec<String>)> {
+        let array = self.names.first()?.strip_suffix(']')?.rsplit_once('[')?.0.to_owned();
+        let is_element =
+            |name: &String| name.strip_prefix(&array).is_some_and(|rest| rest.starts_with('['));
+        let is_one = !array.contains('[') && self.names.iter().all(is_element);
+        let names = all_indices(&self.declaration.dims).into_iter().map(|indices| {
+            let shown: Vec<String> = indices.iter().map(i64::to_string).collect();
+            format!("{array}[{}]", shown.join(","))
         });
-    }
-    match text {
-        "true" => Ok(1.0),
-        "false" => Ok(0.0),
-        number => number.parse().map_err(|_| {
-            fault!(BAD_PARAMETER_VALUE, "`{text}` is not a value of `{name}`";
-                help: "write a number, `true` or `false`")
-        }),
+        is_one.then(|| (array.clone(), names.collect()))
     }
 }
 
-fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault> {
-    let parameter = &model.program.parameters()[index];
-    let name = &parameter.name;
+/// The numbers of a value, one for each scalar.
+fn numbers(found: &Addressed, name: &str, value: &Value) -> Result<Vec<f64>, Fault> {
+    let base = &found.declaration.base;
+    let of = |value: &Value| number_of(base, name, value);
+    if value.dims() != found.dims {
+        let shown = |dims: &[usize]| match dims {
+            [] => "is a scalar".to_owned(),
+            dims => format!("has the size {}", sizes(dims)),
+        };
+        bail!(
+            BAD_PARAMETER_VALUE,
+            "`{name}` {}, but the value {}", shown(&found.dims), shown(value.dims());
+            help: "assign a value of the size that the parameter has in the translated model"
+        );
+    }
+    match value {
+        Value::Array(ArrayValue { elements, .. }) => {
+            (0..elements.len()).map(|at| of(&elements.get(at))).collect()
+        }
+        scalar => Ok(vec![of(scalar)?]),
+    }
+}
+
+/// Why a value cannot be meant for a parameter: nobody can set it, or it is of another kind.
+fn unlike(model: &Translated, name: Ident, value: &Value) -> Option<String> {
+    let declared = model.declarations.get(name.as_str())?;
+    let rank = declared.dims.len();
+    let target = ComponentReference::from_name(&name.into(), Span::NONE);
+    let has_slot = addressed(model, &target)
+        .is_some_and(|found| model.program.find_parameter(&found.names[0]).is_ok());
+    let may_change = !declared.is_final && !declared.says_fixed;
+    let has_value = !matches!(declared.base, BaseType::ExternalObject(_) | BaseType::Clock);
+    let is_settable = has_slot || may_change && has_value;
+    match () {
+        () if !is_settable => Some(format!("`{name}` is final or computed by the model")),
+        () if rank != value.rank() => {
+            Some(format!("it is {}, and the value is {}", kind(rank), kind(value.rank())))
+        }
+        () if !may_be(&declared.base, value) => {
+            Some(format!("the value is a {}", value.type_name()))
+        }
+        () => None,
+    }
+}
+
+fn kind(rank: usize) -> &'static str {
+    match rank {
+        0 => "a scalar",
+        1 => "a vector",
+        _ => "an array",
+    }
+}
+
+/// The reference to a variable in one to its start value, and what follows on its name.
+fn without_start(target: &ComponentReference) -> (ComponentReference, &'static str) {
+    let mut variable = target.clone();
+    let is_start =
+        |part: &ReferencePart| part.name.as_str() == "start" && part.subscripts.is_empty();
+    if variable.parts.len() > 1 && variable.parts.last().is_some_and(is_start) {
+        variable.parts.pop();
+        return (variable, ".start");
+    }
+    (variable, "")
+}
+
+fn is_state(model: &Translated, name: &str) -> bool {
+    model.state_names().any(|state| &**state == name)
+}
+
+fn check_value(model: &Translated, name: &str, value: f64) -> Result<(), Fault> {
+    let parameter = &model.program.parameters()[model.program.find_parameter(name)?];
     if !value.is_finite() {
         bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be {value}"; help: "use a finite number");
     }
@@ -251,6 +365,14 @@ fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault
     Ok(())
 }
 
+fn no_model(name: &str) -> Fault {
+    fault!(
+        crate::script::errors::NO_TRANSLATED_MODEL,
+        "`{name}` refers to a component of a model, but no model has been translated";
+        help: "call `translateModel(\"Package.Model\")` first"
+    )
+}
+
 /// A modification of an element at some depth: `a(b(c = …))`.
 fn nested_modification(name: &str) -> String {
     let parts: Vec<&str> = name.split('.').collect();
@@ -260,7 +382,9 @@ fn nested_modification(name: &str) -> String {
 /// Why a name cannot be assigned in the model.
 fn not_tunable(model: &Translated, name: &str) -> Fault {
     let problem = &model.problem;
-    match model.declarations.get(name) {
+    let array = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+    let declared = model.declarations.get(name);
+    match declared.or_else(|| model.declarations.get(array?.0)) {
         Some(variable) if variable.variability <= Variability::Parameter => {
             let reason = match () {
                 () if variable.variability == Variability::Constant => "it is a constant",
@@ -268,7 +392,8 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
                 () if variable.is_evaluated => {
                     "it is a structural parameter, evaluated at translation"
                 }
-                () => "it is an array or not a number",
+                () if !variable.dims.is_empty() => "it is an array",
+                () => "it is not a number, or the model computes it",
             };
             fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";
                 help: "set it by a modification, `{problem}({})`", nested_modification(name))
@@ -284,31 +409,4 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
                 .help_if(suggest::did_you_mean(name, names))
         }
     }
-}
-
-/// A reference as variables of flat models are named: `pack.cell[2].V`; `None` if a subscript is
-/// not an Integer.
-fn flat_name(reference: &ComponentReference) -> Option<String> {
-    let mut name = String::new();
-    for part in &reference.parts {
-        if !name.is_empty() {
-            name.push('.');
-        }
-        name.push_str(part.name.as_str());
-        let subscripts: Option<Vec<String>> = part
-            .subscripts
-            .iter()
-            .map(|subscript| match subscript {
-                Subscript::Index(Expression { kind: ExpressionKind::Integer(at), .. }) => {
-                    Some(at.to_string())
-                }
-                _ => None,
-            })
-            .collect();
-        match subscripts?.join(",") {
-            none if none.is_empty() => {}
-            subscripts => name.push_str(&format!("[{subscripts}]")),
-        }
-    }
-    Some(name)
 }

@@ -1,8 +1,9 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
 use super::changes::Changes;
-use super::compiled::{Current, End};
+use super::compiled::Current;
 use super::continuation::Continued;
+use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
 use super::stored::Request;
 pub use super::translated::Translated;
@@ -12,11 +13,13 @@ use crate::codegen::errors::{CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
-use crate::flatten::{self, Experiment, FlatModel};
+use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{LogMessage, System, Treated, Undetermined};
 use crate::script::Session;
-use crate::script::errors::{BAD_PARAMETER_VALUE, INTERRUPTED};
+use crate::script::errors::{
+    BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
+};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
 use crate::{bail, causalize, fault, syntax};
@@ -65,7 +68,8 @@ pub struct Simulated {
     pub hardest: Option<Hardest>,
 }
 
-/// Translates a model, `Class` or `Class(modification)`: at most once as long as no class changes.
+/// Translates a model, `Class` or `Class(modification)`: at most once as long as none of its classes
+/// changes.
 /// It becomes the model that dotted names of scripts refer to.
 ///
 /// # Errors
@@ -76,9 +80,60 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
     Ok(model)
 }
 
-/// Makes a translated model the one that dotted names of scripts refer to.
+/// Makes a translated model the one that dotted names of scripts refer to. What was set by hand stays
+/// with a model that was translated again because its classes have changed.
 pub(in crate::script) fn look_at(session: &mut Session, model: &Arc<Translated>) {
-    session.models.refer_to(model);
+    match session.models.current.take() {
+        Some(current) if Arc::ptr_eq(&current.model, model) => {
+            session.models.current = Some(current);
+        }
+        Some(current) if current.model.problem == model.problem => carry(session, current, model),
+        Some(current) => {
+            session.models.leave(&current);
+            session.models.refer_anew_to(model);
+            note_dropped(session, model);
+        }
+        None => session.models.refer_anew_to(model),
+    }
+}
+
+/// Sets again what was set by hand.
+fn carry(session: &mut Session, before: Current, model: &Arc<Translated>) {
+    let values = before.set_by_hand();
+    let mut now = Current { model: model.clone(), ..before };
+    now.changes.forget_model();
+    let is_there = |name: &str| model.program.find_parameter(name).is_ok();
+    let lost: Vec<String> =
+        now.overrides.keys().filter(|name| !is_there(name)).map(|name| name.to_string()).collect();
+    now.overrides.retain(|name, _| is_there(name));
+    session.models.current = Some(now);
+    let problem = &model.problem;
+    if !values.is_empty() {
+        let message = format!(
+            "the classes of `{problem}` have changed: it is translated again, and what was set by \
+             hand is set again: {}",
+            values.join(", ")
+        );
+        session.note(TRANSLATED_AGAIN, message);
+    }
+    if !lost.is_empty() {
+        let gone = lost.join(", ");
+        let fault = fault!(UNKNOWN_PARAMETER, "`{problem}` has these parameters no longer: {gone}";
+            help: "their values, set by hand before, have no effect");
+        session.report(fault.at(session.call_site()).warning());
+    }
+}
+
+/// Says that what was set by hand before another model took the place of this one does not hold.
+fn note_dropped(session: &mut Session, model: &Translated) {
+    let Some(values) = session.models.take_left(&model.problem) else { return };
+    let message = format!(
+        "`{}` starts from the values of its classes: what was set by hand before another model was in \
+         use does not hold: {}",
+        model.problem,
+        values.join(", ")
+    );
+    session.note(VALUES_DROPPED, message);
 }
 
 /// As [`translate`]; the parameters have the values that the model gives them, whatever scripts set
@@ -91,6 +146,10 @@ pub fn translate_anew(
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let model = translated(session, problem)?;
+    if let Some(before) = session.models.current.take() {
+        session.models.leave(&before);
+    }
+    session.models.take_left(&model.problem);
     session.models.refer_anew_to(&model);
     Ok(model)
 }
@@ -103,14 +162,14 @@ pub fn translated(
     session: &mut Session,
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
-    let revision = session.library_revision();
-    if let Some(model) = session.models.get(problem, revision) {
-        return Ok(model);
+    if let Some((uses, model)) = session.models.get(problem)
+        && session.classes.texts.are_unchanged(uses)
+    {
+        return Ok(model.clone());
     }
     let model = Arc::new(found_or_compiled(session, problem)?);
-    // Flattening may have loaded packages, which is what the revision counts.
-    let revision = session.library_revision();
-    session.models.keep(revision, &model);
+    let uses = session.classes.texts.uses(&model.roots);
+    session.models.keep(uses, &model);
     Ok(model)
 }
 
@@ -153,16 +212,18 @@ pub(super) fn compiled(
     problem: &str,
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
+    let roots = session.classes.library.uses();
     let one = |error: Diagnostic| vec![session.classes.in_users_terms(error)];
     let sorted = causalize::causalize(&flat).map_err(one)?;
     let (declarations, flat) = (declarations(&flat), Some(flat));
     let flat = flat.filter(|flat| flat.equations.len() <= MOST_KEPT);
     let program = Program::compile(sorted).map_err(one)?;
     warn(session, program.warnings());
-    Ok(match flat {
+    let model = match flat {
         Some(flat) => Translated::new(problem, flat, program),
         None => Translated::without_flat_model(problem, declarations, program),
-    })
+    };
+    Ok(Translated { roots, ..model })
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
@@ -197,6 +258,7 @@ pub(in crate::script) fn flattened(
     loop {
         let resources = session.resources_for(&name);
         session.classes.library.set_resources(resources);
+        session.classes.library.forget_uses();
         let found = session
             .ask_library(|library| flatten::flatten_unbalanced(library, &name, &modification));
         // Functions that only other functions call are missed without an error.
@@ -314,7 +376,9 @@ pub fn simulate(
     match run {
         Ok(statistics) => {
             written?;
-            session.models.end = Some(end(model, &settings, &trajectory));
+            let span = (settings.start, settings.stop);
+            let end = FinalState::of(model, &system.system, &trajectory, span);
+            session.models.end = Some(end);
             let table = result_table(model, &system.system, trajectory, options.only.as_ref());
             let hardest = settings
                 .counts_effort
@@ -416,77 +480,32 @@ fn prepared(
     model: &Translated,
 ) -> Result<(Option<Arc<Translated>>, Continued), Diagnostic> {
     let call = session.call_site();
-    let untouched = Continued { system: model.program.system(), states: Vec::new() };
-    let Some(mut current) = session.models.current.take() else { return Ok((None, untouched)) };
-    if !std::ptr::eq(&*current.model, model) {
-        session.models.current = Some(current);
-        return Ok((None, untouched));
-    }
-    let changed = match current.changes.is_empty() {
-        true => Ok(current.model.clone()),
-        false => session.changed_model(&current.model.clone(), &mut current.changes),
+    let untouched = || {
+        let (states, discrete) = (Vec::new(), Vec::new());
+        Continued { system: model.program.system(), states, discrete }
     };
-    let system = changed.map(|changed| (with_values(&current, &changed), changed));
-    session.models.current = Some(current);
-    match system {
-        Ok((system, changed)) => Ok((Some(changed), system.at(call)?)),
-        Err(mut errors) => {
-            let last = errors.pop();
-            errors.into_iter().for_each(|error| session.report(error));
-            Err(last.unwrap_or_else(|| Fault::new(BAD_PARAMETER_VALUE, "no model").at(call)))
-        }
+    let last = session.models.last().filter(|last| std::ptr::eq(&***last, model)).cloned();
+    let Some(last) = last else { return Ok((None, untouched())) };
+    let changed = session.shaped_model(&last)?;
+    match &session.models.current {
+        Some(current) => Ok((Some(changed.clone()), with_values(current, &changed).at(call)?)),
+        None => Ok((None, untouched())),
     }
 }
 
 /// The system of a model, with the values of the current one.
 fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault> {
     let mut system = model.program.system();
-    for (parameter, value) in &current.overrides {
-        let name = &current.model.program.parameters()[*parameter].name;
+    for (name, value) in &current.overrides {
         system.set_parameter(model.program.find_parameter(name)?, *value)?;
     }
-    let names = model.state_names();
-    let states =
-        names.enumerate().filter_map(|(at, name)| Some((at, *current.imported.get(name)?)));
-    Ok(Continued { states: states.collect(), system })
-}
-
-/// The next simulations begin with the states and parameters that a result has at a time.
-///
-/// # Errors
-/// A state that the result does not have.
-pub fn begin_with(
-    session: &mut Session,
-    model: &Translated,
-    result: &ResultTable,
-    time: f64,
-) -> Result<(), Fault> {
-    let mut states = IndexMap::new();
-    for name in model.state_names() {
-        states.insert(name.clone(), result.interpolate(name, &[time])?[0]);
-    }
-    for parameter in model.program.parameters() {
-        if let Ok(values) = result.interpolate(&parameter.name, &[time]) {
-            session.set_parameter(&parameter.name, values[0])?;
-        }
-    }
-    session.import_states(states);
-    Ok(())
-}
-
-fn end(model: &Translated, settings: &Settings, trajectory: &Trajectory) -> End {
-    let variables = model.program.variables();
-    let names = variables.iter().enumerate().map(|(at, variable)| (&*variable.name, at));
-    let numbers: FxHashMap<&str, usize> = names.collect();
-    let last = |name: &Arc<str>| {
-        let Access::Observed { column, negated } = variables[*numbers.get(&**name)?].access else {
-            return None;
-        };
-        let sign = if negated { -1.0 } else { 1.0 };
-        Some((name.clone(), sign * trajectory.column(column).last()?))
-    };
-    let stop = trajectory.time().last().copied().unwrap_or(settings.stop);
-    End { span: (settings.start, stop), states: model.state_names().filter_map(last).collect() }
+    let value = |name: &Arc<str>| current.imported.get(name).copied();
+    let states = model.state_names().enumerate();
+    let states = states.filter_map(|(at, name)| Some((at, value(name)?))).collect();
+    let variables = model.program.variables().iter().enumerate();
+    let discrete = variables.filter(|(_, v)| v.variability == Variability::Discrete);
+    let discrete = discrete.filter_map(|(at, v)| Some((at, value(&v.name)?))).collect();
+    Ok(Continued { system, states, discrete })
 }
 
 /// Which columns hold a variable that is wanted.
@@ -562,21 +581,53 @@ impl Session {
         };
         let flat = flat_model_of(self, &changed)?;
         let model = variant(&changed, flat).map_err(one)?.map_or(changed, Arc::new);
-        let mut overrides = IndexMap::new();
-        for (at, value) in &current.overrides {
-            let name = &current.model.program.parameters()[*at].name;
-            let found = model.program.find_parameter(name).at(call).map_err(one)?;
-            overrides.insert(found, *value);
-        }
-        let imported = current.imported;
-        let changes = Changes::default();
-        self.models.current = Some(Current { model: model.clone(), overrides, changes, imported });
+        current.model = model.clone();
+        current.changes = Changes::default();
+        self.models.current = Some(current);
         Ok(model)
     }
 
     /// A system of the model with the values that scripts gave to it.
     pub fn system_with_values(&mut self, model: &Translated) -> Result<System, Diagnostic> {
         Ok(prepared(self, model)?.1.system)
+    }
+
+    /// A system in which the parameters of the model translated last, or of what scripts changed it
+    /// to, have their values.
+    pub(super) fn parameters_of(&mut self, model: &Arc<Translated>) -> Result<System, Diagnostic> {
+        let call = self.call_site();
+        let mut system = match &self.models.current {
+            Some(current) => with_values(current, model).at(call)?.system,
+            None => model.program.system(),
+        };
+        let computed = system.evaluate_parameters();
+        computed.map_err(|_| {
+            let problem = &model.problem;
+            fault!(BAD_PARAMETER_VALUE, "the values of the parameters of `{problem}` cannot be \
+                                         computed";
+                help: "simulate the model: the message says which")
+            .at(call)
+        })?;
+        Ok(system)
+    }
+
+    /// The model translated last as scripts changed it, translated again if need be.
+    pub(super) fn shaped_model(
+        &mut self,
+        last: &Arc<Translated>,
+    ) -> Result<Arc<Translated>, Diagnostic> {
+        let Some(mut current) = self.models.current.take() else { return Ok(last.clone()) };
+        let changed = match current.changes.is_empty() {
+            true => Ok(current.model.clone()),
+            false => self.changed_model(&current.model.clone(), &mut current.changes),
+        };
+        self.models.current = Some(current);
+        changed.map_err(|mut errors| {
+            let last = errors.pop();
+            errors.into_iter().for_each(|error| self.report(error));
+            let call = self.call_site();
+            last.unwrap_or_else(|| Fault::new(BAD_PARAMETER_VALUE, "no model").at(call))
+        })
     }
 
     /// The model with these changes, translated again if need be.
@@ -588,7 +639,7 @@ impl Session {
         if let Some(known) = changes.model() {
             return Ok(known.clone());
         }
-        let changed = Arc::new(compiled(self, &changes.problem(model)?)?);
+        let changed = Arc::new(compiled(self, &changes.problem(model, &IndexMap::new())?)?);
         changes.keep_model(changed.clone());
         Ok(changed)
     }

@@ -10,9 +10,14 @@ use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::identify::CompiledModel;
+use crate::name::Ident;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::syntax::ast::CausalityPrefix;
+use std::collections::BTreeSet;
+
+/// The class that is made around a model.
+const NAME: &str = "GAPILibStaticCurve";
 
 /// The parameter that stands for X.
 pub(in crate::script) const DRIVER: &str = "gapi_x";
@@ -48,7 +53,6 @@ pub(in crate::script) fn around(
     problem: &str,
     (x_name, typical): (&str, f64),
 ) -> Result<String, Vec<Diagnostic>> {
-    const NAME: &str = "GAPILibStaticCurve";
     let (class, inner) = match problem.split_once('(') {
         Some((class, inner)) => (class.trim(), inner.trim_end().strip_suffix(')').unwrap_or(inner)),
         None => (problem.trim(), ""),
@@ -59,6 +63,12 @@ pub(in crate::script) fn around(
     );
     session.load_text("the class around a static curve", &text)?;
     Ok(NAME.to_owned())
+}
+
+/// Top-level names on which a model depends, without the class made by [`around`]: it is made again for
+/// every curve.
+pub(in crate::script) fn without_class_around(roots: &BTreeSet<Ident>) -> BTreeSet<Ident> {
+    roots.iter().copied().filter(|root| *root != *NAME).collect()
 }
 
 /// The model of a class made by [`around`].

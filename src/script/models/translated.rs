@@ -2,10 +2,12 @@
 
 use crate::codegen::Program;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
+use crate::name::Ident;
 use crate::syntax::ast::{CausalityPrefix, ComponentReference, Expression, ExpressionKind};
 use crate::syntax::visit::{Visit, walk_expression};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 
 /// A model ready to be simulated.
@@ -17,6 +19,8 @@ pub struct Translated {
     pub declarations: Declarations,
     /// The compiled model.
     pub program: Arc<Program>,
+    /// The top-level names on which it depends.
+    pub(in crate::script) roots: BTreeSet<Ident>,
     /// The flat model; a model that was kept, or is large, has none until somebody asks.
     pub(super) flat: OnceLock<FlatModel>,
 }
@@ -53,7 +57,8 @@ impl Translated {
     /// A model with its flat model.
     pub fn new(problem: &str, flat: FlatModel, program: Arc<Program>) -> Translated {
         let declarations = declarations(&flat);
-        Translated { problem: problem.to_owned(), declarations, program, flat: flat.into() }
+        let flat = OnceLock::from(flat);
+        Translated { flat, ..Translated::without_flat_model(problem, declarations, program) }
     }
 
     /// A model that was kept.
@@ -62,7 +67,8 @@ impl Translated {
         declarations: Declarations,
         program: Arc<Program>,
     ) -> Translated {
-        Translated { problem: problem.to_owned(), declarations, program, flat: OnceLock::new() }
+        let (problem, roots, flat) = (problem.to_owned(), BTreeSet::new(), OnceLock::new());
+        Translated { problem, declarations, program, roots, flat }
     }
 
     /// The names of the states, in their order.

@@ -14,6 +14,9 @@ use crate::identify::{
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
 use crate::script::errors::INTERRUPTED;
+use crate::script::models::in_use::InUse;
+use crate::script::models::translated::Translated;
+use crate::script::models::uses::Uses;
 use crate::script::models::{simulation, static_curve};
 use crate::script::{Reporting, Session};
 use crate::source::Span;
@@ -37,6 +40,8 @@ pub(in crate::script) struct Identification {
     started: Option<f64>,
     /// Whether measured data could not be read.
     pub(in crate::script) data_missing: bool,
+    /// Whether it was reported that nothing can be simulated.
+    pub(super) is_hopeless: bool,
     /// Runs reported so far.
     reported: usize,
     /// The number of the first message of this run.
@@ -45,9 +50,12 @@ pub(in crate::script) struct Identification {
 
 /// An evaluator that is ready for the next population.
 struct Prepared {
+    /// With the model as it was in use.
     request: Request,
-    /// The revision of the classes that it was made from.
-    revision: u64,
+    /// What its model depends on.
+    uses: Uses,
+    /// The class that is simulated, which may be one around the model.
+    class: String,
     evaluator: Evaluator,
 }
 
@@ -139,16 +147,17 @@ impl Session {
         request: Request,
         genomes: &Genomes,
     ) -> Result<Simulated, Failure> {
-        let revision = self.classes.revision();
-        let mut evaluator = match self.identification().take_prepared(&request, revision) {
-            Some(evaluator) => evaluator,
+        let mut prepared = match self.take_prepared(&request)? {
+            Some(prepared) => prepared,
             None => self.prepare(&request)?,
         };
+        // From here on it is a request for the model with what was set by hand.
+        let request = prepared.request.clone();
+        let evaluator = &mut prepared.evaluator;
         let simulated = match self.journaled(&request, &evaluator.settings_text(), genomes)? {
             Some(known) => {
                 if self.is_to_be_checked() {
-                    check(&mut evaluator, genomes, &known)
-                        .inspect_err(|_| self.refuse_to_resume())?;
+                    check(evaluator, genomes, &known).inspect_err(|_| self.refuse_to_resume())?;
                 }
                 known
             }
@@ -163,16 +172,15 @@ impl Session {
                 simulated
             }
         };
-        // Loading the model may have changed the classes.
-        let revision = self.classes.revision();
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         let is_relative = evaluator.model().is_relative(&study.y.name);
-        identification.prepared.push(Prepared { request, revision, evaluator });
+        identification.prepared.push(prepared);
         self.population_simulated(&study, x.len(), &simulated, is_relative);
         self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_run(&study, genomes);
+        self.stop_if_all_fail((&study, &x), genomes, &simulated)?;
         Ok(simulated)
     }
 
@@ -240,15 +248,13 @@ impl Session {
         request: &Request,
         measured: &[f64],
     ) -> Result<Option<Vec<f64>>, Failure> {
-        let revision = self.classes.revision();
-        let evaluator = match self.identification().take_prepared(request, revision) {
-            Some(evaluator) => evaluator,
+        let prepared = match self.take_prepared(request)? {
+            Some(prepared) => prepared,
             None => self.prepare(request)?,
         };
-        let study = evaluator.study().clone();
-        let is_relative = evaluator.model().is_relative(&study.y.name);
-        let (request, revision) = (request.clone(), self.classes.revision());
-        self.identification().prepared.push(Prepared { request, revision, evaluator });
+        let study = prepared.evaluator.study().clone();
+        let is_relative = prepared.evaluator.model().is_relative(&study.y.name);
+        self.identification().prepared.push(prepared);
         Ok(self.in_unit_of(measured, &study.model, (&study.y, is_relative)))
     }
 
@@ -290,9 +296,20 @@ impl Session {
         Ok(())
     }
 
-    fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
+    fn prepare(&mut self, request: &Request) -> Result<Prepared, Failure> {
         self.load_model_of(request)?;
-        let model = self.model_of(request)?;
+        let in_use = self.in_use(&request.model, &request.question.parameters)?;
+        let request = Request { model: in_use.shown.clone(), ..request.clone() };
+        let (translated, is_driven) = self.translated_for(&request, &in_use)?;
+        let model = match is_driven {
+            true => static_curve::model(&request.model, &translated, &request.question.x_name)?,
+            false => CompiledModel::new(&request.model, translated.program.clone()),
+        };
+        let mut values = Vec::new();
+        for (name, value) in in_use.values() {
+            values.push((translated.program.find_parameter(name)?, value));
+        }
+        let model = model.with_values(values);
         let mut question = request.question.clone();
         self.check_times(&question, &model)?;
         if let Some(x) = self.x_in_unit_of(&question, &model) {
@@ -302,7 +319,29 @@ impl Session {
         let processors = self.world.processors();
         let evaluator = Evaluator::on(Arc::new(model), question, &processors)?;
         self.note_idle_ranks(evaluator.alone());
-        Ok(evaluator)
+        let roots = static_curve::without_class_around(&translated.roots);
+        let (uses, class) = (self.classes.texts.uses(&roots), translated.problem.clone());
+        Ok(Prepared { request, uses, class, evaluator })
+    }
+
+    /// The evaluator of this request, if it is at hand and neither the classes of its model nor what
+    /// was set by hand have changed since.
+    fn take_prepared(&mut self, request: &Request) -> Result<Option<Prepared>, Failure> {
+        let in_use = self.in_use(&request.model, &request.question.parameters)?;
+        let is_it = |known: &Prepared| {
+            known.request.model == in_use.shown
+                && known.request.path == request.path
+                && known.request.question == request.question
+        };
+        let prepared = &mut self.identification().prepared;
+        if let Some(place) = prepared.iter().position(is_it) {
+            let known = prepared.remove(place);
+            return Ok(self.classes.texts.are_unchanged(&known.uses).then_some(known));
+        }
+        if prepared.len() >= PREPARED {
+            prepared.remove(0);
+        }
+        Ok(None)
     }
 }
 
@@ -332,33 +371,27 @@ fn check(evaluator: &mut Evaluator, genomes: &Genomes, known: &Simulated) -> Res
     Ok(())
 }
 
-impl Identification {
-    /// The evaluator of this request, if it is at hand and the classes have not changed since.
-    fn take_prepared(&mut self, request: &Request, revision: u64) -> Option<Evaluator> {
-        let known = self.prepared.iter().position(|known| known.request == *request);
-        if let Some(place) = known {
-            let known = self.prepared.remove(place);
-            return (known.revision == revision).then_some(known.evaluator);
-        }
-        if self.prepared.len() >= PREPARED {
-            self.prepared.remove(0);
-        }
-        None
-    }
-}
-
 impl Session {
     /// The model of a request; where X is an input of it, one that is driven by the points.
-    fn model_of(&mut self, request: &Request) -> Result<CompiledModel, Failure> {
+    fn translated_for(
+        &mut self,
+        request: &Request,
+        in_use: &InUse,
+    ) -> Result<(Arc<Translated>, bool), Failure> {
         let Question { x_name, x, .. } = &request.question;
-        if static_curve::is_driven(self, &request.model, x_name)? {
-            let typical = static_curve::typical(x);
-            let class = static_curve::around(self, &request.model, (x_name, typical))?;
-            let translated = simulation::translated(self, &class)?;
-            return Ok(static_curve::model(&request.model, &translated, x_name)?);
-        }
-        let translated = simulation::translated(self, &request.model)?;
-        Ok(CompiledModel::new(&request.model, translated.program.clone()))
+        let is_driven = static_curve::is_driven(self, &in_use.problem, x_name)?;
+        let class = match is_driven {
+            true => {
+                static_curve::around(self, &in_use.problem, (x_name, static_curve::typical(x)))?
+            }
+            false => in_use.problem.clone(),
+        };
+        Ok((simulation::translated(self, &class)?, is_driven))
+    }
+
+    /// The class of the last `Eval`.
+    pub(super) fn class_evaluated(&mut self) -> Option<String> {
+        self.identification().prepared.last().map(|prepared| prepared.class.clone())
     }
 }
 
@@ -397,6 +430,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
     session.show_end(&recorder);
+    session.report_if_all_failed(&recorder, interrupted);
     if session.options.reporting == Reporting::Off {
         session.world.end_view();
         return Ok(());

@@ -1,6 +1,7 @@
 //! Runs of identifications: evaluated populations, journals and checkpoints, the live view, and
 //! problem files.
 
+mod all_failing;
 pub(in crate::script) mod branching;
 mod changing;
 pub(in crate::script) mod checkpoint;

@@ -9,7 +9,7 @@ use crate::script::models::translated::{Declarations, Translated};
 use crate::source::{SourceId, noting_sources, with_sources};
 use crate::syntax;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
 
 /// A model, and what must be as it was.
@@ -20,6 +20,7 @@ pub(super) struct Entry {
     /// The history of the classes after the translation.
     after: Digest,
     sources: Vec<Text>,
+    roots: BTreeSet<Ident>,
     /// Declarations, program and warnings.
     content: Vec<u8>,
 }
@@ -50,6 +51,7 @@ impl Entry {
             searches: session.classes.history.searches().to_vec(),
             after: session.classes.history.digest(),
             sources: sources.collect::<Option<_>>()?,
+            roots: model.roots.clone(),
             content: content?,
         };
         bytes_of(&entry)
@@ -108,7 +110,8 @@ impl Entry {
             let (declarations, program, warnings): (Declarations, &[u8], Vec<Diagnostic>) =
                 postcard::from_bytes(&self.content).ok()?;
             let program = Program::from_bytes(program)?;
-            Some((Translated::without_flat_model(problem, declarations, program), warnings))
+            let model = Translated::without_flat_model(problem, declarations, program);
+            Some((Translated { roots: self.roots.clone(), ..model }, warnings))
         })
     }
 }

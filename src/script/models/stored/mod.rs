@@ -11,6 +11,7 @@ mod reads;
 mod state;
 
 pub use history::History;
+pub(super) use reads::{Digest, digest};
 pub use reads::{Reads, Watched};
 
 use super::translated::Translated;

@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// SHA-256.
-pub(super) type Digest = [u8; 32];
+pub(in crate::script::models) type Digest = [u8; 32];
 
 /// The digest of bytes.
-pub(super) fn digest(bytes: &[u8]) -> Digest {
+pub(in crate::script::models) fn digest(bytes: &[u8]) -> Digest {
     Sha256::digest(bytes).into()
 }
 
