@@ -117,8 +117,8 @@ end translateModel;
 
 fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let problem: String = args.take("problem")?;
-    let done = model(session, &problem)
-        .and_then(|model| simulation::translate_anew(session, &model.problem));
+    let done = problem_in_use(session, &problem)
+        .and_then(|problem| simulation::translate_anew(session, &problem));
     let experiment = session.extension::<Experiment>().0.clone();
     *session.extension::<LastRun>() = LastRun(experiment);
     Ok(session.or_report_all(done).is_some().into())
@@ -199,17 +199,23 @@ fn positive(count: Option<i64>) -> Option<usize> {
     count.and_then(|count| usize::try_from(count).ok()).filter(|count| *count > 0)
 }
 
-/// The model of a problem, translated if need be.
-fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+/// The problem itself, or where it is empty that of the model used last.
+fn problem_in_use(session: &Session, problem: &str) -> Result<String, Vec<Diagnostic>> {
     if !problem.trim().is_empty() {
-        return simulation::translate(session, problem.trim());
+        return Ok(problem.trim().to_owned());
     }
     let last = session.last_model().ok_or_else(|| {
         let fault = Fault::new(NO_TRANSLATED_MODEL, "no model has been translated yet")
             .help("name the model: `simulateModel(\"Package.Model\")`");
         vec![fault.at(session.call_site())]
-    })?;
-    simulation::translate(session, &last.problem)
+    });
+    last.map(|last| last.problem.clone())
+}
+
+/// The model of a problem, translated if need be.
+fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    let problem = problem_in_use(session, problem)?;
+    simulation::translate(session, &problem)
 }
 
 /// The model of a problem; `None` if it cannot be translated, which has been reported.
