@@ -3,8 +3,9 @@
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::Session;
+use crate::script::access::policy::Grant;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::final_state::FinalState;
+use crate::script::models::final_state::{self, FinalState};
 use crate::script::world::Stamp;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,10 @@ struct LastFinal {
 pub(super) fn write_final(session: &mut Session) {
     let Some(text) = session.last_end().map(FinalState::text) else { return };
     let path = session.world.absolute(Path::new(FINAL));
+    let beginning = session.world.read_start(&path, final_state::BEGINNING);
+    if beginning.is_ok_and(|bytes| FinalState::is_in(&bytes)) {
+        session.world.grant(Grant::Replace(&path));
+    }
     if let Err(fault) = session.write_file(&path, text.as_bytes())
         && !std::mem::replace(&mut session.extension::<LastFinal>().has_warned, true)
     {

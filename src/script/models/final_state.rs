@@ -17,6 +17,9 @@ use rustc_hash::FxHashSet;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+/// Bytes of a file that tell whether it holds a final state.
+pub const BEGINNING: usize = 64;
+
 /// The values of all variables at the end of a simulation, or at another time of it.
 #[derive(Debug, Clone, Default)]
 pub struct FinalState {
@@ -138,6 +141,13 @@ impl FinalState {
         text
     }
 
+    /// Whether a file that begins with these bytes holds a final state: a simulation may replace it, as
+    /// it replaces result files.
+    pub fn is_in(beginning: &[u8]) -> bool {
+        let text = String::from_utf8_lossy(beginning);
+        text.starts_with("#1") && text.contains("Aclass") && text.contains("Adymosim")
+    }
+
     /// Reads what [`FinalState::text`] or Dymola has written.
     ///
     /// # Errors
@@ -199,6 +209,8 @@ mod tests {
         let read = FinalState::read("f", state.text().as_bytes()).expect("the same");
         assert_eq!(read.span, state.span);
         assert_eq!(read.variables, state.variables);
+        assert!(FinalState::is_in(&state.text().as_bytes()[..BEGINNING]));
+        assert!(!FinalState::is_in(b"#1\ndouble A(1,1)\n1\n"));
     }
 
     #[test]
