@@ -47,7 +47,8 @@ pub(super) fn compiled(
     let is_allowed = |declaration: &&Declaration| {
         compiler.is_some_and(|compiler| compiler.permits(&declaration.class))
     };
-    if let Some(one) = request.declarations.iter().find(|one| !is_allowed(one)) {
+    let mut all = std::iter::once(request.wanted()).chain(&request.declarations);
+    if let Some(one) = all.find(|one| !is_allowed(one)) {
         return Err(refused(one, files, find));
     }
     let Some(compiler) = compiler else { return Err(refused(request.wanted(), files, find)) };
