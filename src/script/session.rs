@@ -1,6 +1,6 @@
 //! The session: the parts that last from one statement to the next.
 
-use super::access::files::Outdated;
+use super::access::outdated::Outdated;
 use super::access::policy::Grant;
 use super::access::process::Process;
 use super::builtins::extensions::Extensions;

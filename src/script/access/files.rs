@@ -10,14 +10,8 @@ use crate::script::errors::FILE_ERROR;
 use crate::script::world::normalized;
 use crate::syntax;
 use crate::value::Value;
-use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
-
-/// Files that commands of this run were to write and did not, with the reason: what is in them is
-/// older than the script believes.
-#[derive(Debug, Default)]
-pub struct Outdated(BTreeMap<PathBuf, String>);
 
 impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the

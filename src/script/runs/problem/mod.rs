@@ -230,9 +230,8 @@ fn solve_built(
     let importance = analysed(session, &run, &folder, options)?;
     let files = Journalled { folder: &folder, origins: &origins, every };
     searches::refuse_leftovers(session, &folder, options)?;
-    let path_of_first = folder.join(JOURNAL);
-    let known = options.division.journal();
-    let checkpoint = open(session, &mut run, (&path_of_first, known), &files, options)?;
+    let journal = (&*folder.join(JOURNAL), options.division.journal());
+    let checkpoint = open(session, &mut run, journal, &files, options)?;
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
     let ending = search.run_to_end(session)?;
     let Search { run, checkpoint, .. } = search;
@@ -272,9 +271,8 @@ fn solve_built(
     if !is_interrupted {
         keep(session, &run)?;
     }
-    if !is_interrupted && solution.ending.kind == EndingKind::Budget {
-        keep_finished(session, (&checkpoint, &folder), options);
-    }
+    let is_limited = !is_interrupted && solution.ending.kind == EndingKind::Budget;
+    keep_finished(session, (&checkpoint, &folder), options, is_limited);
     close(session, (&checkpoint, &folder), is_interrupted);
     Ok(solution)
 }
@@ -284,11 +282,15 @@ fn keep_finished(
     session: &mut Session,
     (checkpoint, folder): (&Checkpoint, &Path),
     options: &RunOptions,
+    is_limited: bool,
 ) {
     let is_alone = options.searches.unwrap_or(1) == 1 && options.division.is_whole();
+    if !is_alone || !is_limited {
+        return;
+    }
     let journal = session.read_bytes(checkpoint.path());
     let Ok(journal) = journal.map(|bytes| solving::without_times(&bytes)) else { return };
-    if is_alone && session.write_file(&folder.join(FINISHED), &journal).is_ok() {
+    if session.write_file(&folder.join(FINISHED), &journal).is_ok() {
         session.print("\n  continue from here with higher limits in `[stop]` and --resume\n");
     }
 }
