@@ -270,9 +270,8 @@ fn solve_built(
     write(session, &folder, &solution, seconds)?;
     if !is_interrupted {
         keep(session, &run)?;
+        keep_finished(session, (&checkpoint, &folder), options, &solution);
     }
-    let is_limited = !is_interrupted && solution.ending.kind == EndingKind::Budget;
-    keep_finished(session, (&checkpoint, &folder), options, is_limited);
     close(session, (&checkpoint, &folder), is_interrupted);
     Ok(solution)
 }
@@ -282,10 +281,10 @@ fn keep_finished(
     session: &mut Session,
     (checkpoint, folder): (&Checkpoint, &Path),
     options: &RunOptions,
-    is_limited: bool,
+    solution: &Solution,
 ) {
     let is_alone = options.searches.unwrap_or(1) == 1 && options.division.is_whole();
-    if !is_alone || !is_limited {
+    if !is_alone || solution.ending.kind != EndingKind::Budget {
         return;
     }
     let journal = session.read_bytes(checkpoint.path());
