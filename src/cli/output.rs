@@ -264,9 +264,9 @@ mod tests {
         };
         assert_eq!(of("a/fit.mos"), Path::new("fit"));
         assert_eq!(of("b/fit.mos"), Path::new("fit-2"));
-        assert_eq!(of("a/fit.mos"), Path::new("fit"), "the same problem again");
         assert_eq!(of("a/...mos"), Path::new("run"));
         assert_eq!(of("a/..mos"), Path::new("run-2"));
+        assert_eq!(of("a/fit.mos"), Path::new("fit"), "the same problem again");
         fs::write(all.join("fit/result.json"), "{}").expect("written");
         assert_eq!(latest_of(&all).file_name(), Some("latest".as_ref()));
         assert!(latest_of(&all).join("result.json").exists());

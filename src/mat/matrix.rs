@@ -257,8 +257,7 @@ impl MatFile {
         Err(fault!(UNKNOWN_MATRIX, "{} has no {what} `{name}`", self.file())
             .help_if(suggest::did_you_mean(name, names))
             .help_if(self.why_skipped(name))
-            .help(self.inventory())
-            .help_if(self.columns_of_matrices()))
+            .help(self.inventory()))
     }
 
     /// Why the variable to which a name belongs was not read.
@@ -290,7 +289,8 @@ impl MatFile {
                 (values, About { rows_before, ..About::default() })
             }
             _ => {
-                let matrix = self.numbers(name)?;
+                let numbers = self.numbers(name);
+                let matrix = numbers.map_err(|fault| fault.help_if(self.columns_of_matrices()))?;
                 let Some(values) = matrix.as_vector() else {
                     let Matrix { rows, columns, .. } = matrix;
                     bail!(

@@ -36,6 +36,7 @@ mod newton;
 mod noevent_relations;
 mod open_loops;
 mod other_variables;
+mod partial_observation;
 mod postponement;
 mod profile;
 mod relations;

@@ -2,33 +2,15 @@
 //! goes on, results have no number for them and for what follows from them, and a warning says so.
 
 use super::execution::{Operation, read};
+use super::partial_observation::Others;
 use super::simulation_log::LogMessage;
 use super::system::System;
-use crate::codegen::code::Outputs;
 use crate::codegen::errors::DOMAIN_ERROR;
-use crate::codegen::registers::Registers;
 use crate::codegen::sequence::{expressions, observing};
 use crate::sim::Failure;
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
-
-/// What is observed where some variables have no value.
-#[derive(Debug, Clone, Default)]
-pub(super) struct OtherVariables {
-    /// Variables that have had no value, of which a warning says so.
-    warned: Vec<VarId>,
-    known: Vec<Others>,
-}
-
-/// The variables that do not depend on some.
-#[derive(Debug, Clone)]
-struct Others {
-    without_value: Vec<VarId>,
-    code: Arc<(Registers, Outputs)>,
-    /// Which of the observed they are.
-    places: Vec<usize>,
-}
 
 impl System {
     /// Observes what can be observed where variables that nothing reads have no value.
@@ -85,7 +67,7 @@ impl System {
         if !self.others.warned.contains(&variable) {
             self.others.warned.push(variable);
             let value = program.failed_value(origin, Operation::DIVISION, "here");
-            let text = format!("{value}; the simulation goes on, as nothing depends on it");
+            let text = format!("{value}; the simulation continues, as nothing depends on it");
             let (warning, span) = (Some(DOMAIN_ERROR), program.place(origin));
             log.record(LogMessage { time: t, text, warning, span });
         }

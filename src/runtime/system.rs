@@ -5,7 +5,7 @@ use super::execution::{Operation, read, run, run_assignments, run_parameter, run
 use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
-use super::other_variables::OtherVariables;
+use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;

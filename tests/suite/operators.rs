@@ -23,9 +23,13 @@ fn polarization(method: &str, evaluations: u32) -> TempDir {
     folder(&[("p.toml", &problem)])
 }
 
+/// A problem file opens nothing by itself: the functions and the data lie outside of its folder.
+const IDENTIFY: [&str; 3] =
+    ["identify", "p.toml", concat!("--allow-read=", env!("CARGO_MANIFEST_DIR"))];
+
 /// What a run says.
 fn solved(here: &TempDir, arguments: &[&str]) -> String {
-    let (code, out, errors) = gapi(here, &[&["identify", "p.toml"], arguments].concat());
+    let (code, out, errors) = gapi(here, &[&IDENTIFY[..], arguments].concat());
     assert_eq!(code, 0, "{out}{errors}");
     out + &errors
 }
@@ -198,7 +202,7 @@ fn what_is_wrong_with_a_choice_is_said_with_its_place() {
         ("selection = \"Own.refuses\"", "selection `Own.refuses`: |the third is too many"),
     ] {
         let here = polarization(method, 200);
-        let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "out"]);
+        let (code, out, errors) = gapi(&here, &[&IDENTIFY[..], &["--out", "out"]].concat());
         let text = out + &errors;
         assert_eq!(code, 1, "{method}: {text}");
         said.split('|').for_each(|part| assert!(text.contains(part), "{method}: {text}"));

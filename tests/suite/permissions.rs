@@ -322,7 +322,9 @@ fn environment_variables_are_read_by_name() {
         let here = home(&format!("print(\"<\" + getEnvironmentVar(\"{name}\") + \">\");\n"));
         let arguments = [&["run", "job.mos", "--dialect", "openmodelica"], more].concat();
         let mut command = command(here.path(), &arguments);
-        names.iter().for_each(|name| drop(command.env(name, "s3cret")));
+        names.iter().for_each(|name| {
+            command.env(name, "s3cret");
+        });
         let output = command.env("MODELICAPATH", "/libraries").output().unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
         (output.status.code(), text(output.stdout), text(output.stderr))

@@ -385,7 +385,9 @@ mod tests {
 
     #[test]
     fn arguments_classes_components_variables_and_files_are_completed() {
-        let mut session = Session::new(Box::new(crate::script::world::MemoryWorld::new()));
+        let library = "package Lib package Math package Vectors end Vectors; end Math; end Lib;";
+        let world = crate::script::world::MemoryWorld::new().with_file("Lib.mo", library);
+        let mut session = Session::new(Box::new(world));
         let text = "model Plant Real level; parameter Real gain = 2; equation level = gain; \
                     end Plant;\nplanet = 3;\ntranslateModel(\"Plant\");";
         assert_eq!(session.run_text("m.mos", text).code, 0);
@@ -400,8 +402,8 @@ mod tests {
         assert_eq!(completed(&assistance, "simulateModel(\"Pla"), ["Plant"]);
         assert_eq!(completed(&assistance, "plot({\"lev"), ["level"]);
         // A library is loaded when one of its classes is completed.
-        assert_eq!(completed(&assistance, "simulateModel(\"Modelica.Mat"), ["Modelica.Math"]);
-        assert_eq!(completed(&assistance, "Modelica.Math.Vec"), ["Modelica.Math.Vectors"]);
+        assert_eq!(completed(&assistance, "simulateModel(\"Lib.Ma"), ["Lib.Math"]);
+        assert_eq!(completed(&assistance, "Lib.Math.Vec"), ["Lib.Math.Vectors"]);
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("results.mat"), "").expect("writable");
         let line = format!("readTrajectoryNames(\"{}/res", folder.path().display());

@@ -1,26 +1,11 @@
 //! Statements compared with the result that their script embeds, one by one.
 
-use super::verdict::{Tested, Verdict};
-use crate::diag::{Code, visible};
+use super::verdict::{Judged, Judgement, Tested, Verdict};
+use crate::diag::visible;
 use crate::script::Exchange;
 use crate::script::errors::OUT_OF_REACH;
 use crate::script::language::expectation::{Line, agreeing};
 use std::fmt::{self, Write as _};
-
-/// A statement compared with the result that its script embeds.
-#[derive(Debug, PartialEq)]
-pub(super) struct Judged {
-    pub statement: String,
-    pub judgement: Judgement,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Judgement {
-    Agrees,
-    Differs,
-    /// It differs because of something that is not there.
-    Unsupported(Code),
-}
 
 pub(super) fn judged(lines: &[Line], exchanges: &[Exchange]) -> Vec<Judged> {
     let counts: Vec<usize> = exchanges.iter().map(|one| one.printed.lines().count()).collect();

@@ -1,6 +1,6 @@
 //! The report that build servers read.
 
-use super::judgement::{Judged, Judgement};
+use super::verdict::{Judged, Judgement};
 use super::verdict::{Tested, Verdict};
 use crate::script::language::expectation::shown;
 use maud::Render;

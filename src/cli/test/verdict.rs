@@ -1,8 +1,23 @@
 //! What came of a script.
 
-use super::judgement::Judged;
+use crate::diag::Code;
 use crate::script::language::expectation::Line;
 use std::path::PathBuf;
+
+/// A statement compared with the result that its script embeds.
+#[derive(Debug, PartialEq)]
+pub(super) struct Judged {
+    pub statement: String,
+    pub judgement: Judgement,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Judgement {
+    Agrees,
+    Differs,
+    /// It differs because of something that is not there.
+    Unsupported(Code),
+}
 
 /// How a script did.
 #[derive(Debug, PartialEq)]

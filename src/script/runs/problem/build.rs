@@ -165,7 +165,7 @@ fn data_of<'f>(
         let table = results::read_data(&data.to_string_lossy(), &bytes).map_err(there)?;
         let cut = experiment::rows((entry, number), &table, notes);
         let (count, segments) = cut.map_err(|fault| vec![fault.at(entry.places.x)])?;
-        let label = experiment::label(entry, number);
+        let label = entry.label(number);
         all.push(ExperimentData { entry, label, table, count, segments });
     }
     Ok(all)

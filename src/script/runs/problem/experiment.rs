@@ -77,11 +77,6 @@ struct Class {
     undecided: Vec<Undecided>,
 }
 
-/// The name of an experiment.
-pub(super) fn label(entry: &ExperimentEntry, number: usize) -> String {
-    entry.name.clone().unwrap_or_else(|| format!("experiment {}", number + 1))
-}
-
 /// The number of rows of an experiment, and the parts into which they are cut.
 ///
 /// # Errors

@@ -65,8 +65,9 @@ pub(in crate::script::runs) fn cut_off(name: &str, column: &Column) -> Vec<Strin
     [(ends[0], "smallest"), (ends[1], "largest")].into_iter().filter_map(sentence).collect()
 }
 
-/// Whether consecutive values at an end begin and end in steps of usual size; a signal that approaches
-/// a steady state does so in ever smaller ones.
+/// Whether consecutive values at an end are reached and left in steps of usual size, not
+/// necessarily the same ones: where a wave meets the end of a range, one of its two steps may be short
+/// by chance. A signal that approaches a steady state does so in ever smaller ones.
 fn stops_abruptly(known: &[(usize, f64)], end: f64) -> bool {
     let step = |pair: &[(usize, f64)]| (pair[1].1 - pair[0].1).abs();
     let mut steps: Vec<f64> = known.windows(2).map(step).filter(|step| *step > 0.0).collect();
@@ -74,11 +75,10 @@ fn stops_abruptly(known: &[(usize, f64)], end: f64) -> bool {
     let Some(usual) = steps.get(steps.len() / 2) else { return false };
     let runs: Vec<&[(usize, f64)]> = known.chunk_by(|a, b| a.1 == b.1).collect();
     let is_far = |value: f64| (value - end).abs() > ABRUPT * usual;
-    runs.windows(3).any(|three| {
-        let [before, run, after] = three else { return false };
-        let is_run = run[0].1 == end && run.len() >= CONSECUTIVE;
-        is_run && is_far(before[before.len() - 1].1) && is_far(after[0].1)
-    })
+    let is_run = |run: &[(usize, f64)]| run[0].1 == end && run.len() >= CONSECUTIVE;
+    let reached = runs.windows(2).any(|pair| is_run(pair[1]) && is_far(pair[0][0].1));
+    let left = runs.windows(2).any(|pair| is_run(pair[0]) && is_far(pair[1][0].1));
+    reached && left
 }
 
 fn ends(known: &[(usize, f64)]) -> Option<[f64; 2]> {

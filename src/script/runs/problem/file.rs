@@ -1,7 +1,7 @@
 //! The file that a problem is written in: TOML.
 
 use super::places::{self, ExperimentPlaces, Places};
-use super::{forms, refusal};
+use super::refusal;
 use crate::bail;
 use crate::diag::Diagnostic;
 use crate::registry::BAD_OPTION;
@@ -136,6 +136,10 @@ pub(super) struct ExperimentEntry {
     pub places: ExperimentPlaces,
 }
 
+/// The weight of a series.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WeightEntry(pub f64);
+
 /// Where an experiment is cut.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum SegmentsEntry {
@@ -168,8 +172,7 @@ pub(super) struct ColumnEntry {
     pub factor: Option<f64>,
     /// For an input: `hold` or `linear` between its samples.
     pub interpolation: Option<String>,
-    #[serde(default, deserialize_with = "forms::weight")]
-    pub weight: Option<f64>,
+    pub weight: Option<WeightEntry>,
     /// Standard deviation of the measurement.
     pub sigma: Option<SigmaEntry>,
     /// How the errors are distributed: `normal` or `lognormal`.
@@ -350,6 +353,11 @@ impl ColumnEntry {
 }
 
 impl ExperimentEntry {
+    /// The name of the experiment with this number, counted from 0.
+    pub(super) fn label(&self, number: usize) -> String {
+        self.name.clone().unwrap_or_else(|| format!("experiment {}", number + 1))
+    }
+
     /// The outputs with their columns, one for each replicate.
     pub(super) fn all_outputs(&self) -> impl Iterator<Item = (&String, ColumnEntry)> {
         self.outputs.iter().flat_map(|(name, column)| {

@@ -4,7 +4,7 @@
 use super::file::{
     BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, OneOrMany, OperatorEntry,
     ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry, SigmaEntry,
-    ValueEntry,
+    ValueEntry, WeightEntry,
 };
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
@@ -209,17 +209,13 @@ in_forms!(
     }
 );
 
-/// The weight of a whole series.
-///
-/// # Errors
-///
-/// Anything but a number.
-pub(super) fn weight<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
-    reader.deserialize_any(Forms::<_> {
-        number: Some(Some),
+in_forms!(
+    WeightEntry,
+    Forms::<_> {
+        number: Some(WeightEntry),
         ..Forms::new(
             "a number, the `weight` of the whole series; for points of different precision, name \
              a column of standard deviations, `sigma = \"s\"`",
         )
-    })
-}
+    }
+);

@@ -1,7 +1,7 @@
 //! What the parameters of a problem are in one of its experiments: modifications of the model, and
 //! the free ones, which the search sets before each simulation.
 
-use super::data::Notes;
+use super::data::{Notes, listed};
 use super::dynamics;
 use super::enclosing_class::{self, EnclosingClass, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
@@ -277,14 +277,6 @@ fn not_free(name: &str, base: Option<&BaseType>, model: &Translated) -> Fault {
         () => ("is a structural parameter: its value decides the equations", each),
     };
     fault!(BAD_OPTION, "`{name}` of `{shown}` {why} and cannot be estimated").help(help)
-}
-
-/// At most a dozen names.
-pub(super) fn listed(names: &[&str]) -> String {
-    const SHOWN: usize = 12;
-    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
-    let more = if names.len() > SHOWN { ", …" } else { "" };
-    format!("{}{more}", shown.join(", "))
 }
 
 /// Refuses initial values of variables that are not states, where all states have theirs: such an

@@ -1,10 +1,8 @@
 //! Parts of an experiment: its rows cut at gaps, where time starts again, or at given times. Each part
 //! is simulated from its first row on, and its initial values are parameters of their own.
 
-use super::data::Notes;
-use super::experiment::label;
+use super::data::{Notes, listed};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, SegmentsEntry};
-use super::parameters::listed;
 use super::time_axis::{self, Origin};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::mat::{Column, MatFile};
@@ -36,7 +34,7 @@ pub(super) struct Rows<'a> {
 impl Segment {
     /// An experiment that is not cut.
     pub(super) fn whole(entry: &ExperimentEntry, number: usize, origin: Option<Origin>) -> Segment {
-        Segment { name: label(entry, number), number: 0, rows: None, origin }
+        Segment { name: entry.label(number), number: 0, rows: None, origin }
     }
 
     /// The free parameter that `name` is in this part of `experiment`.
@@ -124,7 +122,7 @@ pub(super) fn segments(
     let Some(wanted) = &entry.segments else {
         return Ok(vec![Segment::whole(entry, number, rows.origin)]);
     };
-    let name = label(entry, number);
+    let name = entry.label(number);
     if entry.validation || entry.steady_state {
         let option = if entry.validation { "validation" } else { "steady_state" };
         bail!(

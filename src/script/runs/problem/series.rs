@@ -184,7 +184,8 @@ impl Comparison<'_> {
     }
 
     fn weight(&self, y_name: &str, wanted: &ColumnEntry) -> Result<f64, Fault> {
-        let weight = wanted.weight.unwrap_or(1.0) * self.entry.weight.unwrap_or(1.0);
+        let weight =
+            wanted.weight.map_or(1.0, |weight| weight.0) * self.entry.weight.unwrap_or(1.0);
         if !(weight.is_finite() && weight > 0.0) {
             bail!(BAD_OPTION, "the weight of `{y_name}` in {} is {weight}", self.experiment);
         }

@@ -60,6 +60,9 @@ end Sized;
 model Early
   parameter Real a = 1;
   output Real y = 1/(a*time);
+  Real sum(start = 0, fixed = true);
+equation
+  der(sum) = y;
 end Early;";
 
 /// The solution of a problem of the classes; each part of a problem's file as it is written.
