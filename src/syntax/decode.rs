@@ -4,9 +4,11 @@ use super::errors::NOT_UTF8;
 use crate::diag::Fault;
 use crate::fault;
 
-/// The byte-order marks of UTF-16, and how a code unit is read after each.
-const UTF16: [(&[u8], fn([u8; 2]) -> u16); 2] =
-    [(b"\xff\xfe", u16::from_le_bytes), (b"\xfe\xff", u16::from_be_bytes)];
+/// A byte-order mark, and how a code unit is read after it.
+type Encoding = (&'static [u8], fn([u8; 2]) -> u16);
+
+/// Those of UTF-16.
+const UTF16: [Encoding; 2] = [(b"\xff\xfe", u16::from_le_bytes), (b"\xfe\xff", u16::from_be_bytes)];
 
 /// The text of a file: UTF-8, or UTF-16 with a byte-order mark; the mark is taken away. Bytes that are not UTF-8 are read as
 /// Latin-1, where every byte is a character, and the fault to warn with is returned beside.

@@ -6,6 +6,7 @@ use gapilib::codegen::Access;
 use gapilib::sim::{Settings, Simulator, Trajectory};
 
 /// Warnings, and the values of a variable at the start and at the end; or why there are none.
+#[allow(clippy::type_complexity, reason = "a closure has no name")]
 fn simulated(
     text: &str,
     listens: bool,

@@ -25,6 +25,7 @@ pub struct Node {
     pub kind: NodeKind,
 }
 
+#[allow(clippy::large_enum_variant, reason = "most nodes are variables: a box would cost more")]
 #[derive(Debug, Clone)]
 pub enum NodeKind {
     /// Components, some of them not instantiated yet.

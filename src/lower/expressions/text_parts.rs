@@ -75,7 +75,7 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(format) = format {
             let Lowered::Text(format) = self.lower(format)? else { return Ok(None) };
             let is_known = !format.contains(UNKNOWN_TEXT);
-            return Ok(is_known.then(|| TextPart::Written(row, Some(format))));
+            return Ok(is_known.then_some(TextPart::Written(row, Some(format))));
         }
         for (name, default) in DEFAULTS {
             row.push(match named(name) {

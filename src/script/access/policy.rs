@@ -450,7 +450,7 @@ fn is_created(real: &Path) -> bool {
     let Some(name) = real.file_name().and_then(|name| name.to_str()) else { return false };
     let Some((_, ending)) = name.rsplit_once('.') else { return false };
     let is_kind = |known: &&str| known.eq_ignore_ascii_case(ending);
-    KINDS.iter().any(|(_, endings)| endings.iter().any(|known| is_kind(&known)))
+    KINDS.iter().any(|(_, endings)| endings.iter().any(is_kind))
         && !EXCEPTIONS.iter().any(|known| known.eq_ignore_ascii_case(name))
 }
 

@@ -105,7 +105,7 @@ fn value(solution: &Result<Solution, String>, name: &str, exact: f64) {
 
 #[track_caller]
 fn says(refused: &Result<Solution, String>, words: &[&str]) {
-    let message = refused.as_ref().err().expect("a refusal");
+    let message = refused.as_ref().expect_err("a refusal");
     let missing: Vec<&&str> = words.iter().filter(|word| !message.contains(**word)).collect();
     assert!(missing.is_empty(), "{missing:?} not in: {message}");
     for own in ["GAPILib", "gapi_", "'data of", "'initial value"] {
