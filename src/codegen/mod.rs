@@ -28,8 +28,8 @@ mod machine_code;
 mod machine_code;
 pub(crate) mod memory;
 pub(crate) mod noevent_relations;
-#[cfg(feature = "jit")]
 mod oscillations;
+#[cfg(feature = "jit")]
 mod pieces;
 mod places;
 pub(crate) mod program;
