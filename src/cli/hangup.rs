@@ -77,7 +77,7 @@ pub(super) fn watch(interrupt: &Arc<AtomicBool>, noticed: Arc<AtomicBool>) {
         }
         std::thread::sleep(NOTICE);
         if flag.strong_count() > 0 && !noticed.load(Ordering::SeqCst) {
-            #[allow(clippy::exit, reason = "nobody is left who could be told")]
+            #[allow(clippy::exit, reason = "the terminal for a message is gone")]
             std::process::exit(130);
         }
     };

@@ -16,7 +16,7 @@ impl System {
     /// Observes what can be observed where variables that nothing reads have no value.
     ///
     /// # Errors
-    /// The failure, if it is another one, or if nobody would hear the warning.
+    /// The failure, if it is another one, or if no log takes the warning.
     pub(super) fn observe_others(
         &mut self,
         t: f64,

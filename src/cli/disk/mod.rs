@@ -297,7 +297,7 @@ impl FileReader for Disk {
     }
 
     fn is_file(&self, path: &Path) -> bool {
-        // Whether there is a file that may not be read is not told.
+        // The answer does not reveal whether a file that may not be read exists.
         models::read(path).is_some() || path.is_file() && self.to_read(path).is_ok()
     }
 }

@@ -14,7 +14,7 @@ const LONGEST: usize = 50;
 /// A younger one may be that of a process that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// A name beside this one that nobody can know before.
+/// A name beside this one that cannot be predicted.
 pub(super) fn temporary_name(name: &OsStr) -> OsString {
     let begin: String = name.to_string_lossy().chars().take(LONGEST).collect();
     let number = RandomState::new().hash_one(std::process::id());

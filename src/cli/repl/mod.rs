@@ -91,7 +91,7 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
     }
     let limits = (&arguments.freedom.limits, &stopping);
     match talk(&mut session, &mut dialogue, limits, colour) {
-        // Where nobody reads the errors, the exit code says that there were some.
+        // Input from a file has no reader of errors: the exit code says that there were some.
         Ok(Ok(0)) if dialogue.has_failed && !is_typed => ExitCode::FAILURE,
         Ok(Ok(code)) => ExitCode::from(code),
         Ok(Err(code)) => code,

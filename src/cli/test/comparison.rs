@@ -125,7 +125,7 @@ impl Comparison<'_> {
         let reporting = if is_reported { Reporting::Usual } else { Reporting::Off };
         let options = Options { dialect, echo, reporting, ..options };
         let mut session = session::open(self.global, world).with_options(options);
-        // What scripts translate in folders of their own, nobody translates again.
+        // What scripts translate in temporary folders is not translated again.
         session.storage = None;
         let start = session.world.current_dir();
         let is_brief = !settings.report;

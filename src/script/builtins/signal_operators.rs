@@ -187,7 +187,7 @@ fn value(
     }
 }
 
-/// The part of the wanted interval that the results have, and what is outside of them.
+/// The part of the requested interval that the results have, and what is outside of them.
 fn within(
     table: &ResultTable,
     [start, stop]: [f64; 2],

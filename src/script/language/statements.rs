@@ -205,7 +205,7 @@ impl Session {
     /// Changes the working directory.
     pub(in crate::script) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
         let path = self.expanded(Path::new(path));
-        // What folders exist elsewhere is not told; those that the run lies in are known.
+        // The answer does not reveal which folders exist elsewhere; those that the run lies in are known.
         let absolute = self.world.absolute(&path);
         if !self.world.current_dir().starts_with(&absolute) {
             self.may(Access::Read, &absolute)?;

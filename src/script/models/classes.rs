@@ -3,7 +3,7 @@
 use super::constant_cache::ConstantCache;
 use super::library_files::Warnings;
 use super::stored::{History, Reads};
-use super::uses::Texts;
+use super::uses::LoadedSources;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::eval::Function;
 use crate::fault;
@@ -50,8 +50,8 @@ pub struct Classes {
     pub history: History,
     /// What was asked of the disk for them.
     pub reads: Reads,
-    /// The texts that they were loaded from.
-    pub texts: Texts,
+    /// What they were loaded from.
+    pub sources: LoadedSources,
 }
 
 /// A class that a run builds around a model of the user, who has written neither its name nor its
@@ -166,7 +166,7 @@ impl Classes {
         self.files.clear();
         self.misnamed.clear();
         self.versions.clear();
-        self.texts.clear();
+        self.sources.clear();
         self.enclosing.clear();
     }
 

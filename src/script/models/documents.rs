@@ -95,7 +95,7 @@ impl Session {
             self.autoload_class(package)?;
         }
         let revision = self.classes.revision();
-        self.classes.texts.note(&names_in(&file), &revision.to_string());
+        self.classes.sources.note(&names_in(&file), &revision.to_string());
         self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))
     }
 

@@ -126,7 +126,7 @@ impl Session {
         self.classes.note_files(&names, folder);
         // Its files are read later: nobody knows yet whether they are the same.
         let revision = self.classes.revision();
-        self.classes.texts.note(&names, &format!("{}\n{revision}", folder.display()));
+        self.classes.sources.note(&names, &format!("{}\n{revision}", folder.display()));
         self.supply_units(&names).map_err(one)?;
         self.note_versions(&names);
         Ok(names)
@@ -156,7 +156,7 @@ impl Session {
             self.autoload_class(package)?;
         }
         // Before: a text of which only a part can be loaded changes classes, too.
-        self.classes.texts.note(&names_in(&file), &format!("{shown}\n{text}"));
+        self.classes.sources.note(&names_in(&file), &format!("{shown}\n{text}"));
         let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
         self.note_versions(&names);
         Ok(names)
@@ -234,7 +234,7 @@ impl Session {
         // An edited class still has the place of the text that it was read from.
         let text = syntax::print::class(class);
         self.classes.history.note("class", &text);
-        self.classes.texts.note(&[class.name.node.into()], &text);
+        self.classes.sources.note(&[class.name.node.into()], &text);
         self.classes.library.define(class).map(|_| ())
     }
 
@@ -247,7 +247,7 @@ impl Session {
         self.classes.invalidate();
         let text = syntax::print::class(&class);
         self.classes.history.note("enclosing", &text);
-        self.classes.texts.note(&[class.name.node.into()], &text);
+        self.classes.sources.note(&[class.name.node.into()], &text);
         self.classes.enclosing.retain(|known| known.name != enclosing.name);
         self.classes.enclosing.push(enclosing);
         self.classes.library.define(&Arc::new(class)).map(|_| ())
@@ -262,7 +262,7 @@ impl Session {
     pub(in crate::script) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.invalidate();
         self.classes.history.note("remove", &name.to_string());
-        self.classes.texts.remove(name);
+        self.classes.sources.remove(name);
         name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
     }
 

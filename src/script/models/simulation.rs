@@ -163,12 +163,12 @@ pub fn translated(
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     if let Some((uses, model)) = session.models.get(problem)
-        && session.classes.texts.are_unchanged(uses)
+        && session.classes.sources.are_unchanged(uses)
     {
         return Ok(model.clone());
     }
     let model = Arc::new(found_or_compiled(session, problem)?);
-    let uses = session.classes.texts.uses(&model.roots);
+    let uses = session.classes.sources.uses(&model.roots);
     session.models.keep(uses, &model);
     Ok(model)
 }

@@ -1,5 +1,5 @@
 //! On which classes a translation depends: those at the top level that were looked at, whether they
-//! were there or not, each with the texts that it was loaded from. Whatever else is loaded afterwards
+//! were there or not, each with the source that it was loaded from. Whatever else is loaded afterwards
 //! does not concern the model.
 
 use super::stored::{Digest, digest};
@@ -7,15 +7,15 @@ use crate::name::{Ident, Name};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The texts from which classes were loaded, by their full names.
+/// The sources from which classes were loaded, by their full names.
 #[derive(Debug, Default)]
-pub struct Texts(BTreeMap<Name, Digest>);
+pub struct LoadedSources(BTreeMap<Name, Digest>);
 
 /// The top-level names on which something depends, and what they meant.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Uses(BTreeMap<Ident, Digest>);
 
-impl Texts {
+impl LoadedSources {
     /// Classes were loaded from a text.
     pub fn note(&mut self, names: &[Name], text: &str) {
         let digest = digest(text.as_bytes());

@@ -41,7 +41,7 @@ impl Session {
         })
     }
 
-    /// Reports a run that ends without any success, if nobody has said so yet.
+    /// Reports a run that ends without any success, if that was not reported yet.
     pub(super) fn report_if_all_failed(&mut self, recorder: &Recorder, interrupted: bool) {
         let identification = self.extension::<Identification>();
         let has_said = std::mem::take(&mut identification.is_hopeless);

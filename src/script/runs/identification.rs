@@ -320,7 +320,7 @@ impl Session {
         let evaluator = Evaluator::on(Arc::new(model), question, &processors)?;
         self.note_idle_ranks(evaluator.alone());
         let roots = static_curve::without_class_around(&translated.roots);
-        let (uses, class) = (self.classes.texts.uses(&roots), translated.problem.clone());
+        let (uses, class) = (self.classes.sources.uses(&roots), translated.problem.clone());
         Ok(Prepared { request, uses, class, evaluator })
     }
 
@@ -336,7 +336,7 @@ impl Session {
         let prepared = &mut self.identification().prepared;
         if let Some(place) = prepared.iter().position(is_it) {
             let known = prepared.remove(place);
-            return Ok(self.classes.texts.are_unchanged(&known.uses).then_some(known));
+            return Ok(self.classes.sources.are_unchanged(&known.uses).then_some(known));
         }
         if prepared.len() >= PREPARED {
             prepared.remove(0);
