@@ -9,7 +9,7 @@
 //! leave `v = pre(v)`.
 
 use super::blt::incidence;
-use super::causalized::{Alias, Block, Selection};
+use super::causalized::{Alias, Block, CausalizedDae, Selection};
 use super::event_system::{Numbered, Purpose, match_mixed, of_kind, sort_mixed, with_initial};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -34,6 +34,16 @@ impl Numbered {
     }
 }
 
+impl CausalizedDae {
+    /// Whether a state begins with its start value. Else initial equations, or start values of other
+    /// variables, determine where it begins, and its own is a first guess.
+    pub fn begins_with_start(&self, state: VarId) -> bool {
+        let start = first_variable(&self.dae) + state.0 as usize;
+        let assignments = self.initial_blocks.iter().flat_map(Block::assignments);
+        assignments.map(|assignment| assignment.equation).any(|equation| equation == start)
+    }
+}
+
 /// Sorts the initial system.
 pub(super) fn sort_initial(
     dae: &mut Dae,
@@ -51,23 +61,14 @@ pub(super) fn sort_initial(
 
     let mut system = model_equations(dae);
     let model = system.equations.len();
-    let first = first_variable(dae);
-    for (number, equation) in dae.initial_equations.iter().enumerate() {
-        system.push(*equation, dae.equations.len() + number);
-    }
-    for (state, equation) in reinits(dae, aliases) {
-        system.push(equation, first + state.0 as usize);
-    }
-    for v in fixed {
-        system.push(start_equation(dae, v, v), first + v.0 as usize);
-    }
-    let (fixed, remembered) = previous_values(dae);
-    for (v, of) in fixed {
-        system.push(start_equation(dae, v, of), first + of.0 as usize);
-    }
+    let remembered = require(dae, &mut system, fixed, aliases);
     let required = system.equations.len();
     let taken = start_values_to_take(dae, states, selections, &free);
-    for (v, of) in taken.iter().map(|v| (*v, *v)).chain(remembered) {
+    // An initial equation of continuous variables determines a state rather than what a discrete
+    // variable was before the start, on which these may depend by a table or a relation: the clarifiers
+    // of WasteWater, fed by a table over time.
+    let (first, states_from) = (first_variable(dae), required + remembered.len());
+    for (v, of) in remembered.into_iter().chain(taken.iter().map(|v| (*v, *v))) {
         system.push(start_equation(dae, v, of), first + of.0 as usize);
     }
     with_initial(dae, &mut system.equations, 1.0);
@@ -83,14 +84,36 @@ pub(super) fn sort_initial(
     for (number, equation) in numbered().filter(|(n, _)| *n < model || is_used(*n)) {
         used.push(equation, system.origins[number]);
     }
-    let held: Vec<VarId> =
-        taken.into_iter().enumerate().filter(|(n, _)| is_used(required + n)).map(|t| t.1).collect();
+    let held = taken.into_iter().enumerate().filter(|(n, _)| is_used(states_from + n));
+    let held: Vec<VarId> = held.map(|(_, v)| v).collect();
     if required > model {
         warn_of_start_values(dae, &held);
     }
     let name = format!("the initial system of `{}`", dae.name);
     let sorted = sort_mixed(dae, &name, used, &all, purpose)?;
     Ok(InitialSystem { blocks: sorted.blocks, checks, iterated: sorted.iterated })
+}
+
+/// Adds what must hold at the start: initial equations, initial values by `reinit` and those that are
+/// fixed, first of what nothing else can determine: what discrete variables were before. Gives what discrete variables were before the start, where that is not fixed.
+fn require(
+    dae: &mut Dae,
+    system: &mut Numbered,
+    states: Vec<VarId>,
+    aliases: &[Option<Alias>],
+) -> Vec<Remembered> {
+    let first = first_variable(dae);
+    for (number, equation) in dae.initial_equations.iter().enumerate() {
+        system.push(*equation, dae.equations.len() + number);
+    }
+    for (state, equation) in reinits(dae, aliases) {
+        system.push(equation, first + state.0 as usize);
+    }
+    let (fixed, remembered) = previous_values(dae);
+    for (v, of) in fixed.into_iter().chain(states.into_iter().map(|v| (v, v))) {
+        system.push(start_equation(dae, v, of), first + of.0 as usize);
+    }
+    remembered
 }
 
 /// Number of the first variable among what equations come from: behind all equations.
@@ -156,7 +179,7 @@ fn previous_values(dae: &Dae) -> (Vec<Remembered>, Vec<Remembered>) {
         .partition(|(_, of)| dae.variable(*of).fixed)
 }
 
-/// Variables whose start values hold where nothing else determines them, the most wanted first:
+/// Variables whose start values hold where nothing else determines them, the preferred first:
 /// those that the model prefers as states and gives a start value, be they states or not (a tank
 /// begins with its level, not with no mass); states, and instead of those chosen at run time the candidates, those chosen at first before the
 /// others; among these the ones with a start value of their own.
@@ -184,8 +207,8 @@ fn start_values_to_take(
 /// Whether a model prefers a variable as a state and says where it begins.
 fn is_preferred(dae: &Dae, v: VarId) -> bool {
     let variable = dae.variable(v);
-    let is_wanted = matches!(variable.state_select, StateSelect::Prefer | StateSelect::Always);
-    is_wanted && variable.start.is_some() && is_continuous(dae, v)
+    let is_chosen = matches!(variable.state_select, StateSelect::Prefer | StateSelect::Always);
+    is_chosen && variable.start.is_some() && is_continuous(dae, v)
 }
 
 fn is_continuous(dae: &Dae, v: VarId) -> bool {

@@ -106,6 +106,13 @@ impl Evaluator<'_> {
         if !known {
             return self.assign_global(target, value, span);
         }
+        // A number has no components: `x.start` is that of the model's `x`.
+        if self.scope.is_script() && target.parts.len() > 1 && self.is_scalar(first.name) {
+            let literal = self.with_literal_subscripts(target)?;
+            if self.host.assign(&literal, value.clone(), span)? {
+                return Ok(());
+            }
+        }
         if let Some(done) = self.assign_element(target, &value)? {
             return Ok(done);
         }
@@ -114,6 +121,16 @@ impl Evaluator<'_> {
         variable
             .set_part(first.name, &path, value)
             .map_err(|fault| named(first.name, fault).at(target.span))
+    }
+
+    fn is_scalar(&self, name: Ident) -> bool {
+        let is_scalar = |value: &Value| {
+            matches!(
+                value,
+                Value::Real(_) | Value::Integer(_) | Value::Boolean(_) | Value::String(_)
+            )
+        };
+        self.scope.get(name).is_some_and(is_scalar)
     }
 
     /// Whether assigning to a name nobody knows makes a variable.

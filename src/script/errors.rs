@@ -77,6 +77,9 @@ codes! {
     /// A final state without some variables of the model (a note).
     START_VALUES_MISSING = "start-values-missing":
         "## What it means\n\nA simulation is to begin where another one ended, but the file or the result does not have all states and discrete variables of the model. Those that it does not have start as the model says.\n\n## Example\n\n`importInitial(\"other.txt\")` where `other.txt` is the final state of a smaller model\n\n## What to do\n\nUse the final state of the same model, or give the missing variables start values, `x.start = 2`.",
+    /// A start value that the model does not begin with (a note).
+    START_IS_GUESS = "start-is-guess":
+        "## What it means\n\nA script sets the start value of a state that does not begin with it: initial equations of the model, or start values of other variables, determine where the state begins. The start value is the first guess of the solution of these equations (MLS §8.6). Reported once for each name.\n\n## Example\n\n`x.start = 3;` for a model with `initial equation der(x) = 0;`\n\n## What to do\n\nChange what determines the initial value, or declare `x(fixed = true)` and remove the initial equation.",
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
         "## What it means\n\nAn import clause in a script names a package or class that is neither loaded nor a package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",

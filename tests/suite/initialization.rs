@@ -83,6 +83,15 @@ fn a_fixed_start_value_goes_before_one_that_is_not() {
     }
 }
 
+/// The clarifiers of WasteWater, fed by a table over time.
+#[test]
+fn an_initial_equation_determines_a_state_before_the_past_of_a_discrete_variable() {
+    let text = "model M discrete Real n; Real q; Real h(start = 1); equation \
+        when time >= 0.5 then n = pre(n) + 1; end when; q = 3 + pre(n); der(h) = -h; \
+        initial equation h = 2*q; end M;";
+    Run::of(text, 0.4).follows("h", 1e-7, |t| 6.0 * (-t).exp());
+}
+
 #[test]
 fn fixed_start_values_of_one_alias_set_must_agree() {
     let text = |second: f64| {

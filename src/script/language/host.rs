@@ -136,6 +136,9 @@ impl Host for Session {
         match self.is_of_model(name) {
             true => self.assign_to_model(name, value),
             false => {
+                if before.is_none() {
+                    self.note_state(name, value);
+                }
                 self.keep_from_model(name);
                 Ok(false)
             }

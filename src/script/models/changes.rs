@@ -3,10 +3,12 @@
 
 use super::modification::merge;
 use super::translated::{Declaration, Translated};
+use crate::causalize::CausalizedDae;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span};
+use crate::symbolic::VarId;
 use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, Modification};
 use crate::syntax::{self, print};
 use indexmap::IndexMap;
@@ -40,6 +42,8 @@ pub enum Changed {
     Structure,
     /// A start value.
     Start,
+    /// A start value of a state that begins with another value.
+    Guess,
 }
 
 impl Changes {
@@ -102,10 +106,13 @@ impl Changes {
             return None;
         }
         self.insert(format!("{name}.start"), literal(&variable.base, value));
-        if is_state(model, name) {
-            let fixed = Expression::new(ExpressionKind::Boolean(true), Span::NONE);
-            self.insert(format!("{name}.fixed"), fixed);
+        let sorted = model.program.sorted();
+        let Some(state) = state(sorted, name) else { return Some(Changed::Start) };
+        if !sorted.begins_with_start(state) {
+            return Some(Changed::Guess);
         }
+        let fixed = Expression::new(ExpressionKind::Boolean(true), Span::NONE);
+        self.insert(format!("{name}.fixed"), fixed);
         Some(Changed::Start)
     }
 
@@ -169,10 +176,11 @@ fn number_literal(base: &BaseType, number: f64) -> Expression {
 }
 
 fn may_start(model: &Translated, name: &str, variable: &Declaration) -> bool {
-    variable.final_start.map_or_else(|| is_state(model, name), |is_final| !is_final)
+    variable
+        .final_start
+        .map_or_else(|| state(model.program.sorted(), name).is_some(), |is_final| !is_final)
 }
 
-fn is_state(model: &Translated, name: &str) -> bool {
-    let sorted = model.program.sorted();
-    sorted.states.iter().any(|state| &*sorted.dae.variable(*state).name == name)
+fn state(sorted: &CausalizedDae, name: &str) -> Option<VarId> {
+    sorted.states.iter().copied().find(|state| &*sorted.dae.variable(*state).name == name)
 }

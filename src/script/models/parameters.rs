@@ -12,7 +12,7 @@ use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::name::Ident;
 use crate::script::errors::{
-    BAD_PARAMETER_VALUE, SHARED_NAME, TRANSLATED_AGAIN, UNKNOWN_PARAMETER,
+    BAD_PARAMETER_VALUE, SHARED_NAME, START_IS_GUESS, TRANSLATED_AGAIN, UNKNOWN_PARAMETER,
 };
 use crate::script::{Dialect, Session};
 use crate::source::Span;
@@ -147,6 +147,12 @@ impl Session {
                 Ok(())
             }
             Some(Changed::Start) => Ok(()),
+            Some(Changed::Guess) => {
+                let problem = current.model.problem.clone();
+                let name = name.strip_suffix(".start").unwrap_or(name);
+                self.note_guess(name, &problem);
+                Ok(())
+            }
             None => Err(not_tunable(&current.model, name)),
         }
     }
@@ -211,11 +217,15 @@ impl Session {
         let Some(model) = self.models.last().cloned() else { return Ok(false) };
         if let Some(why) = unlike(&model, name, value) {
             self.models.note_own(name);
-            self.note_shared_name(name, &format!("the parameter keeps its value: {why}"));
+            self.note_shared_name(
+                name,
+                "parameter",
+                &format!("the parameter keeps its value: {why}"),
+            );
             return Ok(false);
         }
         self.set_values(&ComponentReference::from_name(&name.into(), Span::NONE), value)?;
-        self.note_shared_name(name, "it is set");
+        self.note_shared_name(name, "parameter", "it is set");
         Ok(true)
     }
 
@@ -228,6 +238,7 @@ impl Session {
         if is_parameter && self.dialect() == Dialect::Dymola {
             self.note_shared_name(
                 name,
+                "parameter",
                 "the parameter keeps its value, because the script had the variable before the \
                  model was translated",
             );
@@ -236,13 +247,36 @@ impl Session {
         }
     }
 
-    fn note_shared_name(&mut self, name: Ident, consequence: &str) {
+    /// A variable that is new in the script has got a number, and the name of a state of the model
+    /// translated last.
+    pub(in crate::script) fn note_state(&mut self, name: Ident, value: &Value) {
+        let Some(model) = self.models.last().cloned() else { return };
+        let is_number = matches!(value, Value::Real(_) | Value::Integer(_));
+        if self.dialect() == Dialect::Dymola && is_number && is_state(&model, name.as_str()) {
+            let consequence =
+                format!("it keeps its start value: write `{name}.start = …` to set it");
+            self.note_shared_name(name, "state", &consequence);
+        }
+    }
+
+    fn note_shared_name(&mut self, name: Ident, what: &str, consequence: &str) {
         if self.models.is_new_note(name)
             && let Some(model) = self.models.last()
         {
             let problem = &model.problem;
-            let text = format!("`{name}` is a parameter of `{problem}`: {consequence}");
+            let text = format!("`{name}` is a {what} of `{problem}`: {consequence}");
             self.note(SHARED_NAME, text);
+        }
+    }
+
+    /// Reports once for each name that a state does not begin with its start value.
+    fn note_guess(&mut self, name: &str, problem: &str) {
+        if self.models.is_new_note(Ident::new(&format!("{problem}.{name}.start"))) {
+            let message = format!(
+                "the start value of `{name}` is a first guess only: initial equations of \
+                 `{problem}`, or start values of other variables, determine where it begins"
+            );
+            self.note(START_IS_GUESS, message);
         }
     }
 
