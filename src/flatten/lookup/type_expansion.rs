@@ -133,7 +133,9 @@ impl Classes<'_> {
                 Ok(Step::Type(base))
             }
             None if matches!(text.restriction(), Restriction::Function { .. }) => {
-                expanded.modifier = Modifier::default();
+                // What remains of a function is the one that is meant where none is passed (MLS §12.4.2).
+                let binding = expanded.modifier.binding.take();
+                expanded.modifier = Modifier { binding, ..Modifier::default() };
                 Ok(Step::Shape(Shape::Function))
             }
             None => {
