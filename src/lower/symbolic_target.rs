@@ -19,7 +19,7 @@ use crate::functions::{Builtin, Clocked, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
-use crate::symbolic::{Expr, RelationOperator, VarId};
+use crate::symbolic::{Expr, Node, RelationOperator, VarId};
 use crate::syntax::ast::{ComponentReference, Expression};
 use indexmap::IndexSet;
 use std::cell::Cell;
@@ -72,6 +72,9 @@ impl Target for Builder<'_> {
         }
         if !self.varies(a) && !self.varies(b) {
             return relation;
+        }
+        if let Some(split) = self.split_extremum(operator, (a, b), span) {
+            return split;
         }
         let [a, b] = self.guarded_sides(a, b);
         let key = (operator, a, b);
@@ -469,6 +472,46 @@ impl Builder<'_> {
             )
         };
         self.dae.pool.any_variable(a, varies)
+    }
+
+    /// `abs(e) < w`, `max(e, f) > w`, … of time and parameters as relations of `e`, `-e` and `f`: these
+    /// change their signs where a short pulse begins and ends, often at instants that are known.
+    fn split_extremum(
+        &mut self,
+        operator: RelationOperator,
+        (a, b): (Expr, Expr),
+        span: Span,
+    ) -> Option<Expr> {
+        for (operator, extremum, other) in [(operator, a, b), (operator.mirrored(), b, a)] {
+            let Node::Apply(function, arguments) = *self.dae.pool.node(extremum) else { continue };
+            if !self.is_of_time(extremum) || !self.is_of_time(other) {
+                continue;
+            }
+            let first = arguments.first();
+            let last = arguments.second().unwrap_or(first);
+            let (parts, is_largest) = match function.get().name {
+                "abs" => ([first, self.dae.pool.neg(first)], true),
+                "max" => ([first, last], true),
+                "min" => ([first, last], false),
+                _ => continue,
+            };
+            let is_below = matches!(operator, RelationOperator::Less | RelationOperator::LessEqual);
+            let [one, two] = parts.map(|part| self.relation(operator, part, other, false, span));
+            return Some(match is_below == is_largest {
+                true => self.dae.pool.and(one, two),
+                false => self.dae.pool.or(one, two),
+            });
+        }
+        None
+    }
+
+    /// Whether an expression consists of time and parameters.
+    fn is_of_time(&self, e: Expr) -> bool {
+        let is_other = |v: VarId| {
+            let kind = &self.dae.variable(v).kind;
+            !matches!(kind, Kind::Time | Kind::Parameter { .. } | Kind::Constant(_))
+        };
+        !self.dae.pool.any_variable(e, is_other)
     }
 
     /// `der` of an expression: the sum of partial derivatives times derivatives.

@@ -103,6 +103,17 @@ impl RelationOperator {
         }
     }
 
+    /// The operator with the sides exchanged.
+    pub fn mirrored(self) -> RelationOperator {
+        match self {
+            RelationOperator::Less => RelationOperator::Greater,
+            RelationOperator::LessEqual => RelationOperator::GreaterEqual,
+            RelationOperator::Greater => RelationOperator::Less,
+            RelationOperator::GreaterEqual => RelationOperator::LessEqual,
+            symmetric => symmetric,
+        }
+    }
+
     /// As written in Modelica.
     pub fn symbol(self) -> &'static str {
         match self {

@@ -126,11 +126,25 @@ fn pulses_are_found_whatever_the_output_grid() {
 
 #[test]
 fn a_short_pulse_is_found_without_output_points_in_it() {
-    let text = "model M Integer k(start = 0, fixed = true); Real q(start = 0, fixed = true); \
-        Boolean b = 1 - ((time - 3.3)/0.02)^2 > 0; \
-        equation der(q) = if b then 1 else 0; when b then k = pre(k) + 1; end when; end M;";
-    let output = OutputGrid::Intervals(2);
-    let run = simulated_with(text, &Settings { stop: 8.0, output, ..Settings::default() });
-    assert_eq!(run.last("k"), 1.0);
-    near(run.last("q"), 0.04, 1e-4);
+    for condition in [
+        "1 - ((time - 3.3)/0.02)^2 > 0",
+        "abs(time - at) < 0.02",
+        "0.02 >= abs(at - time)",
+        "not abs(time - 3.3) > 0.02",
+        "max(time - 3.32, 3.28 - time) <= 0",
+        "min(time - 3.28, 3.32 - time) > 0",
+        "abs(sin(time/9) - sin(3.3/9)) < 0.0020741",
+    ] {
+        let text = format!(
+            "model M Integer k(start = 0, fixed = true); Real q(start = 0, fixed = true); \
+             parameter Real at = 3.3; Boolean b = {condition}; \
+             equation der(q) = if b then 1 else 0; when b then k = pre(k) + 1; end when; end M;"
+        );
+        for intervals in [2, 500] {
+            let output = OutputGrid::Intervals(intervals);
+            let run = simulated_with(&text, &Settings { stop: 8.0, output, ..Settings::default() });
+            assert_eq!(run.last("k"), 1.0, "{condition}, {intervals} intervals");
+            near(run.last("q"), 0.04, 1e-4);
+        }
+    }
 }
