@@ -15,7 +15,10 @@ record Experiment "An experiment of a problem: what was measured, and under whic
   Real stateValues[:] = fill(0.0, 0) "Those values";
   Real weight = 1 "The whole experiment counts times this";
   Boolean validation = false "Whether it is compared at the end only";
+  Real startTime[:] = fill(0.0, 0) "Time at which the initial values hold; empty for that of the model";
   Real stopTime = 0 "End of the simulation; 0 for that of the data";
+  Boolean cutAtGaps = false "Whether it is cut at gaps of the data into parts with separate initial values";
+  Real cutTimes[:] = fill(0.0, 0) "Times at which it is cut into such parts";
   Real tolerance = 0 "Tolerance of the integrator; 0 for that of the model";
   String integrator = "" "Integrator; empty for that of the model";
 end Experiment;

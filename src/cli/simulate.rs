@@ -172,7 +172,9 @@ fn run(
     let driven = input.map(|path| problem::driven(session, class, path, None)).transpose()?;
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
-    if let Some(driven) = driven.filter(|_| model.program.experiment().stop_time.is_none()) {
+    if let Some(driven) = &driven
+        && model.program.experiment().stop_time.is_none()
+    {
         options.stop.get_or_insert(driven.last);
     }
     if let Some(path) = &arguments.from {
@@ -184,6 +186,9 @@ fn run(
     }
     let settings = simulation::settings(&model.program.experiment(), &options).map_err(one)?;
     let span = (settings.start, settings.stop);
+    if let Some(driven) = &driven {
+        driven.note_outside(session, span);
+    }
     let mut simulated = with_progress(span, options, global, |options| {
         simulation::simulate(session, &model, &options).map_err(|error| vec![error])
     })?;
@@ -196,14 +201,24 @@ fn run(
     if !arguments.plot.is_empty() {
         draw(session, class, (arguments, picture), &simulated.table).map_err(one)?;
     }
+    write_or_show(session, arguments, format, &simulated.table).map_err(one)
+}
+
+/// Writes the results to the file that is asked for, or shows the last values.
+fn write_or_show(
+    session: &mut Session,
+    arguments: &SimulateArgs,
+    format: Option<Box<dyn results::Format>>,
+    table: &ResultTable,
+) -> Result<(), Fault> {
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
             session.permit_file(path);
-            session.write_results(path, format.as_ref(), &simulated.table).map_err(one)?;
+            session.write_results(path, format.as_ref(), table)?;
             session.print(&written(path));
         }
         _ if !arguments.plot.is_empty() => {}
-        _ => session.print(&last_values(&simulated.table).map_err(one)?),
+        _ => session.print(&last_values(table)?),
     }
     Ok(())
 }

@@ -267,7 +267,8 @@ impl Session {
         if !(x_name.is_empty() || x_name == "time") || start > low / 2.0 || low >= high {
             return Ok(());
         }
-        if let Some(calendar) = mat::calendar(x).filter(|calendar| calendar.is_certain) {
+        let calendar = mat::calendar(x);
+        if let Some(calendar) = calendar.filter(|calendar| calendar.is_certain) {
             bail!(
                 BAD_DATA,
                 "the measured times begin at {low}: these are {}, but the simulation begins at \
@@ -286,10 +287,14 @@ impl Session {
             ));
         }
         if low - start > high - low {
+            let days = calendar.map_or(String::new(), |days| {
+                let mat::Calendar { name, seconds, .. } = days;
+                format!("; if they are {name}, write `Xexp := (Xexp .- Xexp[1])*{seconds}`")
+            });
             self.note(mat::errors::DATA_NOTE, format!(
                 "the measured times begin at {low} s and last {} s, but the simulation begins at \
                  {start} s; if the initial values are those of {low} s, give the model \
-                 `annotation(experiment(StartTime = {low}))`, or count the times from the first one",
+                 `annotation(experiment(StartTime = {low}))`, or count the times from the first one{days}",
                 high - low
             ));
         }

@@ -1,6 +1,7 @@
 //! Constraints between parameters, such as `a < b` or `a + 2*b <= 10`: inequalities of arithmetic
 //! expressions as in Modelica.
 
+use super::enclosing_class;
 use crate::diag::{Fault, suggest};
 use crate::identify::problem::inference::{Constraint, Function, Operator, Term};
 use crate::registry::BAD_OPTION;
@@ -49,6 +50,10 @@ fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Te
         ExpressionKind::Real(value) => Ok(Term::Number(*value)),
         ExpressionKind::Integer(value) => Ok(Term::Number(*value as f64)),
         ExpressionKind::Reference(reference) => parameter(text, reference, parameters),
+        ExpressionKind::String(name) => match enclosing_class::quoted_name(name) {
+            Some(reference) => parameter(text, &reference, parameters),
+            None => Err(more_than_arithmetic(text)),
+        },
         ExpressionKind::Unary { operator: UnaryOperator::Plus, operand } => {
             term(text, operand, parameters)
         }

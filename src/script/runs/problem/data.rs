@@ -7,7 +7,7 @@ use crate::diag::Fault;
 use crate::identify::problem::{Finding, FindingKind, Severity};
 use crate::mat::{About, Column, MatFile};
 use crate::registry::BAD_OPTION;
-use crate::units::{Conversion, in_words, written};
+use crate::units::{Conversion, Unit, in_words, written};
 
 /// A column in the unit of its variable.
 pub(super) struct Measured {
@@ -139,10 +139,21 @@ pub(super) fn in_unit(
     let unchanged = || scaled(1.0, &|value| value);
     let explicit = entry.unit.as_deref();
     let Some(given) = explicit.or(column.about.unit.as_deref()) else { return Ok(unchanged()) };
-    if given == unit || unit.is_empty() && explicit.is_none() {
+    if given == unit {
         return Ok(unchanged());
     }
     let own = entry.column.as_deref().unwrap_or(name);
+    if unit.is_empty() && explicit.is_none() {
+        let is_coherent = |unit: Unit| unit.factor == 1.0 && unit.offset == 0.0;
+        let scaled = written(given).filter(|unit| !is_coherent(*unit));
+        notes.about(table, scaled.map(|_| {
+            format!(
+                "`{own}` is in {given}, but `{name}` has no unit: its values are used as they are; \
+                 give the variable a `unit`, or the column a `factor`"
+            )
+        }));
+        return Ok(unchanged());
+    }
     let (Some(from), Some(to)) = (written(given), written(unit)) else {
         if explicit.is_some() {
             return Err(incompatible(name, unit, given));

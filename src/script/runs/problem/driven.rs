@@ -25,11 +25,27 @@ const TIMES: [&str; 3] = ["time", "Time", "t"];
 pub struct Driven {
     /// The class around the model.
     pub class: String,
+    /// The first time of the data.
+    pub first: f64,
     /// The last time of the data.
     pub last: f64,
 }
 
 impl Driven {
+    /// Notes what the inputs do where a simulation from `start` to `stop` has no data.
+    pub fn note_outside(&self, session: &mut Session, (start, stop): (f64, f64)) {
+        let Driven { first, last, .. } = self;
+        let mut note = |text: String| session.note(crate::mat::errors::DATA_NOTE, text);
+        if start < *first {
+            note(format!(
+                "the inputs have data from {first} s on: before that, their first values"
+            ));
+        }
+        if stop > *last {
+            note(format!("the inputs have data until {last} s: after that, their last values"));
+        }
+    }
+
     /// Takes the tables of the inputs, which are no part of the model, out of its results.
     pub fn without_tables(results: &mut ResultTable) {
         results.retain(|name| !name.starts_with("'data of "));
@@ -86,8 +102,10 @@ pub fn driven(
     for note in notes.into_notes() {
         session.note(crate::mat::errors::DATA_NOTE, note.sentence);
     }
-    let last = time.iter().copied().filter(|t| t.is_finite()).fold(f64::NEG_INFINITY, f64::max);
-    Ok(Driven { class, last })
+    let known = || time.iter().copied().filter(|t| t.is_finite());
+    let (first, last) =
+        (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+    Ok(Driven { class, first, last })
 }
 
 /// The column of time in seconds, and the date that it counts from.

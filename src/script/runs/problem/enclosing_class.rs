@@ -13,6 +13,7 @@ use crate::syntax::ast::{
     Argument, Binding, ClassDefinition, ClassSpecifier, ComponentReference, Element,
     ElementModification, Expression, ExpressionKind, Extends, Modification, Section, TypeSpecifier,
 };
+use crate::syntax::visit::{Rewrite, rewrite_expression};
 use crate::syntax::{parse_all_of_stored_definition, parse_class_with_modification};
 use std::sync::Arc;
 
@@ -58,6 +59,28 @@ fn at_place(text: &str, place: Option<Span>) -> (SourceId, String, Span) {
 pub(super) fn expression(text: &str, place: Option<Span>) -> Result<Expression, Diagnostic> {
     let (source, text, _) = at_place(text, place);
     crate::syntax::parse_expression(source, &text)
+}
+
+/// The name in a String, which TOML would have in quotation marks: `"c[1].k"`.
+pub(super) fn quoted_name(text: &str) -> Option<ComponentReference> {
+    match crate::syntax::parse_expression(SourceId::NONE, text).ok()?.kind {
+        ExpressionKind::Reference(reference) => Some(reference),
+        _ => None,
+    }
+}
+
+/// Takes names out of quotation marks, in an expression that has no use for Strings.
+pub(super) struct QuotedNames;
+
+impl Rewrite for QuotedNames {
+    fn expression(&mut self, e: &mut Expression) {
+        if let ExpressionKind::String(text) = &e.kind
+            && let Some(reference) = quoted_name(text)
+        {
+            e.kind = ExpressionKind::Reference(reference);
+        }
+        rewrite_expression(self, e);
+    }
 }
 
 /// A value of a problem's file. Whole numbers fit Integers and Reals.

@@ -87,8 +87,7 @@ pub(super) fn rows(
     table: &MatFile,
     notes: &mut Notes,
 ) -> Result<(usize, Vec<Segment>), Fault> {
-    let x = entry.x.as_ref().map_or_else(|| ColumnEntry::named(None), file::Column::entry);
-    let (name, own) = names(&x);
+    let (x, name, own) = x_of(entry, table);
     notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
     let column = data::column(table, &x, &name, notes)?;
     let count = column.values.len();
@@ -107,11 +106,18 @@ pub(super) fn rows(
     Ok((count, segments((entry, number), table, &rows, notes)?))
 }
 
-/// The variable that X is, and its column. A bare name is both.
-fn names(x: &ColumnEntry) -> (String, String) {
+/// X: its entry, the variable that it is, and its column. A bare name is both; the column of time is
+/// `Time` in the result files of Dymola.
+fn x_of(entry: &ExperimentEntry, table: &MatFile) -> (ColumnEntry, String, String) {
+    let mut x = entry.x.as_ref().map_or_else(|| ColumnEntry::named(None), file::Column::entry);
     let column = x.column.clone().or_else(|| x.variable.clone());
     let column = column.unwrap_or_else(|| "time".to_owned());
-    (x.variable.clone().unwrap_or_else(|| column.clone()), column)
+    let name = x.variable.clone().unwrap_or_else(|| column.clone());
+    if column == "time" && table.matrix("time").is_err() && table.matrix("Time").is_ok() {
+        x.column = Some("Time".to_owned());
+    }
+    let column = x.column.clone().unwrap_or(column);
+    (x, name, column)
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -200,9 +206,8 @@ impl Source<'_> {
     }
 
     fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
-        let (given, table) = (self.entry.x.as_ref(), self.table);
-        let entry = given.map_or_else(|| ColumnEntry::named(None), file::Column::entry);
-        let (name, own) = names(&entry);
+        let table = self.table;
+        let (entry, name, own) = x_of(self.entry, table);
         let column = data::column(table, &entry, &name, notes)?;
         notes.about(table, column.missing.clone());
         notes.warn_about(table, column.fall(&own));

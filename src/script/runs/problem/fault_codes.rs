@@ -23,8 +23,10 @@ const ABRUPT: f64 = 0.5;
 
 /// Sentences about codes that are used as numbers, in the rows of a column.
 pub(in crate::script::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
+    // One code must not hide another: 9999 for a short circuit beside -9999 for an open one.
+    let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| CODES.contains(v));
     let sentence = |code: f64| {
-        let (coded, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| *v == code);
+        let coded: Vec<_> = suspects.iter().copied().filter(|(_, v)| *v == code).collect();
         let [low, high] = ends(&others)?;
         let distance = (code - high).max(low - code);
         let is_far = !coded.is_empty() && others.len() > 1 && distance > BEYOND * (high - low);
@@ -115,6 +117,13 @@ mod tests {
         let found = codes("T", &wave(|k, v| if k % 90 == 7 { -999.0 } else { v }));
         assert_eq!(found.len(), 1);
         assert!(found[0].starts_with("-999 in row 8, row 98, row 188 of `T`"), "{}", found[0]);
+        let several = |k: usize, v: f64| match k % 90 {
+            7 => -9999.0,
+            8 => 9999.0,
+            9 => 1e30,
+            _ => v,
+        };
+        assert_eq!(codes("T", &wave(several)).len(), 3, "each of several codes");
         // A resistance of 999 Ohm among such of 500 to 1500.
         assert!(
             codes("R", &wave(|k, _| if k == 9 { 999.0 } else { 500.0 + 5.0 * k as f64 }))

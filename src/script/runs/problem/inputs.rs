@@ -105,6 +105,7 @@ pub(super) fn inputs(
         let base = type_of_input(name, flat).at(place)?;
         let followed = followed(input, table, times, (flat, &base), notes).at(place)?;
         declare((name, &base, place), &followed, enclosing).at(place)?;
+        notes.warn_about(table, outside(name, &followed, x.values));
         if !followed.is_decided {
             undecided.push(Undecided { name: name.clone(), assumed: followed.between });
         }
@@ -144,6 +145,31 @@ fn type_of_input(name: &str, flat: &FlatModel) -> Result<BaseType, Fault> {
         base @ (BaseType::Real | BaseType::Integer | BaseType::Boolean) => Ok(base.clone()),
         _ => bail!(BAD_OPTION, "`{name}` is not a number; it cannot follow a column of the data"),
     }
+}
+
+/// What an input does before its first sample and after its last one, where there are data.
+fn outside(name: &str, followed: &Followed, times: &[f64]) -> Vec<String> {
+    let (Some(&first), Some(&last)) = (followed.samples.first(), followed.samples.last()) else {
+        return Vec::new();
+    };
+    let place = |row: Option<&usize>| row.map_or(String::new(), |row| followed.column.place(*row));
+    let known = || times.iter().copied().filter(|time| time.is_finite());
+    let mut sentences = Vec::new();
+    if known().any(|time| time < first.0) {
+        let place = place(followed.rows.first());
+        sentences.push(format!(
+            "the input `{name}` has its first value in {place}, at {} s; before that it is {}",
+            first.0, first.1
+        ));
+    }
+    if known().any(|time| time > last.0) {
+        let place = place(followed.rows.last());
+        sentences.push(format!(
+            "the input `{name}` has its last value in {place}, at {} s; after that it is {}",
+            last.0, last.1
+        ));
+    }
+    sentences
 }
 
 /// The gaps of an input in words, and what it does there.
@@ -227,11 +253,15 @@ fn followed(
         ),
         _ => (Between::Constant, true),
     };
+    // Before the first value and after the last one it does something else, which is said apart.
+    let inside = column.values.get(rows[0]..=rows[rows.len() - 1]).unwrap_or_default();
+    let is_torn = inside.iter().any(|value| !value.is_finite());
+    let there = match is_torn {
+        true => format!("; there the input {}", between.in_gaps()),
+        false => String::new(),
+    };
     let missing = column.missing.iter();
-    notes.warn_about(
-        table,
-        missing.map(|sentence| format!("{sentence}; there the input {}", between.in_gaps())),
-    );
+    notes.warn_about(table, missing.map(|sentence| format!("{sentence}{there}")));
     Ok(Followed { samples, column, rows, between, is_decided })
 }
 

@@ -3,7 +3,7 @@
 
 use super::data::{Notes, listed};
 use super::dynamics;
-use super::enclosing_class::{self, EnclosingClass, own_name};
+use super::enclosing_class::{self, EnclosingClass, QuotedNames, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
 use super::flat::attribute;
 use super::segments::Segment;
@@ -18,6 +18,7 @@ use crate::script::models::simulation::flat_model_of;
 use crate::script::models::translated::Translated;
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
+use crate::syntax::visit::Rewrite as _;
 use std::fmt::Write;
 
 /// An experiment whose parameters are set.
@@ -108,7 +109,9 @@ impl Setting<'_> {
     fn tied(&self, name: &str, text: &str) -> Result<Expression, Diagnostic> {
         let places = &self.file.places;
         let read = enclosing_class::expression(text, places.tied.get(name).copied());
-        read.map_err(|error| error.or_at(places.parameter(name)))
+        let mut read = read.map_err(|error| error.or_at(places.parameter(name)))?;
+        QuotedNames.expression(&mut read);
+        Ok(read)
     }
 
     /// The values that the experiment itself sets.

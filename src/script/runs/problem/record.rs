@@ -56,14 +56,14 @@ fn stop(fields: &Fields<'_>) -> Result<Table, Fault> {
         }
     }
     put_number(&mut stop, "seconds", fields.get("seconds")?);
-    fields.optional("target", &mut stop)?;
+    fields.optional("target", "target", &mut stop)?;
     Ok(stop)
 }
 
 fn parameter(fields: &Fields<'_>) -> Result<Table, Fault> {
     let mut entry = Table::new();
-    fields.optional("fixed", &mut entry)?;
-    fields.optional("start", &mut entry)?;
+    fields.optional("fixed", "fixed", &mut entry)?;
+    fields.optional("start", "start", &mut entry)?;
     put_text(&mut entry, "tied", fields.text("tied")?);
     let [min, max]: [f64; 2] = [fields.get("min")?, fields.get("max")?];
     if [min, max] != [0.0, 0.0] || (!entry.contains_key("fixed") && !entry.contains_key("tied")) {
@@ -108,7 +108,17 @@ fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
     put(&mut entry, "start", fields.pairs("states", "stateValues")?);
     put(&mut entry, "validation", fields.get::<bool>("validation")?);
     put(&mut entry, "weight", fields.get::<f64>("weight")?);
+    fields.optional("startTime", "start_time", &mut entry)?;
     put_number(&mut entry, "stop_time", fields.get("stopTime")?);
+    let cuts: Vec<f64> = fields.get("cutTimes")?;
+    match (fields.get::<bool>("cutAtGaps")?, cuts.is_empty()) {
+        (true, false) => {
+            bail!(BAD_OPTION, "`cutAtGaps` and `cutTimes` are both given"; help: "give one of them")
+        }
+        (true, true) => put(&mut entry, "segments", "auto"),
+        (false, false) => put(&mut entry, "segments", cuts),
+        (false, true) => {}
+    }
     put_number(&mut entry, "tolerance", fields.get("tolerance")?);
     Ok(entry)
 }
@@ -139,11 +149,11 @@ impl Fields<'_> {
         }
     }
 
-    /// A vector of one number or none.
-    fn optional(&self, name: &str, entry: &mut Table) -> Result<(), Fault> {
+    /// A vector of one number or none, as the entry `key`.
+    fn optional(&self, name: &str, key: &str, entry: &mut Table) -> Result<(), Fault> {
         match self.get::<Vec<f64>>(name)?.as_slice() {
             [] => {}
-            [value] => put(entry, name, *value),
+            [value] => put(entry, key, *value),
             more => {
                 bail!(BAD_OPTION, "`{name}` contains {} values; at most one is allowed", more.len())
             }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::script::world::{Files as _, MemoryWorld};
+use crate::value::FromValue as _;
 
 mod inference;
 mod values;
@@ -221,15 +222,66 @@ fn resumes_with(problem: &str, other: (&str, String)) {
 }
 
 /// The record of a script, the file and the report of both are the same problem.
+/// Dymola's result files name time `Time`.
+#[test]
+fn a_result_file_of_dymola_gives_its_parameters_back() {
+    let simulate = "openModel(\"tank.mo\"); simulateModel(\"Free(h(start = 3))\", stopTime = 4, \
+        tolerance = 1e-9, resultFile = \"d\")";
+    for x in ["", "x = \"time\"\n"] {
+        let problem = SIMPLE.replace("data = \"d.csv\"\n", &format!("data = \"d.mat\"\n{x}"));
+        let mut session = Session::new(Box::new(world(&[("p.toml", problem)])));
+        let status = session.run_text("s.mos", simulate);
+        assert_eq!(status.code, 0);
+        let solution = solve(&mut session, Path::new("p.toml"), &RunOptions::default());
+        let solution = solution.unwrap_or_else(|errors| panic!("{x}: {}", errors[0].message));
+        let found: Vec<f64> = solution.parameters.iter().map(|p| p.value).collect();
+        assert!((found[0] - 1.0).abs() < 1e-5 && (found[1] - 3.0).abs() < 1e-4, "{found:?}");
+    }
+}
+
+/// A world with the records that scripts put problems together from.
+fn with_records(world: MemoryWorld) -> MemoryWorld {
+    ["package.mo", "Problem.mo", "Free.mo", "Experiment.mo"].iter().fold(world, |world, name| {
+        let path = Path::new("GAPILib").join(name);
+        let bytes = crate::models::read(&Path::new(crate::models::FOLDER).join(&path)).unwrap();
+        world.with_file(path, bytes)
+    })
+}
+
+#[test]
+fn records_of_scripts_begin_and_cut_experiments() {
+    let data = table("time,q", |t| (3.0 * (-t).exp()).to_string());
+    let mut session = Session::new(Box::new(with_records(world(&[("d.csv", data)]))));
+    let problem = |options: &str| {
+        format!(
+            "identify(GAPILib.Problem(modelName = \"Free\", files = {{\"tank.mo\"}}, parameters = \
+             {{GAPILib.Free(\"k\", min = 0.1, max = 5), GAPILib.Free(\"h\", min = 0.1, max = 10, \
+             initialValue = true)}}, experiments = {{GAPILib.Experiment(data = \"d.csv\", outputs = \
+             {{\"q\"}}, tolerance = 1e-9, {options})}}, method = \"levenberg_marquardt\"))"
+        )
+    };
+    // Parts with separate initial values begin where their first rows are.
+    for (options, expected) in [
+        ("startTime = {-1}", vec![1.0, 3.0 * 1.0f64.exp()]),
+        ("startTime = {0}", vec![1.0, 3.0]),
+        ("cutTimes = {2}", vec![1.0, 3.0, 3.0 * (-2.0f64).exp()]),
+    ] {
+        let status = session.run_text("s.mos", &format!("(found, f, d) = {}", problem(options)));
+        assert_eq!(status.code, 0, "{options}");
+        let found = Vec::<f64>::from_value(session.variable("found").unwrap().clone()).unwrap();
+        assert_eq!(found.len(), expected.len(), "{options}: {found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-5 * expected, "{options}: {found}, {expected}");
+        }
+    }
+    let both = problem("cutAtGaps = true, cutTimes = {2}");
+    assert_ne!(session.run_text("s.mos", &both).code, 0);
+}
+
 #[test]
 fn records_of_scripts_are_the_problems_of_files() {
     let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
-    let mut world = world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]);
-    for name in ["package.mo", "Problem.mo", "Free.mo", "Experiment.mo"] {
-        let path = Path::new("GAPILib").join(name);
-        let bytes = crate::models::read(&Path::new(crate::models::FOLDER).join(&path)).unwrap();
-        world = world.with_file(path, bytes);
-    }
+    let world = with_records(world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]));
     let streams = world.streams();
     let mut session = Session::new(Box::new(world));
     let script = "

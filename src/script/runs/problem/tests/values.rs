@@ -119,18 +119,53 @@ fn two_cells(t: f64) -> f64 {
 }
 
 #[test]
+fn inputs_that_begin_late_or_end_early_and_units_without_another_are_named() {
+    // y of the mixer with K = 2, u[1] = 1 from the start on, u[2] = 0.
+    let exact = |t: f64| 2.0 * (1.0 - (-t).exp());
+    let text = (0..17).map(|k| f64::from(k) / 4.0).map(|t| {
+        let known = (1.0..=3.0).contains(&t);
+        let u = if known { "1" } else { "" };
+        format!("{t},{},{u},0\n", 1000.0 * exact(t))
+    });
+    let data = format!("time,y [mV],a,b\n{}", text.collect::<String>());
+    let entries = "outputs = { y = { column = \"y\", factor = 1e-3 } }\n\
+        inputs = { \"u[1]\" = \"a\", \"u[2]\" = \"b\" }";
+    let problem = "model = \"Mixer\"\n[method]\nname = \"levenberg_marquardt\"\n\
+        [parameters]\nK = { min = 0.1, max = 10 }";
+    let solution = found(problem, entries, &data);
+    value(&solution, "K", 2.0);
+    let said = |solution: &Result<Solution, String>| {
+        let findings = &solution.as_ref().unwrap().findings;
+        findings.iter().map(|one| one.sentence.clone()).collect::<Vec<_>>().join("\n")
+    };
+    let notes = said(&solution);
+    for words in [
+        "`u[1]` has its first value in line 6, at 1 s; before that it is 1",
+        "`u[1]` has its last value in line 14, at 3 s; after that it is 1",
+    ] {
+        assert!(notes.contains(words), "{words}: {notes}");
+    }
+    assert!(!notes.contains("there the input"), "none is missing inside: {notes}");
+    assert!(!notes.contains("mV"), "{notes}");
+    let plain = said(&found(problem, &entries.replace(", factor = 1e-3", ""), &data));
+    assert!(plain.contains("`y` is in mV, but `y` has no unit"), "{plain}");
+}
+
+#[test]
 fn elements_are_fixed_tied_set_started_and_constrained() {
     let data = table("time,y", |t| two_cells(t).to_string());
     let outputs = "outputs = { y = \"y\" }";
     let head = "model = \"Stack\"\n[parameters]\n\"c[1].k\" = { min = 0.01, max = 10 }\n";
     let fixed = found(&format!("{head}\"c[2].k\" = {{ fixed = 3 }}"), outputs, &data);
     value(&fixed, "c[1].k", 0.5);
-    let tied = found(&format!("{head}\"c[2].k\" = {{ tied = \"6*c[1].k\" }}"), outputs, &data);
-    value(&tied, "c[1].k", 0.5);
+    for tie in ["\"6*c[1].k\"", "'6*\"c[1].k\"'"] {
+        let tied = found(&format!("{head}\"c[2].k\" = {{ tied = {tie} }}"), outputs, &data);
+        value(&tied, "c[1].k", 0.5);
+    }
     let set = found(head, &format!("{outputs}\nset = {{ \"c[2].k\" = 3, \"p[2]\" = 1 }}"), &data);
     value(&set, "c[1].k", 0.5);
     let both = format!(
-        "constraints = [\"c[1].k < c[2].k\"]\n{head}\"c[2].k\" = {{ min = 0.01, max = 10 }}"
+        "constraints = [\"c[1].k < c[2].k\", '\"c[1].k\" < \"c[2].k\"']\n{head}\"c[2].k\" = {{ min = 0.01, max = 10 }}"
     );
     let both = found(&both, outputs, &data);
     value(&both, "c[1].k", 0.5);
