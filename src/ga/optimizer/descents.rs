@@ -16,6 +16,9 @@ const AGREEING: usize = 3;
 /// the bounds.
 const AGREEING_AT_BOUND: usize = 8;
 const AGREEING_IF_BAD: usize = 15;
+/// So many where none of them ended at a minimum by its gradient: at a kink, on a flat part, within the
+/// errors of the simulation.
+const UNTESTED: usize = 8;
 /// A minimum that leaves more than this part of the squares of the measured values fits badly.
 const BAD: f64 = 0.1;
 /// Minima not found yet, expected, above which a search goes on.
@@ -194,16 +197,29 @@ impl Pool {
         let all = self.reports().into_iter().zip(&self.independent);
         let reports: Vec<DescentReport> =
             all.filter(|(_, independent)| **independent).map(|(report, _)| report).collect();
-        let ended = reports
-            .iter()
-            .filter(|report| !matches!(report.ending, DescentEnd::StepLimit | DescentEnd::Failed));
+        let reached = reached(&reports);
+        // Where the gradient does not show the minimum, the steps of a descent end there, too.
+        let is_there = |report: &&DescentReport| reached == 0 && report.group == 0;
+        let ended = reports.iter().filter(|report| match report.ending {
+            DescentEnd::Failed => false,
+            DescentEnd::StepLimit => is_there(report),
+            _ => true,
+        });
         let n = ended.clone().count();
         let mut different: Vec<usize> = ended.map(|report| report.group).collect();
         different.sort_unstable();
         different.dedup();
         let (n, w) = (n as f64, different.len() as f64);
         let expected = w * (n - 1.0) / (n - w - 2.0);
-        reached(&reports) >= self.agreeing() && n > w + 2.0 && expected <= w + MISSING
+        let agreeing = self.agreeing();
+        let agree = match reached {
+            0 => {
+                let has_ended = self.best().is_some_and(|best| self.descents[best].has_ended());
+                has_ended && reports.iter().filter(is_there).count() >= agreeing.max(UNTESTED)
+            }
+            count => count >= agreeing,
+        };
+        agree && n > w + 2.0 && expected <= w + MISSING
     }
 
     /// How many descents must agree on the best minimum.

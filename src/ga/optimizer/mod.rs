@@ -183,6 +183,13 @@ pub const METHODS: &[&Entry<dyn Method>] = &[
     &nsga2::ENTRY,
 ];
 
+/// Residuals below this many times the error of the simulation come from the simulation.
+pub const FROM_THE_SOLVER: f64 = 100.0;
+
+/// Derivatives are as wrong as the simulation, or somewhat more: steps that change the residuals by less
+/// than this many times its error are steps of errors.
+const ERRORS: f64 = 10.0;
+
 /// The test of a minimum at a point of the unit cube from the weighted residuals there and their
 /// derivatives (residuals × genes); `noise` and `size` as in [`Setup`].
 pub fn test_minimum(
@@ -196,8 +203,15 @@ pub fn test_minimum(
     let model = linear_model::LinearModel::new(residuals, jacobian, point.len(), tolerance);
     let offset = model.offset(point);
     let length = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
-    // Residuals within the errors of the simulation: nothing better can be told from it.
-    let is_exact = length == 0.0 || !offset.blind && offset.rank > 0 && length <= noise * size;
+    let error = noise * size;
+    // What the step to the minimum of the linear model would change of the residuals.
+    let freedom = residuals.len().saturating_sub(offset.rank).max(1) as f64;
+    let moved = offset.relative.map(|own| own * (offset.rank as f64 / freedom).sqrt() * length);
+    // Residuals of the size of the errors of the simulation: a change of this size cannot be told.
+    let is_told =
+        length > FROM_THE_SOLVER * error || moved.is_none_or(|moved| moved > ERRORS * error);
+    let is_near = length <= error || !is_told;
+    let is_exact = length == 0.0 || !offset.blind && offset.rank > 0 && is_near;
     (offset, is_exact || levenberg_marquardt::is_minimum(&offset, length, accuracy, MINIMUM))
 }
 

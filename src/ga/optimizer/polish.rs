@@ -1,16 +1,19 @@
-//! A search and multistart together: rounds of the search (a genetic algorithm, say) and a Latin
-//! hypercube give the starts of descents by least squares. The search itself is not disturbed. It
-//! all ends when the best minimum was reached from several starts and few others can be expected.
+//! A search and multistart together. First come descents by least squares from the best points of a
+//! Latin hypercube: where they agree on one minimum, that is all. Where they do not, rounds of the
+//! search (a genetic algorithm, say) and further hypercubes give further starts. The search itself
+//! is not disturbed. It all ends when the best minimum was reached from several starts and few
+//! others can be expected.
 
 use super::descents::Pool;
-use super::exchange::Exchanges;
+use super::exchange::{Exchanges, Scale};
 use super::levenberg_marquardt::Accuracy;
 use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::sampling::latin_hypercube;
 use crate::ga::{Genomes, Mrg32k3a};
 
-/// Questions of the search between two rounds of descents; before the first there is one.
+/// Questions of the search between two rounds of descents; before the first there is none.
 const QUESTIONS: usize = 10;
 /// Points of a Latin hypercube: this many for each gene, within limits.
 const POINTS: usize = 10;
@@ -19,10 +22,16 @@ const SAMPLE: [usize; 2] = [30, 150];
 /// minimum so far.
 const FROM_SEARCH: usize = 1;
 const FROM_SAMPLE: usize = 2;
+/// Descents of the first round: the fewest with which one minimum can be enough.
+const FIRST_ROUND: usize = 5;
 const FROM_BEST: usize = 1;
 /// Genes of the best minimum that are drawn anew at most. Minima often differ in few: a frequency,
 /// the place of a peak (ENSO has 9 genes, and two periods decide).
 const REDRAWN: usize = 3;
+/// One of so many points of a hypercube has small values where a linear range begins at 0, down to this
+/// part of the range: a diffusivity of 3e-14 in 0 .. 1e-9 is found, which the other points never show.
+const SMALL_EVERY: usize = 3;
+const SMALLEST: f64 = 1e-10;
 /// Individuals of a question remembered as candidates.
 const CANDIDATES: usize = 24;
 /// Individuals nearer than this in every gene are the same start.
@@ -53,6 +62,8 @@ pub struct Polished {
     /// The best of those beside the best minimum.
     beside: Vec<(Vec<f64>, f64)>,
     exchanges: Exchanges,
+    /// What the genes mean, where that is known.
+    scales: Vec<Scale>,
 }
 
 impl Polished {
@@ -60,7 +71,7 @@ impl Polished {
     pub fn new(search: Box<dyn Optimizer>, setup: &Setup, rng: Mrg32k3a) -> Polished {
         let points = (POINTS * setup.genes.len()).clamp(SAMPLE[0], SAMPLE[1]);
         let alone = Polished::alone(setup, points, FROM_SAMPLE);
-        Polished { search: Some(search), stage: Stage::Search(1), rng, ..alone }
+        Polished { search: Some(search), rng, ..alone }
     }
 
     /// Descents from hypercubes alone, with so many points and descents in a round.
@@ -77,6 +88,7 @@ impl Polished {
             sampled: Vec::new(),
             beside: Vec::new(),
             exchanges: Exchanges::new(setup.scales.clone()),
+            scales: setup.scales.clone(),
         }
     }
 
@@ -87,9 +99,14 @@ impl Polished {
         let mut starts: Vec<Vec<f64>> = self.given.take().into_iter().collect();
         let mut independent = 0;
         let smallest = self.pool.smallest();
+        let is_first = self.search.is_some() && self.pool.best_place().is_none();
+        let from_sample = match is_first {
+            true => FIRST_ROUND - starts.len(),
+            false => self.from_sample,
+        };
         let sources = [
             (&mut self.found, FROM_SEARCH),
-            (&mut self.sampled, self.from_sample),
+            (&mut self.sampled, from_sample),
             (&mut self.beside, FROM_BEST),
         ];
         for (number, (candidates, count)) in sources.into_iter().enumerate() {
@@ -120,7 +137,13 @@ impl Polished {
     fn sample(&mut self, batch: &mut Genomes) {
         let n = batch.n_genes();
         let sample = latin_hypercube(n, self.points, &mut self.rng);
-        sample.rows().for_each(|genome| batch.push(genome));
+        for (number, genome) in sample.rows().enumerate() {
+            let row: Vec<f64> = genome.to_vec();
+            match number % SMALL_EVERY == SMALL_EVERY - 1 {
+                true => batch.push(&self.small(row)),
+                false => batch.push(&row),
+            }
+        }
         let Some(best) = self.pool.best_place().filter(|_| n > 1) else { return };
         let mut genome = best.to_vec();
         for other in latin_hypercube(n, self.points, &mut self.rng).rows() {
@@ -132,6 +155,20 @@ impl Polished {
             }
             batch.push(&genome);
         }
+    }
+
+    /// The point with the genes whose linear range begins or ends at 0 at small values: such a range
+    /// does not say of which order of magnitude the value is.
+    fn small(&self, mut genome: Vec<f64>) -> Vec<f64> {
+        for (gene, scale) in genome.iter_mut().zip(&self.scales).filter(|(_, s)| !s.logarithmic) {
+            let from = |part: f64| elementary::powf(SMALLEST, 1.0 - part);
+            if scale.min == 0.0 {
+                *gene = from(*gene);
+            } else if scale.max == 0.0 {
+                *gene = 1.0 - from(1.0 - *gene);
+            }
+        }
+        genome
     }
 
     fn next_stage(&mut self) {
