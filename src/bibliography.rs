@@ -157,6 +157,10 @@
 //! - **walter-pronzato-1997** — É. Walter, L. Pronzato: Identification of parametric models from
 //!   experimental data. Springer, 1997.
 //!
+//! <a id="heinrich-schuster-1996"></a>
+//! - **heinrich-schuster-1996** — R. Heinrich, S. Schuster: The regulation of cellular systems.
+//!   Chapman & Hall, 1996.
+//!
 //! <a id="deb-agrawal-1995"></a>
 //! - **deb-agrawal-1995** — K. Deb, R. B. Agrawal: Simulated binary crossover for continuous search
 //!   space. Complex Systems 9(2), 1995, 115–148.

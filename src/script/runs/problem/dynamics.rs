@@ -3,6 +3,7 @@
 
 use super::enclosing_class::{EnclosingClass, own_name};
 use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
+use super::invariants::invariants;
 use crate::bail;
 use crate::causalize::CausalizedDae;
 use crate::diag::Fault;
@@ -76,7 +77,9 @@ pub(super) fn delayed(
     Ok(name)
 }
 
-/// The class around the model begins with all derivatives zero.
+/// The class around the model begins with all derivatives zero; sums of states that the equations
+/// conserve keep the value of the start values, which the derivatives do not determine. Returns these
+/// sums, as they are written.
 ///
 /// # Errors
 ///
@@ -86,7 +89,7 @@ pub(super) fn steady(
     entry: &ExperimentEntry,
     model: &CausalizedDae,
     enclosing: &mut EnclosingClass,
-) -> Result<(), Fault> {
+) -> Result<Vec<String>, Fault> {
     let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);
     if let Some(name) = given.map(|(name, _)| name).or_else(|| entry.start.keys().next()) {
         bail!(BAD_OPTION, "the initial value of `{name}` cannot be chosen in a steady-state experiment"; help: "remove `steady_state` or the initial value");
@@ -94,11 +97,18 @@ pub(super) fn steady(
     if model.states.is_empty() {
         bail!(BAD_OPTION, "`{}` has no states, so `steady_state` has no meaning", file.model; help: "remove `steady_state`");
     }
+    let (invariants, mut sums) = (invariants(model), Vec::new());
     enclosing.equations.push_str("initial equation\n");
-    for state in &model.states {
+    for (place, state) in model.states.iter().enumerate() {
         let name = model.dae.variables[state.0 as usize].name.to_string();
-        _ = writeln!(enclosing.equations, "  der({name}) = 0;");
+        if let Some(invariant) = invariants.iter().find(|own| own.pivot == place) {
+            let [sum, start] = invariant.sides(model);
+            _ = writeln!(enclosing.equations, "  {sum} = {start};");
+            sums.push(format!("{sum} = {start}"));
+        } else {
+            _ = writeln!(enclosing.equations, "  der({name}) = 0;");
+        }
         enclosing.release(&name, entry.places.data);
     }
-    Ok(())
+    Ok(sums)
 }

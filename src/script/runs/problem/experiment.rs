@@ -259,7 +259,13 @@ impl Source<'_> {
         if entry.steady_state {
             let class = enclosing.load(session, &base, here)?;
             let plain = simulation::translated(session, &class)?.program.clone();
-            dynamics::steady(file, entry, plain.sorted(), &mut enclosing).map_err(one)?;
+            let sums = dynamics::steady(file, entry, plain.sorted(), &mut enclosing);
+            notes.about(
+                self.table,
+                sums.map_err(one)?.iter().map(|sum| {
+                    format!("the steady state keeps the sum that the equations conserve: {sum}")
+                }),
+            );
         }
         let name = enclosing.load(session, &base, here)?;
         Ok(Class { name, parameters, observed, is_driven, undecided })

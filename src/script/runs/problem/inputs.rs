@@ -295,9 +295,10 @@ fn declare(
         Between::Constant => "ConstantSegments",
         Between::Linear => "LinearSegments",
     };
+    // Before `startTime`, which is 0 by default, the table has no values.
     _ = writeln!(
         enclosing.declarations,
-        "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], smoothness = Modelica.Blocks.Types.Smoothness.{smoothness}, extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
+        "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], startTime = -Modelica.Constants.inf, shiftTime = 0, smoothness = Modelica.Blocks.Types.Smoothness.{smoothness}, extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
         rows.join(";")
     );
     enclosing.elements.push((table.clone(), format!("the data of {name}")));

@@ -25,6 +25,7 @@ mod forms;
 mod inference;
 mod inputs;
 mod interpolation;
+mod invariants;
 mod live;
 pub(in crate::script) mod operators;
 mod own_fitness;

@@ -35,6 +35,16 @@ fn world(files: &[(&str, String)]) -> MemoryWorld {
     files.iter().fold(world, |world, (name, text)| world.with_file(name, text))
 }
 
+/// A world with the libraries of the program, which have the tables that inputs follow.
+fn shipped(world: MemoryWorld, path: &Path) -> MemoryWorld {
+    let inside = Path::new(crate::models::FOLDER).join(path);
+    if let Some(bytes) = crate::models::read(&inside) {
+        return world.with_file(path, bytes);
+    }
+    let names = crate::models::list(&inside).unwrap_or_default();
+    names.iter().fold(world, |world, name| shipped(world, &path.join(name)))
+}
+
 /// Times 0, 0.25 … 4 with a value each.
 fn table(header: &str, row: impl Fn(f64) -> String) -> String {
     let lines: Vec<String> =

@@ -108,6 +108,52 @@ fn a_steady_state_before_the_experiment() {
     assert!(refusal(&with_start, &data).contains("the initial value of `h` cannot be chosen"));
 }
 
+/// A ⇌ B keeps the sum of both: the rest state has the sum of the start values, a = 2/3 of it for
+/// kf = 1 and kr = 2, and the step of the rate at t = 1 leads to 1/2.
+#[test]
+fn a_steady_state_keeps_what_the_equations_conserve() {
+    let exchange = "model Exchange\n  parameter Real kf = 1.5, kr = 1.5, total = 3;\n  Real a(start = \
+                    total, fixed = true), b(start = 0, fixed = true), v;\nequation\n  v = kf*(if \
+                    time < 1 then 1 else 2)*a - kr*b;\n  der(a) = -v;\n  der(b) = v;\nend Exchange;\n";
+    let problem = "model = \"Exchange\"\nfiles = [\"m.mo\"]\n[parameters]\nkf = { min = 0.1, max = 10 }\nkr = \
+                   { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\nx = \"time\"\n\
+                   outputs = { a = \"a\" }\nsteady_state = true\n";
+    let data = table("time,a", |t| {
+        let a = if t < 1.0 { 2.0 } else { 1.5 + 0.5 * (-4.0 * (t - 1.0)).exp() };
+        a.to_string()
+    });
+    let files = [("p.toml", problem.to_owned()), ("d.csv", data), ("m.mo", exchange.to_owned())];
+    let solution = solved(&files);
+    for (name, expected) in [("kf", 1.0), ("kr", 2.0)] {
+        let found = value(&solution, name);
+        assert!((found - expected).abs() < 1e-3, "{name} = {found}");
+    }
+    let said = solution.findings.iter().find(|finding| finding.sentence.contains("conserve"));
+    assert!(said.unwrap().sentence.ends_with("a + b = total"), "{said:?}");
+}
+
+/// Rest at u = 1 from t = -1 on, and a step to 2 at t = 0: a goes from 1 to 2 with the rate k = 1.
+#[test]
+fn inputs_have_their_values_before_0() {
+    let model = "model Inflow\n  parameter Real k = 2;\n  input Real u;\n  Real a;\nequation\n  \
+                 der(a) = k*(u - a);\nend Inflow;\n";
+    let problem = "model = \"Inflow\"\nfiles = [\"m.mo\"]\n[parameters]\nk = { min = 0.1, max = \
+                   10 }\n[[experiment]]\ndata = \"d.csv\"\nx = \"time\"\ninputs = { u = { column = \
+                   \"u\", interpolation = \"hold\" } }\noutputs = { a = \"a\" }\nsteady_state = true\n";
+    let a = |t: f64| 2.0 - (-t.max(0.0)).exp();
+    let row = |k: i32| {
+        let t = 0.25 * f64::from(k);
+        format!("{t},{},{}\n", if t < 0.0 { 1 } else { 2 }, a(t))
+    };
+    let data = format!("time,u,a\n{}", (-4..9).map(row).collect::<String>());
+    let world = shipped(world(&[("p.toml", problem.to_owned()), ("d.csv", data)]), Path::new(""));
+    let mut session = Session::new(Box::new(world.with_file("m.mo", model)));
+    let solution = solve(&mut session, Path::new("p.toml"), &RunOptions::default());
+    let solution = solution.unwrap_or_else(|errors| panic!("{}", errors[0].message));
+    assert!((value(&solution, "k") - 1.0).abs() < 1e-4, "{}", value(&solution, "k"));
+    assert!(solution.series[0].rmse < 1e-5, "{}", solution.series[0].rmse);
+}
+
 #[test]
 fn delays_are_estimated() {
     let later = |t: f64| if t < 0.6 { 0.8 } else { 0.8 * height(t - 0.6, 1.0, 0.0) };

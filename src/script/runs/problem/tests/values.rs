@@ -86,16 +86,6 @@ fn found(parameters: &str, experiment: &str, data: &str) -> Result<Solution, Str
     })
 }
 
-/// A world with the libraries of the program, which have the tables that inputs follow.
-fn shipped(world: MemoryWorld, path: &Path) -> MemoryWorld {
-    let inside = Path::new(crate::models::FOLDER).join(path);
-    if let Some(bytes) = crate::models::read(&inside) {
-        return world.with_file(path, bytes);
-    }
-    let names = crate::models::list(&inside).unwrap_or_default();
-    names.iter().fold(world, |world, name| shipped(world, &path.join(name)))
-}
-
 #[track_caller]
 fn value(solution: &Result<Solution, String>, name: &str, exact: f64) {
     let solution = solution.as_ref().unwrap_or_else(|error| panic!("{error}"));
