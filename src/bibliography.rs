@@ -157,6 +157,18 @@
 //! - **walter-pronzato-1997** — É. Walter, L. Pronzato: Identification of parametric models from
 //!   experimental data. Springer, 1997.
 //!
+//! <a id="raue-2009"></a>
+//! - **raue-2009** — A. Raue, C. Kreutz, T. Maiwald, J. Bachmann, M. Schilling, U. Klingmüller,
+//!   J. Timmer: Structural and practical identifiability analysis of partially observed dynamical
+//!   models by exploiting the profile likelihood. Bioinformatics 25(15), 2009, 1923–1929.
+//!
+//! <a id="satterthwaite-1946"></a>
+//! - **satterthwaite-1946** — F. E. Satterthwaite: An approximate distribution of estimates of
+//!   variance components. Biometrics Bulletin 2(6), 1946, 110–114.
+//!
+//! <a id="meier-1953"></a>
+//! - **meier-1953** — P. Meier: Variance of a weighted mean. Biometrics 9(1), 1953, 59–73.
+//!
 //! <a id="heinrich-schuster-1996"></a>
 //! - **heinrich-schuster-1996** — R. Heinrich, S. Schuster: The regulation of cellular systems.
 //!   Chapman & Hall, 1996.

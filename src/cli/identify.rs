@@ -196,6 +196,7 @@ pub(super) fn solve_one(
         Ok(watch) => watch,
         Err(code) => return Ended::Not(code),
     };
+    let _unheard = limits::end_unheard(world.stopping());
     let mut session = session::open(global, world);
     let options = run_options(arguments);
     session.grant_input(problem);

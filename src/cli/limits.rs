@@ -17,6 +17,9 @@ const INTERVAL: Duration = Duration::from_millis(10);
 /// How long a run may take to notice that it has to stop; commands of scripts and steps of
 /// simulations look much more often than that.
 const NOTICE: Duration = Duration::from_secs(2);
+/// How long a run may take to notice that the user stops it: one simulation of a large model that cannot
+/// be cancelled, as for the curves of the report, must not cost the result.
+const HEARD: Duration = Duration::from_secs(15);
 /// How long it may take then to write what it has found.
 const ENDING: Duration = Duration::from_secs(60);
 /// A process that has grown to this multiple of its limit is not waited for.
@@ -88,6 +91,32 @@ pub(super) fn watch(
             std::thread::sleep(INTERVAL);
         }
     })
+}
+
+/// Ends the process where the user stops it and the run does not notice, as while models are compiled or
+/// data are prepared: there is nothing to be saved then.
+pub(super) fn end_unheard(stopping: Stopping) -> Watch {
+    let watch = Watch { over: Arc::default() };
+    let over = Arc::clone(&watch.over);
+    let work = move || {
+        let mut asked: Option<Instant> = None;
+        while !over.load(Ordering::Relaxed) && !stopping.noticed.load(Ordering::Relaxed) {
+            if stopping.flag.load(Ordering::Relaxed) {
+                let asked = asked.get_or_insert_with(Instant::now);
+                let is_limit = stopping.reason.lock().is_ok_and(|reason| reason.is_some());
+                if asked.elapsed() > HEARD && !is_limit {
+                    live::restore_terminal();
+                    terminal::eprint("interrupted\n");
+                    #[allow(clippy::exit, reason = "the thread that works does not listen")]
+                    std::process::exit(130)
+                }
+            }
+            std::thread::sleep(INTERVAL);
+        }
+    };
+    // Without the thread, a second signal ends the process.
+    let _ = std::thread::Builder::new().name("interrupts".to_owned()).spawn(work);
+    watch
 }
 
 /// Watches a command that has nothing to write when it is stopped: the process ends at once.

@@ -4,6 +4,7 @@
 use super::live::Live;
 use super::options::Colour;
 use crate::diag::{visible, visible_coloured};
+use crate::identify::problem::Status;
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
 use crate::script::world::Screen;
@@ -85,6 +86,20 @@ impl Terminal {
 }
 
 impl Screen for Terminal {
+    fn status(&mut self) -> Option<Status> {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return None;
+        }
+        self.end_view();
+        self.finish_progress();
+        Some(Arc::new(|text: &str| {
+            // The line is written over by the next one.
+            let line = format!("\r\u{1b}[K{text}");
+            let mut err = std::io::stderr().lock();
+            let _ = err.write_all(line.as_bytes()).and_then(|()| err.flush());
+        }))
+    }
+
     fn wants_view(&mut self) -> bool {
         self.draws && self.live.is_due()
     }

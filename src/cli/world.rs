@@ -10,6 +10,7 @@ use super::output::Output;
 use super::signals;
 use super::terminal::Terminal;
 use crate::external::c::CCompiler;
+use crate::identify::problem::Status;
 use crate::identify::ranks::Ranks;
 use crate::models;
 use crate::script::access::policy::{Access, Grant};
@@ -360,6 +361,10 @@ impl Screen for SystemWorld {
 
     fn progress(&mut self, progress: &Progress) {
         self.screen.progress(progress);
+    }
+
+    fn status(&mut self) -> Option<Status> {
+        self.screen.status()
     }
 
     fn wants_view(&mut self) -> bool {

@@ -260,7 +260,7 @@ impl Ending<'_> {
 
     /// What the run has found, and what follows from it at a minimum.
     fn inferred(&self, run: &mut Run, stop: &str) -> Result<Solution, Fault> {
-        let mut solution = Solution::of(run, stop, Vec::new())?;
+        let mut solution = Solution::settled(run, |run| Solution::of(run, stop, Vec::new()))?;
         if solution.ending.kind != EndingKind::Minimum {
             return Ok(solution);
         }
@@ -480,8 +480,8 @@ fn sentence(
 /// The solution without what holds at a minimum only.
 fn without_verdicts(mut solution: Solution) -> Solution {
     for parameter in &mut solution.parameters {
-        (parameter.deviation, parameter.interval) = (None, None);
-        (parameter.determined, parameter.verdict) = (None, None);
+        parameter.deviation = None;
+        parameter.forget();
     }
     (solution.correlations, solution.condition) = (None, None);
     solution.findings.clear();

@@ -15,6 +15,7 @@ use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };
 use crate::elementary;
+use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::identify::table::significant;
 
 /// Probability of any false alarm among the residual tests of a solution.
@@ -23,13 +24,17 @@ const FAMILY: f64 = 0.01;
 const TESTS: usize = 8;
 /// Fewer points than these are not tested for patterns: their tests have no power at the level.
 const FEW: usize = 8;
-/// Residuals below this many times the error of the simulation come from the simulation.
-const FROM_THE_SOLVER: f64 = 100.0;
 /// Standard deviations of series that differ by less than this are not worth a word.
 const UNLIKE: f64 = 3.0;
 /// At a minimum the residuals are orthogonal to the derivatives by every parameter that is free to
 /// follow them: the limit of the test of a minimum, with room for the error of the simulation.
 const FOLLOWED: f64 = 0.01;
+/// So many equal values at an end of the data, and so many times as many as elsewhere, are no chance.
+const TIED: usize = 3;
+/// Rows that are listed.
+const LISTED: usize = 10;
+/// Outliers are farther from the fit than this many standard deviations of the others.
+const FAR: f64 = 2.0;
 /// So many outliers are a distribution.
 const MANY: usize = 3;
 
@@ -68,7 +73,7 @@ pub fn residual_findings(
     }
     let repeated = |k: usize| statistics.repeated.iter().any(|pair| pair.0 == k);
     let all = series(problem, statistics);
-    let alpha = FAMILY / (TESTS * all.len() + 1) as f64;
+    let alpha = FAMILY / (TESTS * all.len() + pairs(problem).len() + 1) as f64;
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
     // What a prior says against the data is told of the prior.
     let is_prior = |k: usize| problem.series[k].experiment == PRIOR;
@@ -86,10 +91,12 @@ pub fn residual_findings(
             continue;
         }
         findings.extend(poor_fit(problem, k, own, &raw));
+        findings.extend(saturated(&problem.series[k], own, &mut suspects));
         findings.extend(of_series(own, (simulated, &rest), alpha, &mut suspects));
     }
     findings.extend(chi_square(problem, statistics, &suspects, alpha));
     findings.extend(unlike_series(problem, statistics, &all, alpha));
+    findings.extend(common_errors(problem, &all, alpha));
     findings
 }
 
@@ -166,8 +173,8 @@ fn no_noise(own: &Own<'_>) -> Finding {
     Finding::new(
         FindingKind::NoNoise,
         format!(
-            "The residuals of {} are as small as the errors of the simulation: these data have \
-             no noise, so standard errors and intervals do not apply to measured data.",
+            "The residuals of {} are as small as the errors of the simulation: the fit is exact. \
+             These data have no noise, so there are no standard errors and no intervals.",
             own.label
         ),
     )
@@ -375,13 +382,14 @@ fn spread(
 }
 
 fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
-    let found: Vec<usize> =
-        (0..own.points.len()).filter(|&j| suspects.contains(&own.points[j])).collect();
+    let (mut found, kept): (Vec<usize>, Vec<usize>) =
+        (0..own.points.len()).partition(|&j| suspects.contains(&own.points[j]));
+    let unit = rms(&kept.iter().map(|&j| own.residuals[j]).collect::<Vec<f64>>());
+    // A point that the fit has followed away from the others is not far from it.
+    found.retain(|&j| own.residuals[j].abs() >= FAR * unit);
     if found.is_empty() {
         return None;
     }
-    let kept = (0..own.points.len()).filter(|j| !found.contains(j)).map(|j| own.residuals[j]);
-    let unit = rms(&kept.collect::<Vec<f64>>());
     let mut rows: Vec<(usize, f64)> =
         found.iter().map(|&j| (own.row(own.points[j]), own.residuals[j] / unit)).collect();
     rows.sort_by_key(|row| row.0);
@@ -439,9 +447,7 @@ fn chi_square(
     if ErrorModel::of(problem) != ErrorModel::Known || !statistics.believed {
         return None;
     }
-    let kept = (0..statistics.residuals.len()).filter(|j| !outliers.contains(j));
-    let square = |j: usize| statistics.shares[j] * elementary::powi(statistics.residuals[j], 2);
-    let value: f64 = kept.map(square).sum();
+    let value = statistics.chi_square(problem, outliers);
     let freedom = statistics.freedom - outliers.len() as f64;
     let [lower, upper] = chi_square_tails(value, freedom);
     let p = 2.0 * lower.min(upper);
@@ -476,6 +482,86 @@ fn chi_square(
         )
         .statistic(p, alpha),
     )
+}
+
+/// Equal values at an end of the data, as of a sensor that is saturated there: the fit goes on where they
+/// stay. They are no outliers.
+fn saturated(series: &super::Series, own: &Own<'_>, suspects: &mut Vec<usize>) -> Option<Finding> {
+    let value = |point: usize| series.y[point - own.first];
+    let size = rms(&own.residuals);
+    let end = |sign: f64| {
+        let most = series.y.iter().map(|y| sign * y).fold(f64::NEG_INFINITY, f64::max);
+        let (tied, rest): (Vec<usize>, Vec<usize>) =
+            (0..own.points.len()).partition(|&j| sign * value(own.points[j]) == most);
+        let mut others: Vec<f64> = rest.iter().map(|&j| value(own.points[j])).collect();
+        others.sort_by(f64::total_cmp);
+        others.dedup();
+        // Rounded data have equal values everywhere.
+        let usual = rest.len() as f64 / others.len().max(1) as f64;
+        let beyond =
+            -sign * tied.iter().map(|&j| own.residuals[j]).sum::<f64>() / tied.len() as f64;
+        let is_one =
+            tied.len() >= TIED && tied.len() as f64 >= TIED as f64 * usual && beyond > size;
+        is_one.then_some((
+            tied,
+            if sign > 0.0 { ["largest", "above"] } else { ["smallest", "below"] },
+        ))
+    };
+    let (tied, [which, where_fit]) = end(1.0).or_else(|| end(-1.0))?;
+    let points: Vec<usize> = tied.iter().map(|&j| own.points[j]).collect();
+    suspects.retain(|j| !points.contains(j));
+    let mut rows: Vec<usize> = points.iter().map(|&point| own.row(point)).collect();
+    rows.sort_unstable();
+    let listed: Vec<String> = rows.iter().take(LISTED).map(usize::to_string).collect();
+    let more = if rows.len() > LISTED { ", ..." } else { "" };
+    let sentence = format!(
+        "{} values of {} are equal to its {which} one, {} (rows {}{more}), and the fit lies \
+         {where_fit} them: the sensor may be saturated there. Omit these rows; as they are, they \
+         bias the estimates.",
+        rows.len(),
+        own.label,
+        significant(value(points[0]), 5),
+        listed.join(", ")
+    );
+    Some(Finding::new(FindingKind::Data, sentence).series(&own.label).rows(rows))
+}
+
+/// Pairs of series that were measured at the same points of one experiment.
+fn pairs(problem: &Problem) -> Vec<(usize, usize)> {
+    let series = &problem.series;
+    let is_pair = |(a, b): &(usize, usize)| {
+        let (a, b) = (&series[*a], &series[*b]);
+        a.experiment == b.experiment && a.x == b.x && a.y != b.y && a.x.len() >= FEW
+    };
+    let all = (0..series.len()).flat_map(|a| (a + 1..series.len()).map(move |b| (a, b)));
+    all.filter(is_pair).collect()
+}
+
+/// Errors that two outputs have in common.
+fn common_errors(problem: &Problem, all: &[Own<'_>], alpha: f64) -> Vec<Finding> {
+    let one = |(a, b): (usize, usize)| {
+        let (a, b) = (&all[a], &all[b]);
+        let centred = |own: &Own<'_>| -> Vec<f64> {
+            let mean = mean(&own.residuals);
+            own.residuals.iter().map(|r| r - mean).collect()
+        };
+        let correlation = cosine(&centred(a), &centred(b));
+        let freedom = a.residuals.len() as f64 - 2.0;
+        let t = correlation * (freedom / (1.0 - correlation * correlation)).sqrt();
+        let p = student_two_sided(t, freedom);
+        let sentence = format!(
+            "The residuals of {} and {} are correlated ({}): the two outputs have errors in common, \
+             but count as independent, so that standard errors are too small.",
+            a.label,
+            b.label,
+            significant(correlation, 2)
+        );
+        (p < alpha).then(|| {
+            let finding = Finding::new(FindingKind::Autocorrelation, sentence);
+            finding.series(&a.label).series(&b.label).statistic(p, alpha)
+        })
+    };
+    pairs(problem).into_iter().filter_map(one).collect()
 }
 
 /// Series that share one variance although their residuals differ in size.

@@ -6,7 +6,7 @@ use super::checks::rms;
 use super::minimum_test::is_at_minimum;
 use super::run::Cause;
 use super::{
-    Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma, curvature,
+    Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma, curvature, held,
     limits, saddle,
 };
 use crate::diag::Fault;
@@ -39,6 +39,7 @@ pub fn conclude(run: &mut Run) {
         .and_then(|()| rescale(run))
         .map(|()| limits::finish(run))
         .map(|()| curvature::finish(run))
+        .and_then(|()| held::finish(run))
         .and_then(|()| tolerance(run));
     if let Err(fault) = done {
         let sentence = format!("The fit could not be repeated: {}.", fault.message);
@@ -189,7 +190,8 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
 fn at_minimum(run: &mut Run) -> bool {
     let is_at_limit =
         run.best.as_ref().is_some_and(|b| limits::along(&run.problem, &b.values).is_some());
-    if run.cause() != Cause::Converged || run.conclusion.by_curvature.is_some() || is_at_limit {
+    let is_known = run.conclusion.by_curvature.is_some() || !run.conclusion.held.is_empty();
+    if run.cause() != Cause::Converged || is_known || is_at_limit {
         return true;
     }
     let Some((is_minimum, simulations)) = is_at_minimum(run) else { return true };

@@ -15,4 +15,7 @@ pub struct Conclusion {
     /// Where the best point was found a minimum by second derivatives: the reach of the differences
     /// that they come from, as a fraction of the ranges.
     pub by_curvature: Option<f64>,
+    /// Parameters that are held at the best point by a kink of the objective, or that can change to
+    /// the end of their range without any effect on it.
+    pub held: Vec<usize>,
 }

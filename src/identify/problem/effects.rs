@@ -109,7 +109,9 @@ pub fn effect(
         How::InSteps
     };
     let mut found = Finite { ends: [None; 2], how, within: Vec::new() };
-    let Some(mut scan) = Scan::new(problem, evaluation, values, k)? else {
+    let Some(mut scan) =
+        Scan::new((problem, evaluation), values, k, statistics.quantile_of_squares())?
+    else {
         return Ok((Effect::Finite(found), simulations));
     };
     for (end, places) in found.ends.iter_mut().zip(&places) {
@@ -192,10 +194,10 @@ struct Scan<'a> {
 impl<'a> Scan<'a> {
     /// `None` where the fitness is no sum of squares or there are not more points than parameters.
     fn new(
-        problem: &'a Problem,
-        evaluation: &'a Evaluation,
+        (problem, evaluation): (&'a Problem, &'a Evaluation),
         values: &[f64],
         k: usize,
+        quantile: f64,
     ) -> Result<Option<Scan<'a>>, Fault> {
         let freedom = problem.n_points().saturating_sub(values.len());
         let Some(mut refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
@@ -203,7 +205,7 @@ impl<'a> Scan<'a> {
         };
         let Some((best, smallest)) = refit.from(values, Some(k))? else { return Ok(None) };
         let residuals = refit.plain_residuals(&best);
-        let limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
+        let limit = limit(problem, smallest, [freedom as f64, quantile], residuals.as_deref());
         let within = vec![Within { values: best, left: 1.0, deviations: Vec::new() }];
         Ok(Some(Scan { refit, problem, k, smallest, limit, within }))
     }

@@ -10,7 +10,7 @@
 
 use super::minimum_test::tested;
 use super::run::Cause;
-use super::{Linearization, Problem, Run, curvature, limits};
+use super::{Linearization, Problem, Run, curvature, held, limits};
 use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
@@ -87,6 +87,18 @@ pub struct OtherMinimum {
 }
 
 impl Ending {
+    /// Where the best point was not tested.
+    pub(super) fn unjudged(why: &str) -> Ending {
+        Ending {
+            kind: EndingKind::Stopped,
+            words: format!(
+                "Whether this is a minimum was not tested: {why}. There are no standard errors, no \
+                 intervals and no statements on identifiability."
+            ),
+            ..Ending::default()
+        }
+    }
+
     /// Tests the best point of a run.
     pub(super) fn of(run: &Run, values: &[f64]) -> Ending {
         let descents = run.descents();
@@ -118,6 +130,16 @@ impl Ending {
                 words: by_curvature(offset),
                 derivatives: Some(derivatives(&found)),
                 simulations: found.simulations + simulations,
+            };
+        }
+        if !is_minimum && held::is_minimum(run, values, &found) {
+            return Ending {
+                kind: EndingKind::Minimum,
+                relative_offset: None,
+                reached,
+                words: by_holding(run),
+                derivatives: Some(derivatives(&found)),
+                simulations: found.simulations,
             };
         }
         let kind = if is_minimum { EndingKind::Minimum } else { otherwise(run, &descents) };
@@ -174,9 +196,10 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
     };
     let why = match kind {
         EndingKind::Minimum => {
-            let by = reached.filter(|[n, _]| *n > 0).map_or_else(String::new, |[n, of]| {
-                format!(", reached by {n} of {of} descent{}", if of == 1 { "" } else { "s" })
-            });
+            // One descent alone says nothing of other starts.
+            let by = reached.filter(|[n, of]| *n > 0 && *of > 1);
+            let by =
+                by.map_or_else(String::new, |[n, of]| format!(", reached by {n} of {of} descents"));
             return format!("Minimum found ({measure}){by}.");
         }
         EndingKind::StepLimit => "the step limit of the descent was reached",
@@ -217,6 +240,16 @@ fn at_limits(
         derivatives: Some(derivatives(found)),
         simulations: found.simulations,
     })
+}
+
+fn by_holding(run: &Run) -> String {
+    let names: Vec<&str> =
+        run.conclusion.held.iter().map(|&k| run.problem.parameters[k].name.as_str()).collect();
+    format!(
+        "Minimum found: no other value of {} is better when the others are fitted again. The \
+         objective has a kink or is flat there, so that its derivative does not show the minimum.",
+        names.join(" and ")
+    )
 }
 
 fn by_curvature(offset: f64) -> String {

@@ -15,6 +15,9 @@ use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+/// Shows what is being done.
+pub type Status = Arc<dyn Fn(&str) + Send + Sync>;
+
 /// Individuals remembered.
 const REMEMBERED: usize = 8192;
 
@@ -56,6 +59,7 @@ pub struct Evaluation {
     rows: Vec<f64>,
     memory: Memory,
     cancel: Option<Arc<AtomicBool>>,
+    status: Option<Status>,
     /// What the tolerance of the settings is multiplied with.
     tolerance: f64,
 }
@@ -114,6 +118,7 @@ impl Evaluation {
             rows: Vec::new(),
             memory: Memory::default(),
             cancel: None,
+            status: None,
             tolerance: 1.0,
         })
     }
@@ -163,6 +168,18 @@ impl Evaluation {
             worker.cancel_by(flag.clone());
         }
         self.cancel = flag;
+    }
+
+    /// From now on what is being done is shown this way.
+    pub fn show_by(&mut self, status: Option<Status>) {
+        self.status = status;
+    }
+
+    /// Shows what is being done; nothing by an empty text.
+    pub fn show(&self, text: &str) {
+        if let Some(status) = &self.status {
+            status(text);
+        }
     }
 
     /// Evaluates every individual; the genomes are those of the method. `None` when simulations

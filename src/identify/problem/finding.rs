@@ -87,6 +87,14 @@ impl FindingKind {
         )
     }
 
+    /// Findings about single parameters that a profile replaces.
+    pub(super) fn is_about_profile(self) -> bool {
+        matches!(
+            self,
+            FindingKind::PracticallyNonIdentifiable | FindingKind::Interval | FindingKind::Missing
+        )
+    }
+
     /// Findings that need no minimum.
     pub(super) fn holds_anywhere(self) -> bool {
         matches!(

@@ -338,6 +338,73 @@ fn a_coarse_solver_is_found_and_the_fit_repeated() {
     assert!((solution.parameters[1].value - 0.4).abs() < 2e-3, "{:?}", solution.parameters);
 }
 
+/// A sensor that stays at 4 where the output is higher: its rows are named, and none of them is an
+/// outlier. Rounded data have equal values, too, and nothing is said of them.
+#[test]
+fn equal_values_at_the_end_of_the_data_are_a_saturated_sensor() {
+    let white = Noise::new(16).white(40, 0.02);
+    let clipped: Vec<f64> =
+        grid(40).iter().zip(&white).map(|(x, e)| (decay(&TRUTH, *x) + e).min(4.0)).collect();
+    let truth: Vec<f64> = grid(40).iter().map(|x| decay(&TRUTH, *x)).collect();
+    let noise = clipped.iter().zip(&truth).map(|(y, f)| y - f).collect();
+    let solution = one(decay, noise, Sigma::Unknown);
+    let found = solution.findings.iter().find(|f| f.sentence.contains("saturated")).unwrap();
+    let rows: Vec<usize> = (1..=40).filter(|row| clipped[row - 1] == 4.0).collect();
+    assert_eq!(found.rows, rows, "{}", found.sentence);
+    let outliers = solution.findings.iter().filter(|f| f.kind == FindingKind::Outlier);
+    assert!(outliers.flat_map(|f| &f.rows).all(|row| !rows.contains(row)));
+    let rounded =
+        truth.iter().zip(&white).map(|(f, e)| ((f + e) * 4.0).round() / 4.0 - f).collect();
+    let solution = one(decay, rounded, Sigma::Unknown);
+    assert!(!solution.findings.iter().any(|f| f.sentence.contains("saturated")));
+}
+
+/// No residual that is smaller than two standard deviations of the others is called far from the fit.
+#[test]
+fn outliers_are_far_from_the_fit() {
+    for seed in 0..40 {
+        let mut noise = Noise::new(200 + seed).white(20, 0.05);
+        noise[0] -= 1.5;
+        noise[1] -= 0.8;
+        noise[2] -= 0.3;
+        let solution = one(decay, noise, Sigma::Unknown);
+        for finding in solution.findings.iter().filter(|f| f.kind == FindingKind::Outlier) {
+            let said = finding.sentence.split(" standard deviations").filter_map(|part| {
+                part.rsplit('(').next().and_then(|number| number.parse::<f64>().ok())
+            });
+            assert!(
+                said.clone().count() > 0 && said.clone().all(|r| r.abs() >= 2.0),
+                "{finding:?}"
+            );
+        }
+    }
+}
+
+/// Errors that two outputs share are found, and independent ones are not taken for them.
+#[test]
+fn errors_in_common_are_named() {
+    let common = Noise::new(17).white(40, 0.1);
+    let own = Noise::new(18).white(40, 0.03);
+    let both = [
+        (decay as Formula, common.clone(), Sigma::Unknown),
+        (rise, common.iter().zip(&own).map(|(a, b)| a + b).collect(), Sigma::Unknown),
+    ];
+    let (_, solution) = solved(problem(&both, &TRUTH, [0.01, 20.0], None));
+    let is_said = |solution: &Solution| {
+        solution.findings.iter().any(|f| f.sentence.contains("errors in common"))
+    };
+    assert!(is_said(&solution), "{:?}", solution.findings);
+    let alarms = (0..100).filter(|seed| {
+        let mut noise = Noise::new(300 + seed);
+        let both = [
+            (decay as Formula, noise.white(40, 0.1), Sigma::Unknown),
+            (rise, noise.white(40, 0.1), Sigma::Unknown),
+        ];
+        is_said(&solved(problem(&both, &TRUTH, [0.01, 20.0], None)).1)
+    });
+    assert!(alarms.count() <= 3);
+}
+
 /// Outputs with their measured values and errors.
 type Measured = Vec<(Formula, Vec<f64>, Sigma)>;
 
@@ -383,6 +450,31 @@ fn unlike(noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
         (decay, noise.white(25, 0.02), Sigma::Estimated),
         (rise, noise.white(25, 0.5), Sigma::Estimated),
     ]
+}
+
+/// Six points for each of two estimated sigmas: with Student's distribution for all points intervals
+/// cover 87 to 89 %.
+fn few_unlike(noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
+    vec![
+        (decay, noise.white(6, 0.02), Sigma::Estimated),
+        (rise, noise.white(6, 0.1), Sigma::Estimated),
+    ]
+}
+
+/// Both outputs have the same sigma, so that their weights are least known.
+fn few_alike(noise: &mut Noise) -> Measured {
+    vec![
+        (decay, noise.white(6, 0.1), Sigma::Estimated),
+        (rise, noise.white(6, 0.1), Sigma::Estimated),
+    ]
+}
+
+#[test]
+fn intervals_with_few_points_for_each_sigma_cover_the_truth() {
+    for outputs in [few_unlike as fn(&mut Noise) -> _, few_alike] {
+        let found = coverage(1600, None, outputs);
+        assert!((0.925..=0.975).contains(&found), "{found}");
+    }
 }
 
 /// The bounds are 95 % and four standard deviations of the count of 2 × 60 intervals, two of each

@@ -146,9 +146,9 @@ pub fn test(run: &Run, values: &[f64], along: &Along, found: &Linearization) -> 
     Some(AtLimits { offset, is_minimum, is_stationary, multipliers, step })
 }
 
-/// Goes to the minimum at the limits beside which the search has ended, if it has ended by itself.
+/// Goes to the minimum at the limits beside which the search has ended, unless the user has ended it.
 pub fn finish(run: &mut Run) {
-    if run.problem.inference.constraints.is_empty() || run.cause() != Cause::Converged {
+    if run.problem.inference.constraints.is_empty() || run.cause() == Cause::User {
         return;
     }
     let Some((false, simulations)) = is_at_minimum(run) else { return };

@@ -8,20 +8,13 @@
 //!
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 2.
 
+use super::sensitivities::Sensitivities;
+use super::separable::Combination;
 use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
 /// Parts of a direction below this are none.
 const PART: f64 = 0.02;
-
-/// Sensitivities at a point: one column for each parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensitivities {
-    /// Where.
-    pub values: Vec<f64>,
-    /// Derivatives of the weighted points.
-    pub columns: Vec<Vec<f64>>,
-}
 
 /// How the parameters of a group work together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +23,8 @@ pub enum Form {
     Sum,
     /// Only products of their powers matter, everywhere.
     Product,
+    /// Only a function of them matters, everywhere.
+    Function,
     /// Known of the best point alone.
     Local,
 }
@@ -46,6 +41,8 @@ pub struct NonIdentifiable {
     /// What is determined: factors of a sum or exponents of a product, for each of `parameters`.
     /// Of a group known locally, relative changes that together have no effect.
     pub combinations: Vec<Vec<f64>>,
+    /// The function that is determined, where its form is known.
+    pub function: Option<Combination>,
     /// Changes of the parameters that together have no effect as far as derivatives tell; relative
     /// ones of a product.
     pub directions: Vec<Vec<f64>>,
@@ -161,10 +158,37 @@ fn non_identifiable(
     let combinations = match form {
         Form::Sum => orthogonal(&changes, n),
         Form::Product => orthogonal(&relative, n),
-        Form::Local => relative.iter().map(|direction| largest_is_one(direction)).collect(),
+        Form::Function | Form::Local => {
+            relative.iter().map(|direction| largest_is_one(direction)).collect()
+        }
     };
     let directions = if form == Form::Product { relative } else { changes };
-    NonIdentifiable { excess: null.len(), parameters, form, combinations, directions }
+    let excess = null.len();
+    NonIdentifiable { excess, parameters, form, combinations, function: None, directions }
+}
+
+impl Sensitivities {
+    /// Whether some parameters have no full rank here, either.
+    pub fn is_deficient(&self, group: &NonIdentifiable, tolerance: f64) -> bool {
+        let members = group.parameters.iter();
+        let columns = members.map(|&k| self.columns[k].clone()).collect();
+        let own = Sensitivities { values: Vec::new(), columns };
+        let found = rank_alone(&own, tolerance);
+        found.is_some_and(|rank| rank + group.excess <= group.parameters.len())
+    }
+}
+
+/// How many directions have an effect, columns of unit length.
+fn rank_alone(point: &Sensitivities, tolerance: f64) -> Option<usize> {
+    let norms: Vec<f64> = point.columns.iter().map(|column| norm(column)).collect();
+    let is_usable = norms.iter().all(|norm| norm.is_finite() && *norm > 0.0);
+    let n = norms.len();
+    let rows = point.columns.first().map_or(0, Vec::len).max(n);
+    let scaled = DMatrix::from_fn(rows, n, |row, k| {
+        point.columns[k].get(row).map_or(0.0, |value| value / norms[k])
+    });
+    let found = SingularValues::of(&scaled).filter(|_| is_usable)?;
+    Some(found.s.iter().filter(|own| **own > tolerance * found.largest()).count())
 }
 
 fn nonzero(value: f64) -> f64 {

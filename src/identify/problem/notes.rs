@@ -2,13 +2,14 @@
 
 use super::checks::residual_findings;
 use super::effects::{Effect, How};
-use super::statistics::BEYOND;
+use super::verdict_notes::about_parameter;
+use super::verdicts::Judged;
 use super::{
-    ErrorModel, FailureRegion, Finding, FindingKind, Form, NonIdentifiable, OtherMinimum, Profiles,
-    Run, Severity, Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
+    ErrorModel, FailureRegion, Finding, FindingKind, Form, NonIdentifiable, OtherMinimum, Run,
+    Severity, Solution, SolvedSeries, Statistics,
 };
 use crate::elementary;
-use crate::identify::table::significant;
+use crate::identify::table::{digits_of, ends, significant};
 use crate::identify::uncertainty_given;
 
 /// Beyond this condition number digits of the sensitivities are lost.
@@ -24,17 +25,16 @@ const DOMINANT: f64 = 3.0;
 /// parameters' own errors; beyond ten the model is said not to hold.
 const RATIOS: [f64; 2] = [1.5, 10.0];
 
-/// All findings, most important first.
+/// All findings, most important first. `judged`: how each parameter was judged.
 pub fn findings(
     solution: &Solution,
     run: &Run,
-    statistics: &Statistics,
-    effects: &[(usize, Effect)],
+    (statistics, effects, judged): (&Statistics, &[(usize, Effect)], &[Judged]),
     simulated: &[f64],
 ) -> Vec<Finding> {
     let mut findings: Vec<Finding> = about_count(solution, run, statistics).into_iter().collect();
     findings.extend(about_effects(solution, effects));
-    findings.extend(about_parameters(solution, statistics));
+    findings.extend(about_parameters(solution, statistics, judged));
     if run.problem.objectives.len() > 1 {
         findings.push(several_objectives(solution));
     }
@@ -130,32 +130,29 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
     effects.iter().map(one).collect()
 }
 
-fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding> {
+fn about_parameters(
+    solution: &Solution,
+    statistics: &Statistics,
+    judged: &[Judged],
+) -> Vec<Finding> {
     let mut findings = Vec::new();
     let name = |k: usize| solution.parameters[k].name.as_str();
     for group in &statistics.non_identifiable {
         let kind = match group.form {
-            Form::Sum | Form::Product => FindingKind::StructurallyNonIdentifiable,
+            Form::Sum | Form::Product | Form::Function => FindingKind::StructurallyNonIdentifiable,
             Form::Local => FindingKind::PracticallyNonIdentifiable,
         };
         let names = group.parameters.iter().map(|&k| name(k));
-        let sentence = non_identifiable(group, &name) + &determined(group, solution, statistics);
+        let mut sentence = non_identifiable(group, &name);
+        if !judged.contains(&Judged::Exact) {
+            sentence += &determined(group, solution, statistics);
+        }
         findings.push(Finding::new(kind, sentence).parameters(names));
     }
-    let alone = |k: usize| {
-        !statistics.without_effect.contains(&k)
-            && !statistics.non_identifiable.iter().any(|group| group.parameters.contains(&k))
-    };
-    for (k, parameter) in solution.parameters.iter().enumerate() {
-        if parameter.verdict == Some(Verdict::PracticallyNonIdentifiable) && alone(k) {
-            let finding =
-                Finding::new(FindingKind::PracticallyNonIdentifiable, undetermined(parameter));
-            findings.push(finding.parameters([parameter.name.as_str()]));
-        }
-        if parameter.at_bound {
-            findings.push(at_bound(parameter, k, statistics));
-        }
+    for (parameter, judged) in solution.parameters.iter().zip(judged) {
+        findings.extend(about_parameter(parameter, judged));
     }
+    findings.extend(super::valley::determined(solution, statistics));
     let pairs = solution.strongly_correlated();
     if !pairs.is_empty() {
         let text = |(k, l, c): &(usize, usize, f64)| {
@@ -178,41 +175,6 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
         findings.push(finding.statistic(condition, ILL_CONDITIONED));
     }
     findings
-}
-
-/// Whether the data want a parameter beyond its bound, from the derivative of the sum there.
-fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> Finding {
-    let [min, max] = parameter.range;
-    let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
-    let end = significant(if upper { max } else { min }, 5);
-    let side = if upper { "upper" } else { "lower" };
-    let ends = statistics.at_bounds.iter().flat_map(|found| &found.ends);
-    let pull = ends.filter(|end| end.parameter == k).map(|end| end.pull).next();
-    let what = match pull {
-        Some(pull) if pull > BEYOND => format!(
-            "the optimum lies beyond it, by {} standard errors for a linear model, so it has no \
-             interval, and the intervals of the others are valid for {} = {end}. Widen the \
-             range, or question the model if the bound is physical",
-            significant(pull, 2),
-            parameter.name
-        ),
-        Some(_) => {
-            "the data are consistent with that bound and limit only the distance from it".to_owned()
-        }
-        None if (parameter.value - if upper { max } else { min }).abs() > 0.0 => {
-            "the best value lies just inside, and the interval ends with the range".to_owned()
-        }
-        None => "the best value may lie beyond it".to_owned(),
-    };
-    let finding = Finding::new(
-        FindingKind::AtBound,
-        format!("{} lies at the {side} end {end} of its search range: {what}.", parameter.name),
-    );
-    let finding = finding.parameters([parameter.name.as_str()]);
-    match pull {
-        Some(pull) => finding.statistic(pull, BEYOND),
-        None => finding,
-    }
 }
 
 fn several_objectives(solution: &Solution) -> Finding {
@@ -392,18 +354,30 @@ fn non_identifiable<'a>(group: &NonIdentifiable, name: &impl Fn(usize) -> &'a st
         match group.form {
             Form::Sum => sum(parts),
             Form::Product => product(parts),
-            Form::Local => {
+            Form::Function | Form::Local => {
                 let change =
                     |(name, part): (&&str, &f64)| format!("{name} by {} %", significant(*part, 3));
                 parts.map(change).collect::<Vec<_>>().join(", ")
             }
         }
     };
+    if group.form == Form::Function {
+        return match &group.function {
+            Some(function) => format!(
+                "{all} are structurally non-identifiable from data of this kind: the model depends \
+                 only on {}. Fix {} of them.",
+                function.text(name),
+                fix(group.excess)
+            ),
+            None => format!(
+                "{all} are structurally non-identifiable from data of this kind: wherever they were \
+                 changed, changes of the others have made good for it. Fix {} of them.",
+                fix(group.excess)
+            ),
+        };
+    }
     let combinations: Vec<String> = group.combinations.iter().map(what).collect();
-    let fix = match group.excess {
-        1 => "one".to_owned(),
-        excess => excess.to_string(),
-    };
+    let fix = fix(group.excess);
     if group.form == Form::Local {
         return format!(
             "{all} are not separately identifiable near the best values: changing {} \
@@ -416,6 +390,30 @@ fn non_identifiable<'a>(group: &NonIdentifiable, name: &impl Fn(usize) -> &'a st
          on {}. Fix {fix} of them.",
         combinations.join(" and ")
     )
+}
+
+fn fix(excess: usize) -> String {
+    if excess == 1 { "one".to_owned() } else { excess.to_string() }
+}
+
+/// Value and interval of a function of parameters that is determined.
+fn determined_function(
+    group: &NonIdentifiable,
+    solution: &Solution,
+    statistics: &Statistics,
+) -> Option<String> {
+    let function = group.function.as_ref()?;
+    let values: Vec<f64> = solution.parameters.iter().map(|own| own.value).collect();
+    let (value, gradient) = function.at(&values);
+    let reach = statistics.quantile * statistics.error_of(&gradient)?;
+    let name = |k: usize| solution.parameters[k].name.as_str();
+    let digits = digits_of(reach, value.abs());
+    let interval = ends([value - reach, value + reach], value);
+    Some(format!(
+        " {} is {} (95 % interval {interval}).",
+        function.text(&name),
+        significant(value, digits)
+    ))
 }
 
 /// Value and interval of what the model depends on: " a + b is 0.7005 (95 % interval 0.696 .. 0.705)."
@@ -446,6 +444,9 @@ fn determined(group: &NonIdentifiable, solution: &Solution, statistics: &Statist
         let [value, low, high] = [value, low, high].map(|value| significant(value, 4));
         (value != "NaN").then(|| format!("{text} is {value} (95 % interval {low} .. {high})"))
     };
+    if group.form == Form::Function {
+        return determined_function(group, solution, statistics).unwrap_or_default();
+    }
     if group.form == Form::Local {
         return String::new();
     }
@@ -484,72 +485,6 @@ fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
         [one] => format!("{above}/{one}"),
         several => format!("{above}/({})", several.join("*")),
     }
-}
-
-pub fn undetermined(parameter: &SolvedParameter) -> String {
-    let [min, max] = parameter.range;
-    let (low, high) = match parameter.interval {
-        Some([low, high]) => (low.clamp(min, max), high.clamp(min, max)),
-        None => (min, max),
-    };
-    format!(
-        "{} is practically non-identifiable from these data: it can have any value between {} \
-         and {}{}.",
-        parameter.name,
-        significant(low, 4),
-        significant(high, 4),
-        if (low, high) == (min, max) { ", its whole search range" } else { "" }
-    )
-}
-
-/// What the profiles say beyond the linear intervals.
-pub fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
-        let [min, max] = parameter.range.map(|end| significant(end, 4));
-        let name = &parameter.name;
-        if let [Some(cut), _] | [_, Some(cut)] = profile.cut {
-            let sentence = format!(
-                "The profile likelihood of {name} ends at {}, before its 95 % limit: beyond it a \
-                 constraint is violated or simulations fail.",
-                significant(cut, 4)
-            );
-            let finding = Finding::new(FindingKind::Missing, sentence);
-            findings.push(finding.parameters([name.as_str()]));
-            continue;
-        }
-        let sentence = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
-            [Some(_), Some(_)] => continue,
-            [None, None] => format!(
-                "By its profile likelihood, {name} can have any value in its search range, {min} \
-                 to {max}."
-            ),
-            [Some(low), None] => format!(
-                "By its profile likelihood, {name} is at least {low}; the data do not bound it \
-                 up to the end {max} of its range."
-            ),
-            [None, Some(high)] => format!(
-                "By its profile likelihood, {name} is at most {high}; the data do not bound it \
-                 down to the end {min} of its range."
-            ),
-        };
-        let finding = Finding::new(FindingKind::PracticallyNonIdentifiable, sentence);
-        findings.push(finding.parameters([name.as_str()]));
-    }
-    if let Some((values, sum)) = &found.better {
-        let pairs = solution.parameters.iter().zip(values);
-        let values: Vec<String> =
-            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 6))).collect();
-        let sentence = format!(
-            "The profile likelihoods found a better fit ({}): {}. Run again with a larger budget \
-             or with these start values.",
-            significant(*sum, 7),
-            values.join(", ")
-        );
-        let finding = Finding::new(FindingKind::OtherMinimum, sentence);
-        findings.push(finding.severity(Severity::Serious));
-    }
-    findings
 }
 
 fn about_failures(region: &FailureRegion) -> Finding {

@@ -16,21 +16,25 @@ use crate::registry::BAD_OPTION;
 use crate::{bail, elementary};
 use serde::{Deserialize, Serialize};
 
-/// Values on each side of the best before the crossing is looked for.
-const SIDE: usize = 24;
-/// The first step, as a part of the half-width of the linear interval; each next one is larger.
+/// Values on each side of the best: from the smallest first step they come to the end of the range.
+const SIDE: usize = 64;
+/// The first step, as a part of the half-width of the linear interval; each next one is larger by the
+/// first factor, and by the second once a linear interval would have ended long ago.
 const FIRST: f64 = 0.3;
-const GROWTH: f64 = 1.4;
+const GROWTH: [f64; 2] = [1.4, 2.5];
+/// Steps of the first growth: together they are 15 times the half-width.
+const NEARBY: usize = 9;
 /// Limits of the first step, as a fraction of the range.
-const STEPS: [f64; 2] = [1e-7, 0.02];
+const STEPS: [f64; 2] = [1e-14, 0.02];
 /// Fits that locate a crossing, and those where the sum of squares jumps across the limit, as it
 /// does where something acts in steps.
-const CROSSING: usize = 5;
+const CROSSING: usize = 10;
 const JUMPING: usize = 30;
 /// A rise of this part of that to the limit between neighbours is a jump.
 const JUMP: f64 = 0.2;
-/// Places nearer than this in the range are the same.
+/// Places nearer than this in the range, or than this part of the bracket, are the same.
 const SAME: f64 = 1e-7;
+const SAME_OF_BRACKET: f64 = 1e-4;
 /// The sum of squares is this near to the limit at the crossing, relative to its rise.
 const NEAR: f64 = 1e-3;
 /// A fit that is better by more than this, relative, is another optimum.
@@ -45,12 +49,27 @@ pub struct Profile {
     pub points: Vec<[f64; 2]>,
     /// The sum of squares that the 95 % interval stays below.
     pub limit: f64,
-    /// The ends of that interval; `None` where it reaches the end of the range or is cut.
+    /// The ends of that interval about the best value; `None` where it reaches the end of the range,
+    /// is cut, or was not found.
     pub interval: [Option<f64>; 2],
+    /// Further parts of the 95 % set, about other minima.
+    #[serde(default)]
+    pub pieces: Vec<[Option<f64>; 2]>,
+    /// Whether each end was looked for as far as the range goes: the budget of simulations may end
+    /// before, or the user.
+    #[serde(default = "both")]
+    pub complete: [bool; 2],
+    /// Values of all parameters at the points within the limit.
+    #[serde(skip)]
+    pub valley: Vec<Vec<f64>>,
     /// The last values that could be simulated, where a constraint does not hold beyond or
     /// simulations fail: nothing is known from there on.
     #[serde(default)]
     pub cut: [Option<f64>; 2],
+}
+
+fn both() -> [bool; 2] {
+    [true; 2]
 }
 
 /// All profiles.
@@ -69,11 +88,16 @@ pub struct Profiles {
 pub struct Known<'a> {
     /// The minimum.
     pub best: &'a [f64],
-    /// Half-widths of the linear intervals where they are known.
+    /// Half-widths of the linear intervals where they are known, as fractions of the ranges.
     pub reach: &'a [Option<f64>],
-    /// Other minima: fits begin there too before a value is said not to fit, and intervals reach
-    /// to those that fit as well.
+    /// Other minima: fits begin there too before a value is said not to fit, and those that fit as
+    /// well have pieces of their own.
     pub others: &'a [Vec<f64>],
+    /// The root of the rise of the sum of squares within the 95 % limit, in units of the residual
+    /// variance.
+    pub quantile: f64,
+    /// Simulations that all profiles together may take.
+    pub budget: u64,
     /// Whether shards share the parameters among them.
     pub is_shared: bool,
 }
@@ -102,16 +126,29 @@ pub fn profiles(
     let Some(refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
         return Ok(None);
     };
-    let mut walk = Walk { refit, limit: 0.0, better: None, starts: Vec::new(), cut: None };
+    let mut walk = Walk {
+        refit,
+        limit: 0.0,
+        last: known.budget,
+        better: None,
+        starts: Vec::new(),
+        cut: None,
+        is_over: false,
+        valley: Vec::new(),
+    };
     let Some((best, smallest)) = walk.refit.from(known.best, None)? else { return Ok(None) };
     let residuals = walk.refit.plain_residuals(&best);
-    walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
+    walk.limit = limit(problem, smallest, [freedom as f64, known.quantile], residuals.as_deref());
     walk.starts.push(best.clone());
     walk.starts.extend(known.others.iter().cloned());
     let begun = walk.refit.simulations;
     let mut fault = None;
     let mut some = |places: &[usize]| -> Vec<One> {
-        let one = |place: &usize| walk.one(which[*place], known, (&best, smallest));
+        let one = |place: &usize| {
+            let name = &problem.parameters[which[*place]].name;
+            evaluation.show(&format!("profile of {name}, {} of {}", place + 1, which.len()));
+            walk.one(which[*place], known, (&best, smallest))
+        };
         let all: Result<Vec<One>, Fault> = places.iter().map(one).collect();
         all.unwrap_or_else(|failed| {
             fault = Some(failed);
@@ -155,8 +192,14 @@ fn joined(all: Vec<One>, begun: u64, smallest: f64) -> Profiles {
 /// The sum that the 95 % interval of one parameter stays below. Where sigma is known, S rises by
 /// χ²; else the ratio of S to the smallest is compared, with Student's quantile, which for estimated
 /// sigmas is the likelihood ratio as well, for S is n G with n ln G = -2 log L.
-/// Robust sums rise by a factor of their own.
-pub fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64]>) -> f64 {
+/// Robust sums rise by a factor of their own. `quantile`: that of the standard errors, which for
+/// estimated sigmas has fewer degrees of freedom than the residuals.
+pub fn limit(
+    problem: &Problem,
+    smallest: f64,
+    [freedom, quantile]: [f64; 2],
+    residuals: Option<&[f64]>,
+) -> f64 {
     let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
     let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
     if let Some(robust) = robust {
@@ -168,7 +211,7 @@ pub fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&
     match ErrorModel::of(problem) {
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
         ErrorModel::OneVariance | ErrorModel::Estimated => {
-            smallest * (1.0 + elementary::powi(student_quantile(0.975, freedom), 2) / freedom)
+            smallest * (1.0 + elementary::powi(quantile, 2) / freedom)
         }
     }
 }
@@ -176,11 +219,17 @@ pub fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&
 struct Walk<'a> {
     refit: Refit<'a>,
     limit: f64,
+    /// The last simulation of the budget.
+    last: u64,
     better: Option<(Vec<f64>, f64)>,
     /// Where fits begin before a value is said not to fit.
     starts: Vec<Vec<f64>>,
     /// The last value before one that could not be simulated.
     cut: Option<f64>,
+    /// Whether the budget was used up, or the simulations were cancelled.
+    is_over: bool,
+    /// Fits within the limit.
+    valley: Vec<Vec<f64>>,
 }
 
 /// From where a fit begins.
@@ -193,67 +242,98 @@ enum Care {
     AllStarts,
 }
 
+/// Connected values within the limit, as fractions of the range; `None` where it goes on to the end.
+#[derive(Clone, Copy)]
+struct Piece {
+    ends: [Option<f64>; 2],
+    cut: [Option<f64>; 2],
+    complete: [bool; 2],
+}
+
+impl Piece {
+    fn contains(&self, place: f64) -> bool {
+        self.ends[0].is_none_or(|low| place >= low - SAME)
+            && self.ends[1].is_none_or(|high| place <= high + SAME)
+    }
+}
+
 impl Walk<'_> {
     /// The profile of parameter `k` about the best values and their sum of squares.
     fn one(&mut self, k: usize, known: &Known<'_>, best: (&[f64], f64)) -> Result<One, Fault> {
         let free = self.refit.parameter(k).clone();
         let before = self.refit.simulations;
         self.better = None;
+        self.valley = vec![best.0.to_vec()];
         let mut points = vec![[best.0[k], best.1]];
-        let first = known.reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
-            (FIRST * half / free.slope(best.0[k]).abs()).clamp(STEPS[0], STEPS[1])
-        });
-        let (mut interval, mut cut) = ([None; 2], [None; 2]);
-        for (side, step) in [-first, first].into_iter().enumerate() {
-            interval[side] = self.side(&free, k, best, step, &mut points)?;
-            cut[side] = self.cut.take();
-        }
+        let first = known.reach.get(k).copied().flatten();
+        let first = first.map_or(STEPS[1], |reach| (FIRST * reach).clamp(STEPS[0], STEPS[1]));
+        let own = self.piece(&free, k, best, first, &mut points)?;
+        let others = self.pieces(&free, k, own, first, &mut points)?;
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let limit = self.limit;
+        let values = |piece: &Piece| piece.ends.map(|end| end.map(|place| free.value(place)));
         Ok(One {
-            profile: Profile { name: free.name.clone(), points, limit, interval, cut },
+            profile: Profile {
+                name: free.name.clone(),
+                points,
+                limit: self.limit,
+                interval: values(&own),
+                pieces: others.iter().map(values).collect(),
+                complete: own.complete,
+                cut: own.cut,
+                valley: std::mem::take(&mut self.valley),
+            },
             simulations: self.refit.simulations - before,
             better: self.better.take(),
         })
     }
 
-    /// Goes from the best to one side until the limit is crossed, and on from other minima that lie
-    /// beyond; where the last crossing is.
-    fn side(
+    /// Goes to both sides from a fit within the limit until it is crossed.
+    fn piece(
         &mut self,
         free: &Free,
         k: usize,
-        best: (&[f64], f64),
+        from: (&[f64], f64),
         first: f64,
         points: &mut Vec<[f64; 2]>,
-    ) -> Result<Option<f64>, Fault> {
-        let mut inside = (free.fraction(best.0[k]), best.1);
-        let mut values = best.0.to_vec();
-        loop {
-            let Some(crossing) =
-                self.until_crossing(free, k, inside, first, &mut values, points)?
-            else {
-                return Ok(None);
-            };
-            let is_beyond =
-                |start: &&Vec<f64>| (free.fraction(start[k]) - crossing) * first.signum() > SAME;
-            let beyond = self.starts.iter().filter(is_beyond).cloned().collect::<Vec<_>>();
-            let mut farther = None;
-            for start in beyond {
-                values.copy_from_slice(&start);
-                let place = free.fraction(start[k]);
-                let sum = self.fit(free, k, place, &mut values, points, Care::OneStart)?;
-                if let Some(sum) = sum.filter(|sum| *sum <= self.limit) {
-                    farther = Some((place, sum));
-                    break;
-                }
-            }
-            let Some(farther) = farther else { return Ok(Some(free.value(crossing))) };
-            inside = farther;
+    ) -> Result<Piece, Fault> {
+        let mut piece = Piece { ends: [None; 2], cut: [None; 2], complete: [true; 2] };
+        for (side, step) in [-first, first].into_iter().enumerate() {
+            let mut values = from.0.to_vec();
+            let inside = (free.fraction(from.0[k]), from.1);
+            let crossing = self.until_crossing(free, k, inside, step, &mut values, points)?;
+            piece.ends[side] = crossing;
+            piece.cut[side] = self.cut.take();
+            piece.complete[side] = !self.is_over;
         }
+        Ok(piece)
     }
 
-    /// Goes on from `inside` until the limit is crossed; `None` where the range ends before.
+    /// The pieces about other minima that lie beside the own one.
+    fn pieces(
+        &mut self,
+        free: &Free,
+        k: usize,
+        own: Piece,
+        first: f64,
+        points: &mut Vec<[f64; 2]>,
+    ) -> Result<Vec<Piece>, Fault> {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for start in self.starts.clone().iter().skip(1) {
+            let place = free.fraction(start[k]);
+            if own.contains(place) || pieces.iter().any(|piece| piece.contains(place)) {
+                continue;
+            }
+            let mut values = start.clone();
+            let sum = self.fit(free, k, place, &mut values, points, Care::OneStart)?;
+            if let Some(sum) = sum.filter(|sum| *sum <= self.limit) {
+                pieces.push(self.piece(free, k, (&values, sum), first, points)?);
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// Goes on from `inside` until the limit is crossed; `None` where the range or the budget ends
+    /// before.
     fn until_crossing(
         &mut self,
         free: &Free,
@@ -263,7 +343,7 @@ impl Walk<'_> {
         values: &mut [f64],
         points: &mut Vec<[f64; 2]>,
     ) -> Result<Option<f64>, Fault> {
-        for _ in 0..SIDE {
+        for number in 0..SIDE {
             let place = (inside.0 + step).clamp(0.0, 1.0);
             if place == inside.0 {
                 break;
@@ -271,7 +351,7 @@ impl Walk<'_> {
             let before = values.to_vec();
             let sum = self.fit(free, k, place, values, points, Care::AllStarts)?;
             let Some(sum) = sum else {
-                self.cut = Some(free.value(inside.0));
+                self.cut = Some(free.value(inside.0)).filter(|_| !self.is_over);
                 break;
             };
             if sum > self.limit {
@@ -280,7 +360,7 @@ impl Walk<'_> {
                 return self.crossing(free, k, ends, values, points).map(Some);
             }
             inside = (place, sum);
-            step *= GROWTH;
+            step *= GROWTH[usize::from(number >= NEARBY)];
         }
         Ok(None)
     }
@@ -297,14 +377,18 @@ impl Walk<'_> {
         points: &mut Vec<[f64; 2]>,
     ) -> Result<f64, Fault> {
         let (mut inside, mut outside) = ends;
+        let (mut same_end, mut was_outside) = (0, None);
         let smallest = points[0][1];
+        let same = SAME.min(SAME_OF_BRACKET * (outside.0 - inside.0).abs());
         let root = |sum: f64| (sum - smallest).max(0.0).sqrt();
         for attempt in 0..JUMPING {
             let part = (root(self.limit) - root(inside.1)) / (root(outside.1) - root(inside.1));
-            let part = if attempt < CROSSING { part.clamp(0.05, 0.95) } else { 0.5 };
+            // Where the same end is met again, the rise is no parabola.
+            let is_root = attempt < CROSSING && same_end < 2;
+            let part = if is_root { part.clamp(0.05, 0.95) } else { 0.5 };
             let place = inside.0 + part * (outside.0 - inside.0);
             let jumps = outside.1 - inside.1 > JUMP * (self.limit - smallest);
-            let is_located = (outside.0 - inside.0).abs() <= SAME;
+            let is_located = (outside.0 - inside.0).abs() <= same;
             if attempt >= CROSSING && (!jumps || is_located) {
                 return Ok(place);
             }
@@ -314,7 +398,10 @@ impl Walk<'_> {
             if (sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
                 return Ok(place);
             }
-            if sum > self.limit {
+            let is_outside = sum > self.limit;
+            same_end = if was_outside == Some(is_outside) { same_end + 1 } else { 1 };
+            was_outside = Some(is_outside);
+            if is_outside {
                 outside = (place, sum);
             } else {
                 inside = (place, sum);
@@ -335,6 +422,10 @@ impl Walk<'_> {
         points: &mut Vec<[f64; 2]>,
         care: Care,
     ) -> Result<Option<f64>, Fault> {
+        if self.refit.simulations >= self.last {
+            self.is_over = true;
+            return Ok(None);
+        }
         let more = if care == Care::AllStarts { self.starts.clone() } else { Vec::new() };
         let starts = std::iter::once(values.to_vec()).chain(more);
         let mut least: Option<(Vec<f64>, f64)> = None;
@@ -349,9 +440,13 @@ impl Walk<'_> {
                 break;
             }
         }
-        let Some((found, sum)) = least else { return Ok(None) };
+        self.is_over |= self.refit.is_cancelled();
+        let Some((found, sum)) = least.filter(|_| !self.is_over) else { return Ok(None) };
         values.copy_from_slice(&found);
         points.push([found[k], sum]);
+        if sum <= self.limit {
+            self.valley.push(found.clone());
+        }
         if self.better.as_ref().is_none_or(|known| sum < known.1) {
             self.better = Some((found, sum));
         }

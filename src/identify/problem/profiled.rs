@@ -1,9 +1,11 @@
 //! Profiles of a solution: what they say, and the better fits that they come upon.
 
 use super::ending::SolvedDescent;
-use super::notes::profile_findings;
 use super::profile::{Known, profiles};
-use super::{EndingKind, Finding, FindingKind, Profiles, Run, Severity, Solution, SolvedParameter};
+use super::verdict_notes::{about_parameter, profile_findings};
+use super::{
+    EndingKind, Finding, FindingKind, Profile, Profiles, Run, Severity, Solution, Verdict,
+};
 use crate::diag::Fault;
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
@@ -15,6 +17,33 @@ const OTHER_PLACES: usize = 4;
 const BETTER_FITS: usize = 4;
 
 impl Solution {
+    /// The solution of a run, which goes to the better fits that the profiles of its verdicts come
+    /// upon; `again` makes the statistics.
+    ///
+    /// # Errors
+    ///
+    /// Those of `again` and of least squares.
+    pub fn settled(
+        run: &mut Run,
+        again: impl Fn(&Run) -> Result<Solution, Fault>,
+    ) -> Result<Solution, Fault> {
+        let mut solution = again(run)?;
+        let searched = solution.fitness;
+        for _ in 0..BETTER_FITS {
+            let Some((values, _)) = solution.grounds.better.take() else { break };
+            if !run.continue_from(&values)? {
+                break;
+            }
+            let simulations = solution.simulations_for_statistics;
+            solution = again(run)?;
+            solution.simulations_for_statistics += simulations;
+        }
+        if solution.fitness < searched {
+            solution.findings.insert(0, better_than(searched, &solution));
+        }
+        Ok(solution)
+    }
+
     /// The solution with its profiles, which a minimum alone has: where the search has ended before
     /// one, least squares go on first. Where the profiles come upon a better fit the run goes there,
     /// `again` makes its statistics, and the profiles are made anew.
@@ -64,7 +93,9 @@ impl Solution {
         match self.profiles_about_best(run) {
             Ok(Some(found)) => {
                 self.findings.extend(profile_findings(self, &found));
-                self.profiles = Some(found);
+                self.judge_anew(&found);
+                let is_whole = found.profiles.iter().all(|own| own.complete == [true; 2]);
+                self.profiles = Some(found).filter(|_| is_whole);
             }
             Ok(None) => {}
             Err(fault) => self.findings.push(
@@ -74,13 +105,49 @@ impl Solution {
         }
     }
 
+    /// Profiles that were made although the linear interval seemed to hold decide, too.
+    fn judge_anew(&mut self, found: &Profiles) {
+        let mut missing: Vec<String> = Vec::new();
+        for (k, profile) in found.profiles.iter().enumerate() {
+            if profile.complete != [true; 2] {
+                missing.push(profile.name.clone());
+                continue;
+            }
+            let own = &self.parameters[k];
+            let has_verdict = matches!(
+                own.verdict,
+                None | Some(Verdict::Identifiable | Verdict::PracticallyNonIdentifiable)
+            );
+            let is_known = self.grounds.profiles.iter().any(|(known, _)| *known == k);
+            if is_known || !has_verdict || own.in_steps || self.grounds.linear.len() <= k {
+                continue;
+            }
+            let judged = self.adopt(k, profile, found.simulations);
+            let own = self.parameters[k].clone();
+            // What was said before of it alone.
+            self.findings.retain(|finding| {
+                !(finding.kind.is_about_profile() && finding.parameters == [own.name.clone()])
+            });
+            let findings = about_parameter(&own, &judged);
+            self.findings.extend(findings);
+        }
+        if !missing.is_empty() {
+            let sentence = format!(
+                "The profile likelihoods of {} were not computed: the run was stopped before.",
+                missing.join(", ")
+            );
+            self.findings.push(Finding::new(FindingKind::Missing, sentence));
+        }
+    }
+
     /// Where descents have ended beside the best minimum: other minima within the limit first, then
-    /// the best of the others.
-    pub(super) fn other_places(&self) -> Vec<Vec<f64>> {
+    /// the best of the others whose sum of squares is at most this.
+    pub(super) fn other_places(&self, most: f64) -> Vec<Vec<f64>> {
         let mut places: Vec<Vec<f64>> =
             self.other_minima.iter().map(|other| other.values.clone()).collect();
         let sum = |descent: &SolvedDescent| descent.objective.unwrap_or(f64::INFINITY);
-        let mut ends: Vec<&SolvedDescent> = self.descents.iter().filter(|d| d.group > 0).collect();
+        let is_meant = |descent: &&SolvedDescent| descent.group > 0 && sum(descent) <= most;
+        let mut ends: Vec<&SolvedDescent> = self.descents.iter().filter(is_meant).collect();
         ends.sort_by(|a, b| a.group.cmp(&b.group).then(sum(a).total_cmp(&sum(b))));
         ends.dedup_by_key(|descent| descent.group);
         places.extend(ends.into_iter().map(|descent| descent.end.clone()));
@@ -107,12 +174,20 @@ impl Solution {
         if super::limits::along(&run.problem, &best.values).is_some() {
             bail!(BAD_OPTION, "There are no profile likelihoods at the limit of a constraint");
         }
-        let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
-        let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
-        let others = self.other_places();
-        let known = Known { best: &best.values, reach: &reach, others: &others, is_shared: true };
-        let all: Vec<usize> = (0..reach.len()).collect();
-        let found = profiles(&run.problem, &run.evaluation, &known, &all)?;
+        let reach = self.linear_reach(run);
+        let others = self.other_places(f64::INFINITY);
+        let known = Known {
+            best: &best.values,
+            reach: &reach,
+            others: &others,
+            is_shared: true,
+            quantile: self.grounds.quantile,
+            budget: u64::MAX,
+        };
+        let is_known = |k: &usize| self.grounds.profiles.iter().any(|(known, _)| known == k);
+        let missing: Vec<usize> = (0..self.parameters.len()).filter(|k| !is_known(k)).collect();
+        let found = profiles(&run.problem, &run.evaluation, &known, &missing)?;
+        let found = found.map(|found| self.with_known(found, &missing));
         let found = found.ok_or_else(|| {
             fault!(
                 BAD_OPTION,
@@ -123,6 +198,18 @@ impl Solution {
             )
         })?;
         Ok(Some(found))
+    }
+}
+
+impl Solution {
+    /// Profiles of some parameters, and those that verdicts rest on, in the order of the parameters.
+    fn with_known(&self, mut found: Profiles, which: &[usize]) -> Profiles {
+        let made = which.iter().copied().zip(std::mem::take(&mut found.profiles));
+        let mut all: Vec<(usize, Profile)> =
+            made.chain(self.grounds.profiles.iter().cloned()).collect();
+        all.sort_by_key(|(k, _)| *k);
+        found.profiles = all.into_iter().map(|(_, profile)| profile).collect();
+        found
     }
 }
 

@@ -32,6 +32,11 @@ impl<'a> Refit<'a> {
         Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
 
+    /// Whether simulations were cancelled: what came of them says nothing.
+    pub fn is_cancelled(&self) -> bool {
+        self.evaluation.is_cancelled()
+    }
+
     /// A parameter of the problem.
     pub fn parameter(&self, k: usize) -> &'a Free {
         &self.problem.parameters[k]

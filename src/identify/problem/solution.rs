@@ -1,5 +1,6 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
+use super::grounds::Grounds;
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
     Profiles, Severity, SolvedDescent, residual_test,
@@ -8,12 +9,6 @@ use crate::elementary;
 use crate::ga::Generation;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A parameter counts as identifiable when its standard error is below this fraction of its value:
-/// the 95 % interval then excludes 0, and on a logarithmic scale spans less than a decade.
-const RELATIVE: f64 = 0.5;
-/// Or, on a linear scale, when its 95 % interval is below this fraction of the search range: a
-/// parameter near 0 may be known well.
-pub const OF_RANGE: f64 = 0.25;
 /// Correlations above this are worth a word.
 const STRONG: f64 = 0.95;
 
@@ -94,6 +89,9 @@ pub struct Solution {
     /// What was inferred beyond the estimates.
     #[serde(default)]
     pub inferred: Inferred,
+    /// What the verdicts rest on.
+    #[serde(skip)]
+    pub grounds: Grounds,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -169,8 +167,14 @@ pub struct SolvedParameter {
     pub logarithmic: bool,
     /// One standard deviation; `None` where infinite or unknown.
     pub deviation: Option<f64>,
-    /// The 95 % interval, not cut at the range.
+    /// The 95 % interval about the value; where the data do not end it, the range does.
     pub interval: Option<[f64; 2]>,
+    /// At which ends of the interval, the lower and the upper, it is the range that ends, not the data.
+    #[serde(default, serialize_with = "sides", deserialize_with = "from_sides")]
+    pub open: [bool; 2],
+    /// All parts of the 95 % set, where other minima have parts of their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pieces: Vec<[f64; 2]>,
     /// Whether the data determine it; `None` where unknown.
     pub determined: Option<bool>,
     /// Whether it lies at an end of its range.
@@ -192,7 +196,7 @@ pub struct SolvedParameter {
 pub enum Verdict {
     /// The data bound it.
     Identifiable,
-    /// These data do not bound it; others of the kind may.
+    /// These data do not bound it, or on one side only; others of the kind may.
     PracticallyNonIdentifiable,
     /// No data of this kind bound it: it acts only in a combination with others.
     StructurallyNonIdentifiable,
@@ -275,8 +279,8 @@ impl SolvedSeries {
         let test = residual_test(&residuals);
         SolvedSeries {
             experiment: series.experiment.clone(),
-            y: [series.y_name.clone(), series.y_unit.clone()],
-            x: [series.x_name.clone(), series.x_unit.clone()],
+            y: [series.y_name.clone(), shown_unit(&series.y_unit)],
+            x: [series.x_name.clone(), shown_unit(&series.x_unit)],
             file: series.file.clone(),
             rmse: (square / n).sqrt(),
             r_squared: (total > 0.0).then(|| 1.0 - square / total),
@@ -290,13 +294,18 @@ impl SolvedSeries {
     }
 }
 
+/// The unit as it is written after a number: 1 is none.
+fn shown_unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { unit.to_owned() }
+}
+
 impl Solution {
     /// Takes standard errors and intervals away, and what was said of them. At the limit of a
     /// constraint they would be too small along it: the data may as well hold inside.
     pub(super) fn drop_intervals(&mut self) {
         for parameter in &mut self.parameters {
-            (parameter.deviation, parameter.interval) = (None, None);
-            (parameter.determined, parameter.verdict) = (None, None);
+            parameter.deviation = None;
+            parameter.forget();
         }
         (self.correlations, self.condition) = (None, None);
         self.findings.retain(|finding| !finding.kind.is_about_intervals());
@@ -323,20 +332,25 @@ impl Solution {
     }
 }
 
-impl SolvedParameter {
-    /// Whether a standard error is small against the value, or on a linear scale against the range.
-    pub(super) fn is_narrow(&self, deviation: f64, factor: f64) -> bool {
-        let [min, max] = self.range;
-        let small = deviation <= RELATIVE * self.value.abs() && deviation <= max - min;
-        small || !self.logarithmic && 2.0 * factor * deviation <= OF_RANGE * (max - min)
-    }
-}
-
 /// What is not a number is written as null.
 /// JSON has no infinite numbers; both ways are the same for other formats, too.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
 fn finite<S: Serializer>(value: &f64, writer: S) -> Result<S::Ok, S::Error> {
     Some(*value).filter(|value| value.is_finite()).serialize(writer)
+}
+
+/// Sides in words, from neither to both.
+const SIDES: [&str; 4] = ["none", "below", "above", "both"];
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn sides<S: Serializer>([below, above]: &[bool; 2], writer: S) -> Result<S::Ok, S::Error> {
+    writer.serialize_str(SIDES[usize::from(*below) + 2 * usize::from(*above)])
+}
+
+fn from_sides<'de, D: Deserializer<'de>>(reader: D) -> Result<[bool; 2], D::Error> {
+    let word = String::deserialize(reader)?;
+    let place = SIDES.iter().position(|side| *side == word).unwrap_or(0);
+    Ok([place % 2 == 1, place >= 2])
 }
 
 fn or_infinite<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {

@@ -2,21 +2,16 @@
 
 use super::effects::{Effect, Finite, effect};
 use super::ending::{self, Ending, EndingKind};
-use super::solution::OF_RANGE;
-use super::statistics::BEYOND;
 use super::statistics::distributions::chi_square_tails;
+use super::verdicts::Judged;
 use super::{
-    Best, ChiSquare, ErrorModel, FailureKind, Form, Run, Sigma, Solution, SolvedParameter,
-    SolvedSeries, Statistics, Verdict,
+    Best, ChiSquare, ErrorModel, FailureKind, Finding, FindingKind, Run, Severity, Sigma, Solution,
+    SolvedParameter, SolvedSeries, Statistics,
 };
 use crate::diag::Fault;
 use crate::ga::operators::KINDS;
-use crate::identify::Uncertainty;
 use crate::registry::BAD_OPTION;
 use crate::{elementary, fault};
-
-/// Values nearer to a bound than this fraction of the range are at it.
-const AT_BOUND: f64 = 1e-3;
 
 /// Points beside the best at which a lack of rank is looked at.
 const ELSEWHERE: usize = 5;
@@ -41,6 +36,7 @@ impl Solution {
         let best = best(run, stop)?;
         let simulated = run.evaluation.simulate(&best.values);
         let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
+        run.evaluation.show("standard errors");
         let others = elsewhere(run);
         let mut statistics =
             Statistics::at(problem, &run.evaluation, &best.values, &simulated, &others);
@@ -51,28 +47,82 @@ impl Solution {
             series: solved_series(problem, &statistics, &simulated),
             validation,
             condition: statistics.condition.filter(|condition| condition.is_finite()),
-            chi_square: chi_square(&statistics),
+            chi_square: chi_square(problem, &statistics),
             negative_log_likelihood: negative_log_likelihood(run, &statistics),
             ..searched(run, stop)
         };
         solution.correlations = correlations(&statistics, solution.parameters.len());
         solution.add_ending(run, best, &statistics);
-        solution.findings =
-            super::notes::findings(&solution, run, &statistics, &effects, &simulated);
-        if super::limits::along(problem, &best.values).is_some() {
+        if run.evaluation.is_cancelled() {
+            return Err(fault!(BAD_OPTION, "the statistics were stopped"));
+        }
+        let is_at_limit = super::limits::along(problem, &best.values).is_some();
+        let is_minimum = solution.ending.kind == EndingKind::Minimum;
+        let judged = match is_minimum && !is_at_limit {
+            true => solution.judge(run, &statistics, &effects)?,
+            false => vec![Judged::Nothing; solution.parameters.len()],
+        };
+        let about = (&statistics, &effects[..], &judged[..]);
+        solution.findings = super::notes::findings(&solution, run, about, &simulated);
+        if is_at_limit {
             solution.drop_intervals();
         }
-        match solution.ending.kind {
-            // Where a parameter acts in steps, intervals go over all of them.
-            EndingKind::Minimum if effects.is_empty() => {
-                solution.check_linear_intervals(run, &statistics)?;
-            }
-            EndingKind::Minimum => {}
-            _ => solution.drop_verdicts(),
+        if !is_minimum {
+            solution.drop_verdicts();
         }
         let others = super::notes::about_other_minima(&solution);
         solution.findings.extend(others);
         Ok(solution)
+    }
+
+    /// What the search has found, without any statistics: values, and the simulation with them.
+    ///
+    /// # Errors
+    ///
+    /// When nothing was simulated successfully.
+    pub fn of_search(
+        run: &Run,
+        stop: &str,
+        validation: Vec<SolvedSeries>,
+    ) -> Result<Solution, Fault> {
+        let best = best(run, stop)?;
+        let simulated = run.evaluation.simulate(&best.values);
+        let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
+        let parameter = |(free, value): (&super::Free, &f64)| SolvedParameter {
+            name: free.name.clone(),
+            unit: free.unit.clone(),
+            value: *value,
+            range: [free.min, free.max],
+            logarithmic: free.logarithmic,
+            ..SolvedParameter::default()
+        };
+        let mut rest = &simulated[..];
+        let series = |own: &super::Series| {
+            let (simulated, others) = rest.split_at(own.x.len());
+            rest = others;
+            SolvedSeries::new(own, simulated)
+        };
+        let data = run.problem.series.iter();
+        let data = data.filter(|series| series.experiment != super::inference::PRIOR);
+        let mut solution = Solution {
+            fitness: best.fitness,
+            parameters: run.problem.parameters.iter().zip(&best.values).map(parameter).collect(),
+            series: data.map(series).collect(),
+            validation,
+            descents: ending::descents(run),
+            ..searched(run, stop)
+        };
+        solution.ending = Ending::unjudged("the statistics of the search are not made yet");
+        Ok(solution)
+    }
+
+    /// Says that the statistics were not made, and why.
+    pub fn without_statistics(mut self, why: &str) -> Solution {
+        self.ending = Ending::unjudged(why);
+        let words = self.ending.words.clone();
+        let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
+        self.findings.insert(0, finding);
+        self
     }
 
     /// Adds how the run ended, and all simulations beside the search.
@@ -213,13 +263,11 @@ fn effects(
     Ok(effects)
 }
 
-fn chi_square(statistics: &Statistics) -> Option<ChiSquare> {
+fn chi_square(problem: &super::Problem, statistics: &Statistics) -> Option<ChiSquare> {
     if !statistics.believed {
         return None;
     }
-    // Equal series count once.
-    let pairs = statistics.residuals.iter().zip(&statistics.shares);
-    let value: f64 = pairs.map(|(r, share)| share * r * r).sum();
+    let value = statistics.chi_square(problem, &[]);
     let freedom = statistics.freedom;
     let [_, probability] = chi_square_tails(value, freedom);
     (freedom > 0.0).then_some(ChiSquare { value, freedom, probability })
@@ -237,10 +285,13 @@ fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
         ErrorModel::OneVariance => 0.5 * n * (elementary::ln(square / n) + 1.0),
         _ => 0.5 * square,
     };
-    let value = of_residuals - of_weights + 0.5 * n * elementary::ln(std::f64::consts::TAU);
+    let value = of_residuals - of_weights
+        + 0.5 * n * elementary::ln(std::f64::consts::TAU)
+        + super::inference::logarithms(&run.problem);
     value.is_finite().then_some(value)
 }
 
+/// The parameters with their standard errors; what the data tell of them is judged later.
 fn parameters(
     run: &Run,
     values: &[f64],
@@ -248,138 +299,25 @@ fn parameters(
     effects: &[(usize, Effect)],
 ) -> Vec<SolvedParameter> {
     let one = |(k, free): (usize, &super::Free)| {
-        let value = values[k];
-        let deviation = tabulated(statistics).map(|found| found.standard_deviations[k]);
+        let deviation = statistics.tabulated().map(|found| found.standard_deviations[k]);
         let own = effects.iter().find(|(place, _)| *place == k).map(|(_, effect)| effect);
-        let interval = match own {
-            Some(Effect::Finite(Finite { ends: [low, high], .. })) => {
-                Some([low.unwrap_or(free.min), high.unwrap_or(free.max)])
-            }
-            _ => interval_with(effects, free, k, value, reach(statistics, k), statistics.quantile),
-        };
-        let place = free.fraction(value);
-        let mut solved = SolvedParameter {
+        SolvedParameter {
             name: free.name.clone(),
             unit: free.unit.clone(),
-            value,
+            value: values[k],
             range: [free.min, free.max],
             logarithmic: free.logarithmic,
             deviation: deviation.filter(|deviation| deviation.is_finite()),
-            interval,
-            determined: None,
-            at_bound: place.min(1.0 - place) < AT_BOUND,
-            by_profile: false,
-            in_steps: matches!(own, Some(Effect::Finite(_))),
-            verdict: None,
-        };
-        solved.verdict = verdict(&solved, k, statistics, own);
-        solved.determined = solved.verdict.map(|verdict| verdict == Verdict::Identifiable);
-        solved
+            at_bound: statistics.inward[k].is_some(),
+            in_steps: matches!(own, Some(Effect::Finite(Finite { .. }))),
+            ..SolvedParameter::default()
+        }
     };
     run.problem.parameters.iter().enumerate().map(one).collect()
 }
 
-/// Standard errors and correlations as they are told: where parameters stand at ends of their
-/// ranges, those of the others with these held.
-fn tabulated(statistics: &Statistics) -> Option<&Uncertainty> {
-    statistics.at_bounds.as_ref().map_or(statistics.uncertainty.as_ref(), |own| Some(&own.held))
-}
-
-/// How far the linear 95 % interval reaches below and above; `None` where it is not bounded, or the
-/// data contradict the end at which the parameter stands.
-fn reach(statistics: &Statistics, k: usize) -> Option<[f64; 2]> {
-    let Some(at_bounds) = &statistics.at_bounds else {
-        let deviation = statistics.uncertainty.as_ref()?.standard_deviations[k];
-        return Some([statistics.quantile * deviation; 2]);
-    };
-    let end = at_bounds.ends.iter().find(|end| end.parameter == k);
-    end.is_none_or(|end| end.pull <= BEYOND).then(|| at_bounds.reach[k])
-}
-
-/// The linear interval, over all values of other parameters that act without a derivative: what is
-/// true of one step need not be of the next, which fits these data as well.
-fn interval_with(
-    effects: &[(usize, Effect)],
-    free: &super::Free,
-    k: usize,
-    value: f64,
-    reach: Option<[f64; 2]>,
-    factor: f64,
-) -> Option<[f64; 2]> {
-    let mut hull = linear_interval(free, value, reach)?;
-    for (_, effect) in effects {
-        let Effect::Finite(finite) = effect else { continue };
-        for fit in &finite.within {
-            let half = factor * fit.left * fit.deviations[k];
-            let [low, high] = linear_interval(free, fit.values[k], Some([half; 2]))?;
-            hull = [hull[0].min(low), hull[1].max(high)];
-        }
-    }
-    Some(hull)
-}
-
-/// The interval that reaches so far; where the logarithm is searched, it is one of ratios.
-fn linear_interval(free: &super::Free, value: f64, reach: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    let [below, above] = reach?;
-    let ends = match free.logarithmic {
-        true => {
-            let [a, b] = [-below, above].map(|reach| value * elementary::exp(reach / value));
-            [a.min(b), a.max(b)]
-        }
-        false => [value - below, value + above],
-    };
-    // The truth is taken to lie in the range.
-    let ends = ends.map(|end| if end.is_nan() { end } else { end.clamp(free.min, free.max) });
-    let is_finite = below.is_finite() && above.is_finite();
-    Some(ends).filter(|ends| is_finite && ends.iter().all(|end| end.is_finite()))
-}
-
-fn verdict(
-    parameter: &SolvedParameter,
-    k: usize,
-    statistics: &Statistics,
-    effect: Option<&Effect>,
-) -> Option<Verdict> {
-    let [min, max] = parameter.range;
-    let yes = |yes: bool| match yes {
-        true => Verdict::Identifiable,
-        false => Verdict::PracticallyNonIdentifiable,
-    };
-    match effect {
-        Some(Effect::None) => return Some(Verdict::WithoutEffect),
-        Some(Effect::Finite(Finite { ends: [Some(low), Some(high)], .. })) => {
-            return Some(yes(high - low <= 0.5 * (max - min)));
-        }
-        Some(Effect::Finite(_)) => return Some(Verdict::PracticallyNonIdentifiable),
-        None => {}
-    }
-    let group = statistics.non_identifiable.iter().find(|group| group.parameters.contains(&k));
-    if let Some(group) = group {
-        return Some(match group.form {
-            Form::Sum | Form::Product => Verdict::StructurallyNonIdentifiable,
-            Form::Local => Verdict::PracticallyNonIdentifiable,
-        });
-    }
-    statistics.uncertainty.as_ref()?;
-    if statistics.at_bounds.as_ref().is_some_and(|own| own.ends.iter().any(|e| e.parameter == k)) {
-        // One end of the interval is the bound, where that is not contradicted.
-        let [low, high] = parameter.interval?;
-        return Some(yes(high - low <= OF_RANGE * (max - min)));
-    }
-    let Some(deviation) = parameter.deviation else { return Some(yes(false)) };
-    // The interval is wider than its standard error says where another parameter acts in steps.
-    let spread = match parameter.interval {
-        Some([low, high]) if parameter.logarithmic => {
-            0.5 * elementary::ln(high / low).abs() * parameter.value.abs() / statistics.quantile
-        }
-        Some([low, high]) => 0.5 * (high - low) / statistics.quantile,
-        _ => deviation,
-    };
-    Some(yes(parameter.is_narrow(deviation.max(spread), statistics.quantile)))
-}
-
 fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {
-    let found = tabulated(statistics)?;
+    let found = statistics.tabulated()?;
     let entry = |k: usize, l: usize| Some(found.correlations[k * n + l]).filter(|c| c.is_finite());
     Some((0..n).map(|k| (0..n).map(|l| entry(k, l)).collect()).collect())
 }

@@ -1,7 +1,7 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
 use super::{EndingKind, Profile, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
-use crate::identify::table::{quoted, significant};
+use crate::identify::table::{counted, digits_of, ends, quoted, significant};
 use crate::plot::{self, Comparison, Figure};
 use std::fmt::Write;
 
@@ -108,9 +108,11 @@ impl Solution {
             .as_ref()
             .map_or(String::new(), |all| format!(", {} for the profiles", all.simulations));
         format!(
-            "{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for \
-             {statistics}{profiles}",
-            self.evaluations, self.generations, self.simulations, self.simulations_for_statistics
+            "{} in {}, {failed} failed ({share:.1} %); {}, {} more for {statistics}{profiles}",
+            self.evaluations,
+            counted(self.generations, "generation"),
+            counted(self.simulations, "simulation"),
+            self.simulations_for_statistics
         )
     }
 
@@ -329,7 +331,7 @@ fn series_line(series: &SolvedSeries) -> String {
         true => String::new(),
         false => format!("{} / ", series.experiment),
     };
-    let mut line = format!("{of}{}: {} points", series.y[0], series.points.len());
+    let mut line = format!("{of}{}: {}", series.y[0], counted(series.points.len() as u64, "point"));
     if series.points.iter().all(|point| point[1].is_nan()) {
         return line + ", whose measured values are known only to the script";
     }
@@ -345,7 +347,8 @@ fn series_line(series: &SolvedSeries) -> String {
     if let Some([runs, expected, _, autocorrelation]) = series.residual_test {
         _ = write!(
             line,
-            ", {runs} runs ({} expected), autocorrelation {}",
+            ", {} ({} expected), autocorrelation {}",
+            counted(runs as u64, "run"),
             significant(expected, 3),
             significant(autocorrelation, 2)
         );
@@ -365,18 +368,40 @@ fn aligned(rows: &[Vec<String>]) -> String {
     rows.iter().map(line).collect()
 }
 
-fn cells(parameter: &SolvedParameter) -> [String; 7] {
-    let pair = |ends: [f64; 2], digits| {
-        format!("{} .. {}", significant(ends[0], digits), significant(ends[1], digits))
-    };
-    let deviation = match parameter.deviation {
-        Some(deviation) if parameter.value != 0.0 => {
-            format!("{} %", significant(100.0 * deviation / parameter.value.abs(), 2))
+impl SolvedParameter {
+    /// Digits of the value: two of its standard error, and five at least.
+    pub fn digits(&self) -> usize {
+        let digits = self.deviation.map(|own| digits_of(own, self.value.abs()));
+        digits.unwrap_or(0).max(5)
+    }
+
+    /// The standard error: as a part of the value, where it is not larger than that.
+    pub fn deviation_text(&self) -> String {
+        match self.deviation {
+            Some(own) if own <= self.value.abs() => {
+                format!("{} %", significant(100.0 * own / self.value.abs(), 2))
+            }
+            Some(own) => significant(own, 3),
+            None if self.determined == Some(false) => "unbounded".to_owned(),
+            None => "-".to_owned(),
         }
-        Some(deviation) => significant(deviation, 2),
-        None if parameter.determined == Some(false) => "unbounded".to_owned(),
-        None => "-".to_owned(),
-    };
+    }
+
+    /// The 95 % interval, as far as the data end it.
+    pub fn interval_text(&self) -> String {
+        let Some(interval) = self.interval else { return "-".to_owned() };
+        let [low, high] = interval.map(|end| significant(end, 4));
+        match self.open {
+            [false, false] if self.pieces.is_empty() => ends(interval, self.value),
+            [false, false] => format!("{}, and others", ends(interval, self.value)),
+            [false, true] => format!("at least {low}"),
+            [true, false] => format!("at most {high}"),
+            [true, true] => "the whole range".to_owned(),
+        }
+    }
+}
+
+fn cells(parameter: &SolvedParameter) -> [String; 7] {
     let mut remarks = Vec::new();
     if let Some(verdict) = parameter.verdict.filter(|verdict| *verdict != Verdict::Identifiable) {
         remarks.push(verdict.words());
@@ -384,13 +409,14 @@ fn cells(parameter: &SolvedParameter) -> [String; 7] {
     if parameter.at_bound {
         remarks.push("at the end of its range");
     }
+    let range = parameter.range.map(|end| significant(end, 4)).join(" .. ");
     [
         parameter.name.clone(),
-        significant(parameter.value, 5),
+        significant(parameter.value, parameter.digits()),
         parameter.unit.clone(),
-        deviation,
-        parameter.interval.map_or("-".to_owned(), |ends| pair(ends, 4)),
-        format!("{}{}", pair(parameter.range, 4), if parameter.logarithmic { " log" } else { "" }),
+        parameter.deviation_text(),
+        parameter.interval_text(),
+        format!("{}{}", range, if parameter.logarithmic { " log" } else { "" }),
         remarks.join(", "),
     ]
 }

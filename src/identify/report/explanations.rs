@@ -18,8 +18,8 @@ impl Explanation {
 pub const STANDARD_ERROR: Explanation = Explanation {
     topic: "the standard error",
     line: "The standard error is the scatter of an estimate over repetitions of the experiment. \
-           A parameter counts as identifiable if its standard error is below half of its value, \
-           or its interval is below a quarter of a linear search range.",
+           A parameter is identifiable if the data end its 95 % interval on both sides, within \
+           the search range, and on a logarithmic scale within a factor of 10.",
 };
 pub const INTERVAL: Explanation = Explanation {
     topic: "the 95 % interval",
@@ -72,7 +72,7 @@ pub const CONVERGENCE: Explanation = Explanation {
 pub const CORRELATION: Explanation = Explanation {
     topic: "correlations",
     line: "Estimates correlated beyond ±0.95 can compensate each other: a combination of the two \
-           is identifiable, but not each one.",
+           is known much better than each one. Their verdicts say whether each one is identifiable.",
 };
 pub const CONDITION: Explanation = Explanation {
     topic: "the condition number",
@@ -82,7 +82,7 @@ pub const CONDITION: Explanation = Explanation {
 pub const ELLIPSE: Explanation = Explanation {
     topic: "confidence ellipses",
     line: "The ellipse contains both values with 95 % joint confidence, from the linearized \
-           model; a long, narrow one means that only a combination is identifiable.",
+           model; a long, narrow one means that a combination is known much better than each one.",
 };
 pub const PROFILE: Explanation = Explanation {
     topic: "profiles",

@@ -5,6 +5,7 @@ use super::explanations::{INTERVAL, STANDARD_ERROR};
 use super::parts::{explained, number, quantity, scrolling};
 use super::view::{View, fraction};
 use crate::identify::problem::{SolvedParameter, Verdict};
+use crate::identify::table::digits_of;
 use maud::{Markup, html};
 
 /// Headings. On a phone, where each row is a block, they stand before the values.
@@ -38,13 +39,13 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
     let own = script.and_then(|script| script.parameters.get(&parameter.name));
     let interval = html! {
         @match parameter.interval {
-            Some([low, high]) => { (number(low, 4)) " to " (number(high, 4)) }
+            Some(ends) => { (interval_in_words(parameter, ends)) }
             None => { "–" }
         }
     };
     let cells = [
         html! {
-            strong { (quantity(parameter.value, 5, &parameter.unit)) }
+            strong { (quantity(parameter.value, parameter.digits(), &parameter.unit)) }
             @if let Some(own) = own {
                 br; "script's best: " (quantity(*own, 5, &parameter.unit))
             }
@@ -64,12 +65,29 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
     }
 }
 
+/// The interval, as far as the data end it, and its other parts.
+fn interval_in_words(parameter: &SolvedParameter, [low, high]: [f64; 2]) -> String {
+    let digits = digits_of(high - low, low.abs().max(high.abs()));
+    let between =
+        |[low, high]: [f64; 2]| format!("{} to {}", number(low, digits), number(high, digits));
+    match parameter.open {
+        [false, false] if parameter.pieces.is_empty() => between([low, high]),
+        [false, false] => {
+            let parts: Vec<String> = parameter.pieces.iter().map(|part| between(*part)).collect();
+            parts.join("; ")
+        }
+        [false, true] => format!("at least {}", number(low, 4)),
+        [true, false] => format!("at most {}", number(high, 4)),
+        [true, true] => "the whole range".to_owned(),
+    }
+}
+
 fn standard_error(parameter: &SolvedParameter) -> String {
     match parameter.deviation {
-        Some(error) if parameter.value != 0.0 => {
+        Some(error) if error <= parameter.value.abs() => {
             format!("{}\u{a0}%", number(100.0 * error / parameter.value.abs(), 2))
         }
-        Some(error) => quantity(error, 2, &parameter.unit),
+        Some(error) => quantity(error, 3, &parameter.unit),
         None if parameter.determined == Some(false) => "unbounded".to_owned(),
         None => "–".to_owned(),
     }

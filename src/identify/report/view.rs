@@ -142,7 +142,7 @@ fn descent(solved: &SolvedDescent) -> Option<Descent> {
     Some(Descent {
         objective: solved.objective?,
         minimum: solved.ending == DescentEnd::Minimum,
-        is_best: solved.group == 0,
+        is_best: solved.group == 0 && solved.ending == DescentEnd::Minimum,
     })
 }
 

@@ -16,11 +16,11 @@ pub fn section(view: &View) -> Option<Section> {
     sorted.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     let best = sorted[0].objective;
     let reached = sorted.iter().filter(|descent| descent.is_best).count();
+    // Those whose start could not be simulated count, too, as in the line on the ending.
+    let of = view.solution.descents.len();
     let sentence = format!(
-        "The best objective, {}, was reached by {reached} of {} {}.",
-        number(best, 5),
-        sorted.len(),
-        if sorted.len() == 1 { "descent" } else { "descents" }
+        "The best objective, {}, was reached by {reached} of {of} descents.",
+        number(best, 5)
     );
     let caption = html! { (sentence) };
     let content = html! {

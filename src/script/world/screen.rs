@@ -1,5 +1,6 @@
 //! What a user sees of a run, and types.
 
+use crate::identify::problem::Status;
 use crate::script::runs::view::{Progress, View};
 
 /// Standard output and standard error, progress, the live view, and a prompt.
@@ -14,6 +15,11 @@ pub trait Screen {
     fn eprint(&mut self, text: &str);
     /// Shows how far a long piece of work is.
     fn progress(&mut self, progress: &Progress);
+    /// Shows in a line what is being done, from any thread; an empty text takes it away. `None` where
+    /// nobody would see it.
+    fn status(&mut self) -> Option<Status> {
+        None
+    }
     /// Whether a view of the run would be drawn now: asked often, so that none is made in vain.
     fn wants_view(&mut self) -> bool {
         false

@@ -25,6 +25,10 @@ const STREAM: u64 = 1_000_003;
 /// With more failed replicates than this share the rest is a selection, not a sample.
 const FAILED: f64 = 0.05;
 
+/// Where more of the replicates than this stand at an end of the range, their quantiles say nothing
+/// (Andrews 2000).
+const AT_BOUNDS: f64 = 0.025;
+
 /// What is drawn anew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -89,6 +93,9 @@ pub struct Bootstrapped {
     pub bias: f64,
     /// The 95 % interval.
     pub interval: [f64; 2],
+    /// The share of the replicates at an end of the search range.
+    #[serde(default)]
+    pub at_bounds: f64,
 }
 
 /// The bootstrap; `None` where it is refused.
@@ -130,16 +137,8 @@ pub fn bootstrap(
         return Ok(None);
     }
     let one = |k: usize| {
-        let mut values: Vec<f64> = estimates.iter().map(|values| values[k]).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let square: f64 = values.iter().map(|value| elementary::powi(value - mean, 2)).sum();
-        values.sort_by(f64::total_cmp);
-        Bootstrapped {
-            name: problem.parameters[k].name.clone(),
-            sd: (square / (values.len() as f64 - 1.0)).sqrt(),
-            bias: mean - local.values[k],
-            interval: interval(settings.interval, &values, local.values[k], acceleration(local, k)),
-        }
+        let values = estimates.iter().map(|values| values[k]).collect();
+        bootstrapped(problem, settings, local, (k, values))
     };
     let parameters = (0..local.values.len()).map(one).collect();
     Ok(Some(Bootstrap {
@@ -150,6 +149,27 @@ pub fn bootstrap(
         parameters,
         estimates,
     }))
+}
+
+/// What the replicates say about a parameter.
+fn bootstrapped(
+    problem: &Problem,
+    settings: &BootstrapSettings,
+    local: &Local,
+    (k, mut values): (usize, Vec<f64>),
+) -> Bootstrapped {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let square: f64 = values.iter().map(|value| elementary::powi(value - mean, 2)).sum();
+    values.sort_by(f64::total_cmp);
+    let free = &problem.parameters[k];
+    let is_at = |value: &&f64| **value <= free.min || **value >= free.max;
+    Bootstrapped {
+        at_bounds: values.iter().filter(is_at).count() as f64 / values.len() as f64,
+        name: free.name.clone(),
+        sd: (square / (values.len() as f64 - 1.0)).sqrt(),
+        bias: mean - local.values[k],
+        interval: interval(settings.interval, &values, local.values[k], acceleration(local, k)),
+    }
 }
 
 /// Data of one replicate and their scales.
@@ -258,6 +278,14 @@ impl Bootstrap {
         let mut sentences =
             vec![format!("{} fits to {drawn}, 95 % intervals ({kind}){failed}:", self.samples)];
         sentences.extend(self.parameters.iter().map(|p| {
+            if p.at_bounds > AT_BOUNDS {
+                return format!(
+                    "{} has no interval: {} % of the fits end at an end of its search range, where \
+                     the bootstrap is not valid. Its profile likelihood is",
+                    p.name,
+                    significant(100.0 * p.at_bounds, 3)
+                );
+            }
             let [low, high] = p.interval.map(|end| significant(end, 4));
             format!(
                 "{} in {low} .. {high}, standard deviation {}, bias {}",

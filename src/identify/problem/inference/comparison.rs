@@ -19,6 +19,8 @@ use std::fmt::Write;
 
 /// A model of at least this Akaike weight is called the better one (evidence ratio 19 to 1).
 const DECIDED: f64 = 0.95;
+/// Measured values that differ by less, relative, are the same: some have been logarithms.
+const SAME_DATA: f64 = 1e-12;
 /// The larger of two nested models is needed below this probability.
 const SIGNIFICANT: f64 = 0.05;
 /// A larger model whose ln L is lower by more than this has not reached its minimum.
@@ -118,14 +120,23 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
 }
 
 fn same_data(a: &Solution, b: &Solution) -> bool {
-    let data = |solution: &Solution| -> Vec<(String, String, Vec<[u64; 2]>)> {
-        let points = |p: &[f64; 3]| [p[0].to_bits(), p[1].to_bits()];
+    let data = |solution: &Solution| -> Vec<(String, String, Vec<[f64; 2]>)> {
         let one = |s: &crate::identify::problem::SolvedSeries| {
-            (s.x[0].clone(), s.y[0].clone(), s.points.iter().map(points).collect())
+            // Log-normal data are shown by their logarithms.
+            let name = s.y[0].strip_prefix("ln(").and_then(|name| name.strip_suffix(')'));
+            let measured = |y: f64| if name.is_some() { elementary::exp(y) } else { y };
+            let points = s.points.iter().map(|p| [p[0], measured(p[1])]).collect();
+            (s.x[0].clone(), name.unwrap_or(&s.y[0]).to_owned(), points)
         };
         solution.series.iter().map(one).collect()
     };
-    data(a) == data(b)
+    let is_near = |a: &f64, b: &f64| (a - b).abs() <= SAME_DATA * a.abs();
+    let are_near = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().zip(b).all(|(a, b)| is_near(a, b));
+    let (a, b) = (data(a), data(b));
+    a.len() == b.len()
+        && a.iter().zip(&b).all(|(a, b)| {
+            (&a.0, &a.1, a.2.len()) == (&b.0, &b.1, b.2.len()) && a.2.iter().zip(&b.2).all(are_near)
+        })
 }
 
 fn compared(name: &str, likelihood: Likelihood) -> Compared {

@@ -2,7 +2,7 @@
 
 use super::PRIOR;
 use crate::elementary;
-use crate::identify::problem::{ErrorModel, Run};
+use crate::identify::problem::{ErrorModel, Problem, Run};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -17,6 +17,13 @@ pub struct Likelihood {
     pub estimated: usize,
     /// Whether the standard deviations of the measurements are given.
     pub known_sigma: bool,
+}
+
+/// The sum of the logarithms of log-normal data: what the density of a value is less than that of its
+/// logarithm.
+pub fn logarithms(problem: &Problem) -> f64 {
+    let own = problem.inference.logarithmic.iter();
+    own.filter_map(|k| problem.series.get(*k)).flat_map(|series| &series.y).sum()
 }
 
 impl Likelihood {
@@ -45,7 +52,7 @@ impl Likelihood {
             ErrorModel::Known => (0.5 * square, 0),
             ErrorModel::Estimated => (0.5 * square, names.len()),
         };
-        let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU);
+        let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU) - logarithms(problem);
         let estimated = values.len() + deviations;
         let known_sigma = error_model == ErrorModel::Known;
         let found = Likelihood { log, points: measured.len(), estimated, known_sigma };

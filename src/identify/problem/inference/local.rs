@@ -10,6 +10,7 @@
 use super::super::statistics::distributions::{normal_quantile, student_quantile};
 use super::super::{Evaluation, Problem, Statistics, limits};
 use crate::elementary;
+use crate::ga::optimizer::FROM_THE_SOLVER;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Singular values of the Jacobian below this fraction of the largest count as zero, however exact
@@ -25,8 +26,6 @@ const UPPER: f64 = 0.975;
 const MINIMUM: f64 = 0.1;
 /// Values nearer to a bound than this fraction of the range are held by it.
 const AT_BOUND: f64 = 1e-6;
-/// Residuals below this many times the error of the simulation come from the simulation.
-const FROM_THE_SOLVER: f64 = 100.0;
 
 /// The fit about its best point.
 pub struct Local {

@@ -27,7 +27,7 @@ pub use comparison::{Compared, Comparison, Nested, compare};
 pub use constraint::{Constraint, PortableConstraint, Sides};
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
-pub use likelihood::Likelihood;
+pub use likelihood::{Likelihood, logarithms};
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};

@@ -379,6 +379,13 @@ fn log_normal_data_are_fitted_by_their_logarithms() {
     let best = &run.best.as_ref().unwrap().values;
     assert!((best[1] - slope).abs() < 1e-6, "{} {slope}", best[1]);
     assert!((best[0].ln() - (mean_y - slope * mean_x)).abs() < 1e-6);
+    // The density of a value is that of its logarithm by the value.
+    let residual = |(x, y): (&f64, &f64)| y.ln() - mean_y - slope * (x - mean_x);
+    let square: f64 = x.iter().zip(&y).map(|point| residual(point).powi(2)).sum();
+    let of_logarithms = -5.0 * ((square / 10.0).ln() + 1.0 + std::f64::consts::TAU.ln());
+    let expected = of_logarithms - y.iter().map(|y| y.ln()).sum::<f64>();
+    let found = infer(&run).unwrap().likelihood.unwrap().log;
+    assert!((found - expected).abs() < 1e-6, "{found} {expected}");
 }
 
 #[test]

@@ -12,6 +12,7 @@
 
 pub(super) mod at_bounds;
 pub mod distributions;
+pub(super) mod freedom;
 pub(super) mod outliers;
 pub(super) mod residuals;
 mod special_functions;
@@ -21,7 +22,9 @@ use at_bounds::AtBounds;
 pub use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
-use super::non_identifiable::{self, Form, NonIdentifiable, Sensitivities};
+use super::non_identifiable::{self, Form, NonIdentifiable};
+use super::sensitivities::Sensitivities;
+use super::separable::Combination;
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
 pub(super) use at_bounds::BEYOND;
@@ -39,10 +42,18 @@ const NO_EFFECT: f64 = 1e-10;
 /// Where no parameter has an effect of so many times the errors of the simulation, derivatives are
 /// errors, and say nothing of what cancels.
 const TOLD: f64 = 1e4;
+/// Elsewhere, derivatives are as exact as at the best point up to this factor.
+const ELSEWHERE: f64 = 100.0;
+/// Points elsewhere at which a lack of rank must show, where its form is not known.
+const AGREEING: usize = 3;
 /// The upper end of a 95 % interval as a probability.
 const UPPER: f64 = 0.975;
-/// Values nearer to an end of the range than this fraction of it stand at that end.
-const AT_END: f64 = 1e-6;
+/// Values nearer to an end of the range than this part of their standard error stand at that end,
+/// unless the range itself is not much larger than that.
+const AT_END: f64 = 0.01;
+const NEAR_END: f64 = 1e-3;
+/// Without a standard error, this fraction of the range.
+const ON_END: f64 = 1e-9;
 
 /// What the data tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +62,9 @@ pub struct Statistics {
     pub uncertainty: Option<Uncertainty>,
     /// What holds where parameters stand at ends of their ranges; `None` where none does.
     pub(super) at_bounds: Option<AtBounds>,
+    /// For parameters that stand at an end of their range, 1 where the range lies above it and −1
+    /// where below.
+    pub(super) inward: Vec<Option<f64>>,
     /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
     /// Student's distribution, or of the normal one where sigma is given.
     pub quantile: f64,
@@ -91,11 +105,34 @@ impl Statistics {
     /// The largest weighted sum of squares within the 95 % limit of the likelihood.
     pub(super) fn limit_of_squares(&self) -> f64 {
         let square: f64 = self.residuals.iter().map(|r| r * r).sum();
-        let rise = elementary::powi(self.quantile, 2);
+        let rise = elementary::powi(self.quantile_of_squares(), 2);
         match self.believed {
             true => square + rise,
             false => square * (1.0 + rise / self.freedom),
         }
+    }
+
+    /// What the root of the rise of the sum of squares is within the 95 % limit, in units of the
+    /// residual variance.
+    pub(super) fn quantile_of_squares(&self) -> f64 {
+        if self.believed || self.robust {
+            return self.quantile;
+        }
+        let pairs = self.residuals.iter().zip(&self.shares);
+        let square: f64 = pairs.map(|(r, share)| share * r * r).sum();
+        self.quantile * (self.variance * self.freedom / square).sqrt()
+    }
+
+    /// The weighted sum of squares of the data, some points left out; equal series count once. A prior
+    /// is no datum: it takes a point away and the parameter that this point would determine, so that
+    /// the degrees of freedom are those of all points.
+    pub(super) fn chi_square(&self, problem: &Problem, without: &[usize]) -> f64 {
+        let is_datum = problem.series.iter().flat_map(|series| {
+            std::iter::repeat_n(series.experiment != super::inference::PRIOR, series.x.len())
+        });
+        let points = self.residuals.iter().zip(&self.shares).zip(is_datum).enumerate();
+        let kept = points.filter(|(j, (_, is_datum))| *is_datum && !without.contains(j));
+        kept.map(|(_, ((r, share), _))| share * r * r).sum()
     }
 
     /// Computes them at `values`, where the simulated points are `simulated`. `others`: points
@@ -109,17 +146,18 @@ impl Statistics {
     ) -> Statistics {
         let repeated = repeated(&problem.series);
         let data = Data::at(problem, evaluation, simulated, &repeated);
-        let spread = Spread::of(problem, evaluation, &data, values.len());
         let (jacobian, simulations) = sensitivities(problem, evaluation, values);
         let columns = weighted(&jacobian, &data.scales);
+        let spread = Spread::of(problem, evaluation, &data, &columns);
         let uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
             true => uncertainty_given(&columns, spread.variance),
             false => None,
         };
+        let inward = inward(problem, values, uncertainty.as_ref());
         let at_bounds = uncertainty.as_ref().and_then(|_| {
             let plain = (!spread.robust).then(|| data.shared_residuals());
             let variances = [spread.variance, spread.rise()];
-            AtBounds::of(&columns, plain.as_deref(), &inward(problem, values), variances)
+            AtBounds::of(&columns, plain.as_deref(), &inward, variances)
         });
         let best = Sensitivities { values: values.to_vec(), columns };
         let rank_tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
@@ -127,6 +165,7 @@ impl Statistics {
         let mut found = Statistics {
             uncertainty,
             at_bounds,
+            inward,
             quantile: spread.quantile,
             freedom: spread.freedom,
             believed: spread.believed,
@@ -163,6 +202,9 @@ impl Statistics {
         if !rank.non_identifiable.is_empty() {
             let elsewhere = elsewhere(problem, evaluation, others, scales, &mut self.simulations);
             rank = non_identifiable::rank(best, &elsewhere, self.rank_tolerance);
+            for group in rank.non_identifiable.iter_mut().filter(|own| own.form == Form::Local) {
+                self.find_function((problem, evaluation), best, group, (&elsewhere, scales));
+            }
             rank.non_identifiable
                 .retain(|group| problem.noise <= EXACT || group.form != Form::Local);
         }
@@ -173,6 +215,10 @@ impl Statistics {
             points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= limit
         };
         for group in rank.non_identifiable {
+            if group.form == Form::Function {
+                self.non_identifiable.push(group);
+                continue;
+            }
             let at = (&best.values[..], simulated);
             let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
             self.simulations += took;
@@ -182,6 +228,39 @@ impl Statistics {
             }
         }
         (self.condition, self.without_effect) = (rank.condition, rank.without_effect);
+    }
+
+    /// Whether the model depends only on a function of a group whose members cancel each other at the
+    /// best point by other proportions than elsewhere.
+    fn find_function(
+        &mut self,
+        (problem, evaluation): (&Problem, &Evaluation),
+        best: &Sensitivities,
+        group: &mut NonIdentifiable,
+        (elsewhere, scales): (&[Sensitivities], &[f64]),
+    ) {
+        let is_deficient =
+            |point: &Sensitivities| point.is_deficient(group, ELSEWHERE * self.rank_tolerance);
+        // Too few points leave every model without full rank.
+        let points = best.columns.first().map_or(0, Vec::len);
+        if points < problem.parameters.len() || !elsewhere.iter().all(is_deficient) {
+            return;
+        }
+        let simulations = &mut self.simulations;
+        let mut columns = |values: &[f64]| {
+            let (jacobian, took) = sensitivities(problem, evaluation, values);
+            *simulations += took;
+            weighted(&jacobian, scales)
+        };
+        let about = (problem, evaluation);
+        if group.parameters.len() == group.excess + 1 {
+            let members = &group.parameters;
+            group.function = Combination::of(about, best, members, elsewhere, &mut columns);
+        }
+        // Without a form that can be tested by finite changes, several points have to agree.
+        if group.function.is_some() || elsewhere.len() >= AGREEING {
+            group.form = Form::Function;
+        }
     }
 }
 
@@ -230,9 +309,9 @@ struct Spread {
 }
 
 impl Spread {
-    /// From the residuals of a fit of `n` parameters.
-    fn of(problem: &Problem, evaluation: &Evaluation, data: &Data, n: usize) -> Spread {
-        let freedom = data.shares.iter().sum::<f64>() - n as f64;
+    /// From the residuals of a fit and the sensitivities.
+    fn of(problem: &Problem, evaluation: &Evaluation, data: &Data, columns: &[Vec<f64>]) -> Spread {
+        let freedom = data.shares.iter().sum::<f64>() - columns.len() as f64;
         let robust = problem.objectives.first().and_then(|(_, fitness)| {
             fitness.robustness(&data.residuals, freedom).filter(|_| freedom > 0.0)
         });
@@ -241,14 +320,17 @@ impl Spread {
         let believed = plain
             && ErrorModel::of(problem) == ErrorModel::Known
             && problem.objectives[0].0 != "log_likelihood";
+        let effective = freedom::effective(problem, columns, freedom);
         let variance = match robust {
             Some(robust) => robust.variance,
             None if believed => 1.0,
-            None => data.square / freedom,
+            None => effective.inflation * data.square / freedom,
         };
         let quantile = match believed {
             true => normal_quantile(UPPER),
-            false => student_quantile(UPPER, robust.map_or(freedom, |robust| robust.freedom)),
+            false => {
+                student_quantile(UPPER, robust.map_or(effective.freedom, |robust| robust.freedom))
+            }
         };
         Spread { freedom, robust: robust.is_some(), believed, variance, quantile }
     }
@@ -271,17 +353,57 @@ impl Statistics {
     }
 }
 
-/// The side on which the range lies, for parameters that stand at an end of it.
-fn inward(problem: &Problem, values: &[f64]) -> Vec<Option<f64>> {
-    let side = |(free, value): (&super::Free, &f64)| {
-        let place = free.fraction(*value);
-        match (place < AT_END, 1.0 - place < AT_END) {
+impl Statistics {
+    /// Standard errors and correlations as they are told: where parameters stand at ends of their
+    /// ranges, those of the others with these held.
+    pub(super) fn tabulated(&self) -> Option<&Uncertainty> {
+        self.at_bounds.as_ref().map_or(self.uncertainty.as_ref(), |own| Some(&own.held))
+    }
+
+    /// How far the linear 95 % interval reaches below and above; `None` where it is not bounded.
+    pub(super) fn reach(&self, k: usize) -> Option<[f64; 2]> {
+        if let Some(at_bounds) = &self.at_bounds {
+            return Some(at_bounds.reach[k]);
+        }
+        let deviation = self.uncertainty.as_ref()?.standard_deviations[k];
+        Some([self.quantile * deviation; 2]).filter(|_| deviation.is_finite())
+    }
+
+    /// The standard error of parameter `k` with parameter `held` fixed.
+    pub(super) fn deviation_with(&self, k: usize, held: usize) -> Option<f64> {
+        let kept = (0..self.jacobian.len()).filter(|j| *j != held);
+        let columns: Vec<Vec<f64>> = kept.map(|j| self.jacobian[j].clone()).collect();
+        let found = uncertainty_given(&weighted(&columns, &self.weights), self.variance)?;
+        let place = if k > held { k - 1 } else { k };
+        Some(found.standard_deviations[place]).filter(|own| own.is_finite())
+    }
+
+    /// How far the linear fit would go beyond the end at which a parameter stands, in standard
+    /// errors; `None` where it stands at none.
+    pub(super) fn pull(&self, k: usize) -> Option<f64> {
+        let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
+        ends.find(|end| end.parameter == k).map(|end| end.pull)
+    }
+}
+
+/// The side on which the range lies, for parameters that stand at an end of it: those that cannot be
+/// told from that end by their standard errors.
+fn inward(problem: &Problem, values: &[f64], found: Option<&Uncertainty>) -> Vec<Option<f64>> {
+    let side = |k: usize| {
+        let (free, value) = (&problem.parameters[k], values[k]);
+        let deviation = found.map(|own| own.standard_deviations[k]).filter(|own| own.is_finite());
+        let place = free.fraction(value);
+        let is_at = |fraction: f64, distance: f64| match deviation {
+            Some(own) => distance == 0.0 || fraction <= NEAR_END && distance <= AT_END * own,
+            None => fraction <= ON_END,
+        };
+        match (is_at(place, value - free.min), is_at(1.0 - place, free.max - value)) {
             (true, _) => Some(1.0),
             (_, true) => Some(-1.0),
             _ => None,
         }
     };
-    problem.parameters.iter().zip(values).map(side).collect()
+    (0..values.len()).map(side).collect()
 }
 
 /// Series of the same numbers as an earlier one.

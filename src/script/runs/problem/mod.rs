@@ -236,18 +236,15 @@ fn solve_built(
     let mut search = Search::new(session, run, checkpoint, options.watch.clone());
     let ending = search.run_to_end(session)?;
     let Search { run, checkpoint, .. } = search;
-    let Searched { mut run, ending, all, seconds } =
-        searches::search_on(session, (run, ending), &files, options, again)?;
-    if !ending.is_interrupted {
-        solving::conclude(&mut run);
-    }
-    let solved = |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?);
-    let keep = |session: &mut Session, run: &Run| {
-        let files = (path, checkpoint.path(), folder.as_path());
-        shards::keep(session, run, files, (&origins, options))
-    };
+    let searched = searches::search_on(session, (run, ending), &files, options, again)?;
+    let Searched { mut run, ending, all, seconds } = searched;
+    let with = |found: Solution| Solution { importance: importance.clone(), ..found };
+    let paths = (path, checkpoint.path(), folder.as_path());
+    let keep =
+        |session: &mut Session, run: &Run| shards::keep(session, run, paths, (&origins, options));
     *why = failing::none_simulated(&run, &experiments);
-    let mut solution = match solved(&run) {
+    let held_out = validated(&run, &validation)?;
+    let mut solution = match Solution::of_search(&run, &ending.reason, held_out).map(with) {
         // The searches of this shard count, whatever became of the first one.
         Err(fault) if !ending.is_interrupted && options.searches > Some(1) => {
             keep(session, &run)?;
@@ -255,20 +252,22 @@ fn solve_built(
         }
         solution => solution?,
     };
-    solution.importance = importance;
-    let searched = solution.fitness;
-    if options.profile && !ending.is_interrupted {
-        solution = solution.with_profiles(&mut run, solved)?;
+    former::keep(session, &folder, &origins)?;
+    write_quietly(session, &folder, &solution, seconds);
+    solving::draw_curves(&experiments, &mut solution, &validation);
+    if ending.is_interrupted {
+        solution = solution.without_statistics(&why_stopped(session, "the search"));
+    } else {
+        let solved =
+            |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?).map(with);
+        solution = with_statistics(session, &mut run, solution, (&solved, all, options))?;
+        interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
+        solving::draw_curves(&experiments, &mut solution, &validation);
     }
-    solution.add_searches(all, searched);
+    let is_interrupted = ending.is_interrupted || session.world.interrupted();
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
     solution.findings.extend(notes.into_iter().map(Note::finding));
-    interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
-    let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
-    solving::draw_curves(&experiments, &mut solution, &validation);
-    session.print(&solution.text());
-    former::keep(session, &folder, &origins)?;
-    write(session, &folder, &solution, seconds)?;
+    report(session, &folder, &solution, seconds)?;
     if !is_interrupted {
         keep(session, &run)?;
         keep_finished(session, (&checkpoint, &folder), options, &solution);
@@ -295,12 +294,87 @@ fn keep_finished(
     }
 }
 
-/// Adds what the data say about the parameters; whether the user has interrupted that.
-fn infer(session: &mut Session, run: &mut Run, solution: &mut Solution) -> Result<bool, Fault> {
+/// Prints a solution and writes its files.
+fn report(
+    session: &mut Session,
+    folder: &Path,
+    solution: &Solution,
+    seconds: f64,
+) -> Result<(), Fault> {
+    session.print(&solution.text());
+    write(session, folder, solution, seconds)
+}
+
+/// Makes the solution of a run from its best point, and the statistics; where these are stopped, what was
+/// found before.
+fn with_statistics(
+    session: &mut Session,
+    run: &mut Run,
+    found: Solution,
+    (solved, all, options): (
+        &dyn Fn(&Run) -> Result<Solution, Fault>,
+        Vec<solving::SolvedSearch>,
+        &RunOptions,
+    ),
+) -> Result<Solution, Fault> {
     run.evaluation.cancel_by(session.world.interrupt_flag());
-    solution.add_inference(run)?;
+    run.evaluation.show_by(session.world.status());
+    let made = statistics(session, run, (solved, all, options));
+    run.evaluation.show("");
+    run.evaluation.show_by(None);
     run.evaluation.cancel_by(None);
-    Ok(session.world.interrupted())
+    match made {
+        Err(_) if session.world.interrupted() => {
+            Ok(found.without_statistics(&why_stopped(session, "the statistics")))
+        }
+        made => made,
+    }
+}
+
+fn statistics(
+    session: &mut Session,
+    run: &mut Run,
+    (solved, all, options): (
+        &dyn Fn(&Run) -> Result<Solution, Fault>,
+        Vec<solving::SolvedSearch>,
+        &RunOptions,
+    ),
+) -> Result<Solution, Fault> {
+    run.evaluation.show("minimum");
+    solving::conclude(run);
+    let mut solution = Solution::settled(run, solved)?;
+    let searched = solution.fitness;
+    if options.profile && !session.world.interrupted() {
+        solution = solution.with_profiles(run, solved)?;
+    }
+    solution.add_searches(all, searched);
+    if !session.world.interrupted() {
+        run.evaluation.show("bands and intervals");
+        solution.add_inference(run)?;
+    }
+    if session.world.interrupted() {
+        let why = why_stopped(session, "the statistics");
+        let sentence = format!("The report is not complete: {why}.");
+        let finding = solving::Finding::new(solving::FindingKind::Missing, sentence);
+        solution.findings.insert(0, finding);
+    }
+    Ok(solution)
+}
+
+/// Why a run was stopped before this ended.
+fn why_stopped(session: &Session, what: &str) -> String {
+    match session.world.stop_reason() {
+        Some(reason) => format!("{reason}, before {what} ended"),
+        None => format!("the user stopped the run before {what} ended"),
+    }
+}
+
+/// Writes what the search has found before the statistics, which may take long. What cannot be
+/// written now is told when all is written.
+fn write_quietly(session: &mut Session, folder: &Path, solution: &Solution, seconds: f64) {
+    for (name, text) in files_of(session, solution, seconds) {
+        let _ = session.write_file(&folder.join(name), text.as_bytes());
+    }
 }
 
 /// Removes the checkpoint of a run that came to its end.
@@ -444,28 +518,7 @@ pub(super) fn write(
     solution: &Solution,
     seconds: f64,
 ) -> Result<(), Fault> {
-    let mut files: Vec<(String, String)> = [
-        ("result.json", solution.to_json()),
-        ("history.csv", solution.history_csv()),
-        ("fit.csv", solution.fit_csv()),
-        ("individuals.csv", solution.individuals_csv()),
-        ("Calibrated.mo", solution.modelica()),
-        ("calibrated.mos", solution.script()),
-        ("report.html", solution.html()),
-        ("convergence.svg", solution.convergence_figure().svg()),
-        ("timing.json", timing(seconds, session.world.ranks())),
-    ]
-    .map(|(name, text)| (name.to_owned(), text))
-    .into();
-    files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
-    files
-        .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
-    if solution.profiles.is_some() {
-        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
-    }
-    if !solution.searches.is_empty() {
-        files.push(("searches.csv".to_owned(), solution.searches_csv()));
-    }
+    let files = files_of(session, solution, seconds);
     for name in OPTIONAL.iter().filter(|name| !files.iter().any(|(own, _)| own == *name)) {
         discard(session, &folder.join(name));
     }
@@ -494,6 +547,33 @@ pub(super) fn write(
         }
     }
     Ok(())
+}
+
+/// The files of a solution with their names.
+fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String, String)> {
+    let mut files: Vec<(String, String)> = [
+        ("result.json", solution.to_json()),
+        ("history.csv", solution.history_csv()),
+        ("fit.csv", solution.fit_csv()),
+        ("individuals.csv", solution.individuals_csv()),
+        ("Calibrated.mo", solution.modelica()),
+        ("calibrated.mos", solution.script()),
+        ("report.html", solution.html()),
+        ("convergence.svg", solution.convergence_figure().svg()),
+        ("timing.json", timing(seconds, session.world.ranks())),
+    ]
+    .map(|(name, text)| (name.to_owned(), text))
+    .into();
+    files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
+    files
+        .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
+    if solution.profiles.is_some() {
+        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
+    }
+    if !solution.searches.is_empty() {
+        files.push(("searches.csv".to_owned(), solution.searches_csv()));
+    }
+    files
 }
 
 /// A file of an earlier run that this one does not write.

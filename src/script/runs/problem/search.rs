@@ -99,7 +99,10 @@ impl Search {
             return Some(Ending::of(stop));
         }
         if session.world.interrupted() {
-            return Some(Ending::by_user("interrupted: these are the best values found so far"));
+            let why = session.world.stop_reason().unwrap_or_else(|| "interrupted".to_owned());
+            return Some(Ending::by_user(&format!(
+                "{why}: these are the best values found so far"
+            )));
         }
         let seconds = self.before + session.world.monotonic_seconds() - self.started;
         if let Some(watched) = self.watched.as_mut().filter(|_| seconds - self.looked > LOOK) {

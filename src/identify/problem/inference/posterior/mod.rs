@@ -17,7 +17,9 @@ use super::{Distribution, Local};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate, other_shards};
+use crate::identify::problem::{
+    ErrorModel, Evaluation, Free, Problem, Run, Simulate, other_shards,
+};
 use crate::identify::table::significant;
 use nalgebra::DMatrix;
 use sampler::{Chain, Drawn};
@@ -38,6 +40,11 @@ const CONVERGED: f64 = 1.01;
 const ENOUGH: f64 = 400.0;
 /// Where a direction is open or wider than the range, chains start with this part of the range.
 const OPEN: f64 = 0.3;
+/// A posterior is cut by an end of the range where more than this share of the draws lies within this
+/// part of its 95 % interval beside the end; of a normal distribution that ends two standard
+/// deviations from it, 0.5 % do.
+const CUT: f64 = 0.01;
+const NEAR_END: f64 = 0.05;
 /// Rows of `posterior.csv` at most.
 const ROWS: usize = 4000;
 
@@ -87,6 +94,9 @@ pub struct Sampled {
     pub bulk_ess: Option<f64>,
     /// Effective sample size of the tails.
     pub tail_ess: Option<f64>,
+    /// The ends of the search range that cut the posterior: its density does not vanish there.
+    #[serde(default)]
+    pub cut: [Option<f64>; 2],
 }
 
 /// The posterior; `None` where it is refused.
@@ -278,7 +288,7 @@ fn summary(problem: &Problem, chains: &[&Drawn]) -> Posterior {
         let free = &problem.parameters[k];
         let draws = |chain: &Drawn| chain.draws.iter().map(|u| free.value(u[k])).collect();
         let values: Vec<Vec<f64>> = chains.iter().map(|chain| draws(chain)).collect();
-        sampled(&free.name, &values)
+        Sampled { cut: cut_by(free, chains, k), ..sampled(&free.name, &values) }
     };
     let parameters: Vec<Sampled> = (0..problem.parameters.len()).map(parameter).collect();
     let good = |p: &Sampled| {
@@ -301,6 +311,19 @@ fn summary(problem: &Problem, chains: &[&Drawn]) -> Posterior {
     }
 }
 
+/// The ends of the range near which there are more draws than there would be in the tail of a
+/// distribution that ends within it.
+fn cut_by(free: &Free, chains: &[&Drawn], k: usize) -> [Option<f64>; 2] {
+    let mut all: Vec<f64> = chains.iter().flat_map(|chain| &chain.draws).map(|u| u[k]).collect();
+    all.sort_by(f64::total_cmp);
+    let [low, high] = [0.025, 0.975].map(|p| super::bootstrap::quantile(&all, p));
+    let near = NEAR_END * (high - low);
+    let share = |count: usize| count as f64 / all.len() as f64;
+    let below = share(all.iter().filter(|u| **u < near).count());
+    let above = share(all.iter().filter(|u| **u > 1.0 - near).count());
+    [(below, free.min), (above, free.max)].map(|(share, end)| (share > CUT).then_some(end))
+}
+
 fn sampled(name: &str, chains: &[Vec<f64>]) -> Sampled {
     let mut all: Vec<f64> = chains.concat();
     all.sort_by(f64::total_cmp);
@@ -315,6 +338,7 @@ fn sampled(name: &str, chains: &[Vec<f64>]) -> Sampled {
         r_hat: finite(diagnostics::r_hat(chains)),
         bulk_ess: finite(diagnostics::bulk_ess(chains)),
         tail_ess: finite(diagnostics::tail_ess(chains)),
+        cut: [None; 2],
     }
 }
 
@@ -352,6 +376,17 @@ impl Posterior {
                 number(p.r_hat, 4),
                 number(p.bulk_ess, 3),
                 number(p.tail_ess, 3)
+            )
+        }));
+        let cut = self
+            .parameters
+            .iter()
+            .flat_map(|p| p.cut.iter().flatten().map(move |end| (&p.name, end)));
+        sentences.extend(cut.map(|(name, end)| {
+            format!(
+                "The posterior of {name} is cut by the end {} of its search range, which acts as a \
+                 prior: widen the range, unless the bound is physical.",
+                significant(*end, 4)
             )
         }));
         sentences

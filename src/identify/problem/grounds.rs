@@ -1,0 +1,20 @@
+//! What the verdicts of a solution rest on, kept for what is computed later.
+
+use super::Profile;
+
+/// What the verdicts of a solution rest on.
+#[derive(Debug, Clone, Default)]
+pub struct Grounds {
+    /// Linear intervals, not cut at the ranges.
+    pub(super) linear: Vec<Option<[f64; 2]>>,
+    /// How far the linear optimum lies beyond the end at which a parameter stands, in standard errors,
+    /// and the reach of the linear interval to both sides.
+    pub(super) pulls: Vec<Option<(f64, [f64; 2])>>,
+    /// The root of the rise of the sum of squares within the 95 % limit, in units of the residual
+    /// variance.
+    pub(super) quantile: f64,
+    /// Complete profiles, and their parameters.
+    pub(super) profiles: Vec<(usize, Profile)>,
+    /// A better fit that they came upon.
+    pub(super) better: Option<(Vec<f64>, f64)>,
+}

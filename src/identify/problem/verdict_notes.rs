@@ -1,0 +1,142 @@
+//! Sentences about single parameters. They say what the verdict says, and where it comes from.
+
+use super::statistics::BEYOND;
+use super::verdicts::{ByProfile, Judged};
+use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
+use crate::identify::table::{ends, significant};
+
+/// What must be known about a parameter.
+pub fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {
+    let name = &parameter.name;
+    let missing = |sentence: String| {
+        let finding = Finding::new(FindingKind::Missing, sentence);
+        vec![finding.parameters([name.as_str()])]
+    };
+    match judged {
+        Judged::Effect | Judged::Group | Judged::Exact | Judged::Nothing => Vec::new(),
+        Judged::Linear => match parameter.verdict {
+            Some(Verdict::PracticallyNonIdentifiable) => vec![undetermined(parameter, false)],
+            _ => Vec::new(),
+        },
+        Judged::Profile(found) => by_profile(parameter, found),
+        Judged::Budget(budget) => missing(format!(
+            "What these data say of {name} was not computed: its profile likelihood takes more \
+             than {budget} simulations. `--profile` allows more."
+        )),
+        Judged::Stopped => missing(format!(
+            "What these data say of {name} was not computed: the run was stopped before its \
+             profile likelihood."
+        )),
+        Judged::Cut(cut) => missing(format!(
+            "The profile likelihood of {name} ends at {}, before its 95 % limit: beyond it a \
+             constraint is violated or simulations fail.",
+            significant(*cut, 4)
+        )),
+    }
+}
+
+/// The same, where a profile has replaced what was said before.
+fn by_profile(parameter: &SolvedParameter, found: &ByProfile) -> Vec<Finding> {
+    if let Some(pull) = found.pull {
+        return vec![beyond(parameter, pull)];
+    }
+    let mut findings = Vec::new();
+    if parameter.verdict == Some(Verdict::PracticallyNonIdentifiable) {
+        findings.push(undetermined(parameter, found.falls));
+    } else if let Some(linear) = found.linear {
+        findings.push(nonlinear(parameter, linear));
+    }
+    if !parameter.pieces.is_empty() {
+        let part = |ends_of: &[f64; 2]| ends(*ends_of, parameter.value);
+        let parts: Vec<String> = parameter.pieces.iter().map(part).collect();
+        let sentence = format!(
+            "The values of {} within the 95 % limit are {} separate parts: {}.",
+            parameter.name,
+            parts.len(),
+            parts.join("; ")
+        );
+        let finding = Finding::new(FindingKind::Interval, sentence).severity(Severity::Information);
+        findings.push(finding.parameters([parameter.name.as_str()]));
+    }
+    findings
+}
+
+/// That the data do not bound a parameter on one side or on both. `falls`: whether the objective still
+/// falls at the end of the range at which it stands.
+fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
+    let name = &parameter.name;
+    let [min, max] = parameter.range.map(|end| significant(end, 4));
+    let [low, high] = parameter.interval.unwrap_or(parameter.range).map(|end| significant(end, 4));
+    let is_upper = parameter.value - parameter.range[0] > parameter.range[1] - parameter.value;
+    let (side, end) = if is_upper { ("upper", &max) } else { ("lower", &min) };
+    let stands = match (parameter.at_bound, falls) {
+        (false, _) => String::new(),
+        (true, false) => format!(" The best value is the {side} end of the range."),
+        (true, true) => format!(
+            " The best value is the {side} end {end} of the range, and the objective still falls \
+             there: widen the range, or question the model if the bound is physical."
+        ),
+    };
+    let what = match parameter.open {
+        [true, true] => format!("it can have any value in its whole search range, {min} to {max}"),
+        [false, false] => format!("it can have any value between {low} and {high}"),
+        [false, true] => format!(
+            "it is at least {low}; they do not bound it from above, up to the end {max} of its \
+             search range"
+        ),
+        [true, false] => format!(
+            "it is at most {high}; they do not bound it from below, down to the end {min} of its \
+             search range"
+        ),
+    };
+    let sentence =
+        format!("{name} is practically non-identifiable from these data: {what}.{stands}");
+    Finding::new(FindingKind::PracticallyNonIdentifiable, sentence).parameters([name.as_str()])
+}
+
+/// That the optimum lies beyond the end of the range, where the linear model is true of it.
+fn beyond(parameter: &SolvedParameter, pull: f64) -> Finding {
+    let [min, max] = parameter.range;
+    let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
+    let end = significant(if upper { max } else { min }, 5);
+    let side = if upper { "upper" } else { "lower" };
+    let name = &parameter.name;
+    let sentence = format!(
+        "{name} lies at the {side} end {end} of its search range: the optimum lies beyond it, by \
+         {} standard errors for a linear model, so it has no interval, and the intervals of the \
+         others are valid for {name} = {end}. Widen the range, or question the model if the bound \
+         is physical.",
+        significant(pull, 2)
+    );
+    let finding = Finding::new(FindingKind::AtBound, sentence);
+    finding.parameters([name.as_str()]).statistic(pull, BEYOND)
+}
+
+fn nonlinear(parameter: &SolvedParameter, linear: [f64; 2]) -> Finding {
+    let own = parameter.interval.unwrap_or(parameter.range);
+    let sentence = format!(
+        "The model is strongly nonlinear in {} near the fit: its 95 % interval {} comes from its \
+         profile likelihood. The linearized interval, {}, is not valid.",
+        parameter.name,
+        ends(own, parameter.value),
+        ends(linear, parameter.value)
+    );
+    let finding = Finding::new(FindingKind::Interval, sentence).severity(Severity::Information);
+    finding.parameters([parameter.name.as_str()])
+}
+
+/// A better fit that the profiles have come upon.
+pub fn profile_findings(solution: &Solution, found: &Profiles) -> Option<Finding> {
+    let (values, sum) = found.better.as_ref()?;
+    let pairs = solution.parameters.iter().zip(values);
+    let values: Vec<String> =
+        pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 6))).collect();
+    let sentence = format!(
+        "The profile likelihoods found a better fit ({}): {}. Run again with a larger budget \
+         or with these start values.",
+        significant(*sum, 7),
+        values.join(", ")
+    );
+    let finding = Finding::new(FindingKind::OtherMinimum, sentence);
+    Some(finding.severity(Severity::Serious))
+}
