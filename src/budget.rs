@@ -1,5 +1,5 @@
 //! How much work functions may take: recursion whose cost is exponential, and loops without end, end
-//! by this limit wherever they are run.
+//! by this limit wherever they are run. And whether there is memory for what is about to be allocated.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -60,5 +60,40 @@ pub(crate) fn in_millions(number: u64) -> String {
             format!("{} million", number / 1_000_000)
         }
         _ => number.to_string(),
+    }
+}
+
+/// Whether the system has memory for so many bytes. It is asked right before they are taken, so that
+/// what is too large ends with an error and does not end the process.
+pub(crate) fn has_memory(bytes: usize) -> bool {
+    #[cfg(test)]
+    if memory_requests::fails() {
+        return false;
+    }
+    Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
+}
+
+/// Requests for memory on this thread, of which tests make one fail.
+#[cfg(test)]
+pub(crate) mod memory_requests {
+    use std::cell::Cell;
+
+    thread_local! {
+        static DONE: Cell<usize> = const { Cell::new(0) };
+        static FAIL_AT: Cell<usize> = const { Cell::new(0) };
+    }
+
+    /// Works with the request of this number, from 1 on, failing; how many there were.
+    pub(crate) fn failing_at<T>(number: usize, work: impl FnOnce() -> T) -> (T, usize) {
+        DONE.set(0);
+        FAIL_AT.set(number);
+        let result = work();
+        FAIL_AT.set(0);
+        (result, DONE.get())
+    }
+
+    pub(super) fn fails() -> bool {
+        DONE.set(DONE.get() + 1);
+        DONE.get() == FAIL_AT.get()
     }
 }

@@ -1,6 +1,7 @@
 //! Results in memory.
 
 use super::errors::{BAD_RESULT_TABLE, OUTSIDE_RESULTS, UNKNOWN_RESULT_VARIABLE};
+use crate::budget::has_memory;
 use crate::diag::{Fault, suggest};
 use crate::{bail, fault};
 use std::collections::HashSet;
@@ -64,11 +65,11 @@ impl ResultTable {
     /// A fault where there is no memory for a file with so many bytes for each value.
     pub(super) fn has_room(&self, bytes: usize) -> Result<(), Fault> {
         let count = self.time.len().saturating_mul(self.series.len() + 1);
-        let room = Vec::<u8>::new().try_reserve_exact(count.saturating_mul(bytes));
-        room.map_err(|_| {
-            fault!(BAD_RESULT_TABLE, "there is no memory for a result file with {count} values";
-                help: "select variables or use fewer intervals, or write `.csv`, which needs less")
-        })
+        if has_memory(count.saturating_mul(bytes)) {
+            return Ok(());
+        }
+        Err(fault!(BAD_RESULT_TABLE, "there is no memory for a result file with {count} values";
+            help: "select variables or use fewer intervals, or write `.csv`, which needs less"))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::errors::{ARRAY_TOO_LARGE, STRING_TOO_LONG, TYPE_MISMATCH};
 use super::{EnumerationValue, RecordValue, Value};
+use crate::budget::has_memory;
 use crate::diag::Fault;
 use crate::{bail, fault};
 use std::sync::Arc;
@@ -125,7 +126,7 @@ const LARGE: usize = 1 << 20;
 /// Whether the system has so many bytes. It is asked right before they are taken, so that an array
 /// or a string that a script asks for ends with an error and not the process.
 fn is_available(bytes: usize) -> bool {
-    bytes < LARGE || Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
+    bytes < LARGE || has_memory(bytes)
 }
 
 /// A fault if there is no memory for so many elements.

@@ -9,6 +9,7 @@
 
 use super::steps::failing::{Failure, PLAN, Plan, has_crashed};
 use super::*;
+use crate::budget::memory_requests;
 use crate::script::runs::problem::{RunOptions, solve};
 use crate::script::runs::view::Progress;
 use crate::script::world::{Environment, Files, MemoryWorld, Screen, Stamp};
@@ -154,6 +155,15 @@ impl Screen for DiskWorld {
     }
     fn progress(&mut self, _: &Progress) {}
 }
+
+/// What reads, computes and writes more than a little.
+const LARGE_SCRIPT: &str = "openModel(\"Growth.mo\");
+simulateModel(\"Growth\", resultFile = \"first\");
+simulateModel(\"Growth\", resultFile = \"second\");
+x := ones(300, 300);
+y := 2*x;
+s := readFile(\"d.csv\");
+";
 
 type Job = fn(DiskWorld, bool) -> bool;
 
@@ -305,4 +315,27 @@ fn run_survives_every_failing_call() {
 #[test]
 fn run_survives_an_end_at_every_call() {
     assert!(every_step(run, Failure::Crash) > 20);
+}
+
+#[test]
+fn a_request_for_memory_that_fails_is_an_error() {
+    let large: Job =
+        |world, _| Session::new(Box::new(world)).run_text("l.mos", LARGE_SCRIPT).code == 0;
+    for (job, resumes, least) in [(large, false, 4), (identify as Job, true, 3)] {
+        let whole = Place::new();
+        let ((succeeded, text, _), requests) =
+            memory_requests::failing_at(0, || whole.drive(job, None, false));
+        assert!(succeeded && requests >= least, "{requests}: {text}");
+        for at in 1..=requests {
+            let place = Place::new();
+            let ((succeeded, text, _), _) =
+                memory_requests::failing_at(at, || place.drive(job, None, false));
+            // What is only kept for later may be missing in silence.
+            let is_said = text.contains("memory");
+            assert!(succeeded != is_said, "request {at} of {requests}: {text}");
+            let (succeeded, text, _) = place.drive(job, None, resumes && !succeeded);
+            assert!(succeeded, "after request {at}: {text}");
+            same(&place.results(), &whole.results(), &format!("request {at}"), &text);
+        }
+    }
 }

@@ -7,6 +7,8 @@
 use super::Safety;
 use super::steps::step;
 use super::temporary::{is_old, is_temporary, temporary_name};
+use crate::budget::has_memory;
+use crate::cli::memory;
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
 use rustix::fs::{self, AtFlags, FileType, Mode, OFlags, Stat};
@@ -21,6 +23,9 @@ use std::path::{Component, Path, PathBuf};
 
 /// Links that lead to links; as many as operating systems follow.
 const MAX_LINKS: usize = 40;
+
+/// Bytes from which a file is compared with the memory before it is read.
+const LARGE: u64 = 1 << 30;
 
 /// An entry of a folder, which may not exist yet.
 pub(super) struct Place {
@@ -165,7 +170,14 @@ impl Place {
         let mut bytes = Vec::new();
         // `Take` hides the size of the file, for which room is made at once.
         let size = file.metadata()?.len().min(most);
-        bytes.try_reserve(usize::try_from(size).unwrap_or(usize::MAX))?;
+        if size > LARGE && memory::default_limit().is_some_and(|limit| size >> 20 > limit.into()) {
+            return Err(io::Error::other("it is larger than the memory of this machine"));
+        }
+        let size = usize::try_from(size).unwrap_or(usize::MAX);
+        if !has_memory(size) {
+            return Err(io::ErrorKind::OutOfMemory.into());
+        }
+        bytes.try_reserve(size)?;
         file.take(most).read_to_end(&mut bytes)?;
         Ok(bytes)
     }

@@ -16,10 +16,17 @@ pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
         io::ErrorKind::NotADirectory => "a part of its path is not a directory".to_owned(),
-        _ => error.to_string().to_lowercase(),
+        _ => begun_small(&error.to_string()),
     };
     let fault = Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", shown(path)));
     fault.help_if(escape_help(path))
+}
+
+/// Words with a small first letter: sizes in them keep their units.
+fn begun_small(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|first| first.to_lowercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 /// A path as people read it: control characters as escapes.

@@ -28,7 +28,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("bytecode", &["budget", "external", "symbolic", "source", "diag"]),
     ("units", &[]),
     ("mat", &["units", "diag"]),
-    ("value", &["name", "diag"]),
+    ("value", &["budget", "name", "diag"]),
     ("external", &["mat", "singular_values", "value", "diag"]),
     ("plot", &["diag"]),
     ("sim", &["registry", "diag"]),
@@ -37,7 +37,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("format", &["syntax", "source", "diag"]),
     ("functions", &["value", "symbolic", "diag"]),
     ("eval", &["functions", "external", "syntax", "value", "symbolic", "name", "source", "diag"]),
-    ("results", &["sim", "mat", "registry", "diag"]),
+    ("results", &["budget", "sim", "mat", "registry", "diag"]),
     (
         "flatten",
         &[
@@ -76,6 +76,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "codegen",
         &[
+            "budget",
             "bytecode",
             "causalize",
             "lower",
