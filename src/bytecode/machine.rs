@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 2_000;
 /// Largest number of registers of all frames.
-const MAX_STACK: usize = 20_000_000;
+pub(super) const MAX_STACK: usize = 20_000_000;
 /// Most turns of a loop.
 const MAX_TURNS: f64 = 1e15;
 
@@ -580,11 +580,13 @@ fn execute<T: Number>(
                 r[d as usize] = r[d as usize].add(T::constant(offset));
             }
             Instruction::Load { d, base, offset } => {
-                r[d as usize] = r[base as usize + r[offset as usize].value() as usize];
+                let position = place(base, r[offset as usize]);
+                r[d as usize] = *r.get(position).ok_or(Reason::Subscript)?;
             }
             Instruction::Store { base, offset, a } => {
-                let position = base as usize + r[offset as usize].value() as usize;
-                r[position] = r[a as usize];
+                let position = place(base, r[offset as usize]);
+                let value = r[a as usize];
+                *r.get_mut(position).ok_or(Reason::Subscript)? = value;
             }
             Instruction::Turns { d, range } => {
                 let of = |at: u32| r[(range + at) as usize].value();
@@ -620,6 +622,11 @@ fn execute<T: Number>(
         }
     }
     Ok(None)
+}
+
+/// The register `base` plus an offset.
+fn place<T: Number>(base: u32, offset: T) -> usize {
+    (base as usize).saturating_add(offset.value() as usize)
 }
 
 /// Takes the instructions between a jump back and its target from the budget.

@@ -21,6 +21,7 @@ mod machine;
 mod memo;
 mod number;
 mod run_time_texts;
+mod validation;
 
 pub use crate::external::Journal;
 pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};

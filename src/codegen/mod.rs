@@ -49,6 +49,7 @@ mod translation;
 mod unread;
 #[cfg(feature = "jit")]
 mod upcalls;
+mod validation;
 
 pub use machine_code::interpret;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};

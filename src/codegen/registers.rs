@@ -20,6 +20,7 @@ pub(crate) struct Registers {
     #[serde(skip)]
     functions: Arc<Functions>,
     /// Workspaces of linear systems by matrix, and their sizes.
+    #[serde(deserialize_with = "crate::symbolic::read_by_matrix")]
     workspaces: FxHashMap<Expr, u32>,
     systems: Vec<usize>,
     /// What the tape that is written at the moment has computed.
@@ -68,6 +69,16 @@ impl Registers {
     /// The workspace for a matrix, if any tape solves a system with it.
     pub(crate) fn workspace_of(&self, matrix: Expr) -> Option<u32> {
         self.workspaces.get(&matrix).copied()
+    }
+
+    /// The registers of constants.
+    pub(super) fn constants(&self) -> impl Iterator<Item = &Register> {
+        self.constants.values()
+    }
+
+    /// The workspaces of matrices.
+    pub(super) fn workspaces(&self) -> impl Iterator<Item = &u32> {
+        self.workspaces.values()
     }
 
     /// The functions that tapes on these registers call.

@@ -1,6 +1,8 @@
 //! A program as bytes, for files that the same version of this program reads again.
 
 use super::program::Program;
+use crate::budget::has_memory;
+use crate::symbolic::reading_variables;
 use postcard::ser_flavors::Size;
 use serde::Serialize;
 use std::sync::Arc;
@@ -12,13 +14,23 @@ const MOST_BYTES: usize = 256 << 20;
 impl Program {
     /// The bytes; `None` where it has what no file can hold, functions in C, or is too large.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
-        bytes_of(self)
+        bytes_of(&(self.n_variables(), self))
+    }
+
+    fn n_variables(&self) -> u32 {
+        self.sorted.dae.variables.len() as u32
     }
 
     /// The program that became these bytes by [`Program::to_bytes`] of this version. Places are
-    /// those of [`with_sources`](crate::source::with_sources).
+    /// those of [`with_sources`](crate::source::with_sources). `None` where something in them refers to
+    /// what is not there.
     pub fn from_bytes(bytes: &[u8]) -> Option<Arc<Program>> {
-        let mut program: Program = postcard::from_bytes(bytes).ok()?;
+        let (n_variables, bytes): (u32, &[u8]) = postcard::take_from_bytes(bytes).ok()?;
+        let read = || postcard::from_bytes(bytes).ok();
+        let mut program: Program = reading_variables(n_variables, read)?;
+        if program.n_variables() != n_variables || !program.is_valid() {
+            return None;
+        }
         program.registers.use_functions(&program.sorted.dae.functions);
         Some(Arc::new(program))
     }
@@ -32,7 +44,7 @@ pub(crate) fn bytes_of<T: Serialize + ?Sized>(value: &T) -> Option<Vec<u8>> {
 fn bytes_up_to<T: Serialize + ?Sized>(value: &T, most: usize) -> Option<Vec<u8>> {
     let size: usize = postcard::serialize_with_flavor(value, Size::default()).ok()?;
     let mut bytes = Vec::new();
-    if size > most || bytes.try_reserve_exact(size).is_err() {
+    if size > most || !has_memory(size) || bytes.try_reserve_exact(size).is_err() {
         return None;
     }
     postcard::to_extend(value, bytes).ok()

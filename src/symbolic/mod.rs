@@ -26,6 +26,7 @@ mod print;
 mod rounding;
 mod simplify;
 mod solve;
+mod stored;
 mod substitute;
 #[cfg(test)]
 mod tests;
@@ -38,4 +39,5 @@ pub use pool::{Containing, Pool, VariableCollection};
 pub use print::print;
 pub use rounding::up_to_rounding;
 pub use solve::{Linear, Solution, linear_in, solve};
+pub(crate) use stored::{read_by_matrix, reading_variables};
 pub use substitute::{Substitution, substitute};

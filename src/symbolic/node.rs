@@ -3,9 +3,7 @@
 use super::function::FunctionId;
 
 /// An expression: the id of a node of one [`Pool`](super::Pool).
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 pub struct Expr(pub(super) u32);
 
 impl Expr {
@@ -16,9 +14,7 @@ impl Expr {
 }
 
 /// A variable, numbered by whoever owns the pool.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 pub struct VarId(pub u32);
 
 /// A constant that is equal to another when all bits are.
@@ -144,7 +140,7 @@ pub enum Node {
     /// A number.
     Constant(Number),
     /// A variable.
-    Variable(VarId),
+    Variable(#[serde(deserialize_with = "super::stored::read_any_variable")] VarId),
     /// `-a`
     Neg(Expr),
     /// `a + b`

@@ -7,11 +7,11 @@ use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::cell::RefCell;
 
 /// All nodes of all expressions of a model. The constructors ([`Pool::add`] …) simplify locally.
-#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Default, serde::Serialize)]
 pub struct Pool {
-    nodes: IndexSet<Node, FxBuildHasher>,
+    pub(super) nodes: IndexSet<Node, FxBuildHasher>,
     /// By function and input.
-    inverses: FxHashMap<(u32, u32), Inverse>,
+    pub(super) inverses: FxHashMap<(u32, u32), Inverse>,
 }
 
 impl Pool {

@@ -94,10 +94,18 @@ pub enum UnitRule {
 }
 
 /// A function of the table.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 pub struct FunctionId(u16);
+
+impl<'de> serde::Deserialize<'de> for FunctionId {
+    fn deserialize<D: serde::Deserializer<'de>>(source: D) -> Result<FunctionId, D::Error> {
+        let number = u16::deserialize(source)?;
+        match usize::from(number) < TABLE.len() {
+            true => Ok(FunctionId(number)),
+            false => Err(serde::de::Error::custom("the table of functions is shorter")),
+        }
+    }
+}
 
 static TABLE: LazyLock<Vec<&'static Function>> =
     LazyLock::new(|| FAMILIES.iter().flat_map(|family| family.iter()).collect());
