@@ -52,6 +52,13 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     named.filter(|(name, _)| name != "timing.json" && name != "run.lock").collect()
 }
 
+/// The files of a folder but for those by which a run that was not divided goes on with higher limits.
+fn results(here: &TempDir, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let mut all = files(&here.path().join(folder));
+    all.retain(|name, _| !name.starts_with("finished"));
+    all
+}
+
 /// Seed and objective of each line.
 fn searches(folder: &Path) -> Vec<(String, f64)> {
     let text = fs::read_to_string(folder.join("searches.csv")).unwrap();
@@ -99,7 +106,7 @@ fn shards_divide_the_searches() {
     let (code, text, errors) = gapi(&here, &merge);
     assert_eq!(code, 0, "{errors}");
     assert!(!text.lines().any(|line| line.starts_with("search ")), "{text}");
-    let (whole, merged) = (files(&here.path().join("whole")), files(&here.path().join("merged")));
+    let (whole, merged) = (results(&here, "whole"), results(&here, "merged"));
     assert_eq!(whole.keys().collect::<Vec<_>>(), merged.keys().collect::<Vec<_>>());
     for (name, bytes) in &whole {
         assert!(bytes == &merged[name], "`{name}` differs");
@@ -124,6 +131,27 @@ fn a_study_that_was_killed_goes_on_with_the_searches_that_it_has() {
     let text = identify(&here, &[&study[..], &["--out", "killed", "--resume"]].concat());
     assert!(text.contains("resumed after 3 generations"), "{text}");
     assert_eq!(whole, files(&killed));
+}
+
+#[test]
+fn all_searches_go_on_where_a_limit_has_ended_them() {
+    let here = here();
+    let generations = |n: usize| {
+        let problem = PROBLEM.replace("generations = 4", &format!("generations = {n}"));
+        fs::write(here.path().join("p.toml"), problem).unwrap();
+    };
+    let raised = ["--searches", "3", "--out", "raised"];
+    let text = identify(&here, &raised);
+    assert!(text.contains("continue from here with higher limits"), "{text}");
+    generations(9);
+    let text = identify(&here, &[&raised[..], &["--resume"]].concat());
+    assert_eq!(text.matches("resumed after 4 generations").count(), 3, "{text}");
+    identify(&here, &["--searches", "3", "--out", "whole"]);
+    let (whole, raised) = (files(&here.path().join("whole")), files(&here.path().join("raised")));
+    assert!(whole.contains_key("finished-3.journal") && !whole.contains_key("run-3.journal"));
+    for (name, bytes) in &whole {
+        assert!(bytes == &raised[name], "`{name}` differs");
+    }
 }
 
 #[test]
@@ -161,7 +189,7 @@ fn a_shard_whose_first_search_fails_leaves_the_others() {
     }
     let (code, _, errors) = gapi(&here, &["report", "--merge", "s1", "s2", "--out", "merged"]);
     assert_eq!(code, 0, "{errors}");
-    assert_eq!(files(&here.path().join("whole")), files(&here.path().join("merged")));
+    assert_eq!(results(&here, "whole"), results(&here, "merged"));
 }
 
 #[test]

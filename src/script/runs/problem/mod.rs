@@ -70,8 +70,6 @@ const OPTIONAL: [&str; 5] =
     ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv", "searches.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
-/// The journal of a run that ended at a limit.
-const FINISHED: &str = "finished.journal";
 
 /// How a problem is run.
 #[derive(Debug, Clone, Default)]
@@ -276,22 +274,34 @@ fn solve_built(
     Ok(solution)
 }
 
-/// Keeps the journal of a run that ended at a limit, for one with a higher limit.
+/// Keeps the journals of a run that ended at a limit, those of all its searches, for one with a higher
+/// limit.
 fn keep_finished(
     session: &mut Session,
     (checkpoint, folder): (&Checkpoint, &Path),
     options: &RunOptions,
     solution: &Solution,
 ) {
-    let is_alone = options.searches.unwrap_or(1) == 1 && options.division.is_whole();
-    if !is_alone || solution.ending.kind != EndingKind::Budget {
+    if !options.division.is_whole() || solution.ending.kind != EndingKind::Budget {
         return;
     }
-    let journal = session.read_bytes(checkpoint.path());
-    let Ok(journal) = journal.map(|bytes| solving::without_times(&bytes)) else { return };
-    if session.write_file(&folder.join(FINISHED), &journal).is_ok() {
+    let others =
+        (2..=options.searches.unwrap_or(1)).map(|number| searches::journal(folder, number));
+    let is_kept = std::iter::once(checkpoint.path().to_owned()).chain(others).all(|path| {
+        let journal = session.read_bytes(&path);
+        journal.is_ok_and(|bytes| {
+            session.write_file(&finished(&path), &solving::without_times(&bytes)).is_ok()
+        })
+    });
+    if is_kept {
         session.print("\n  continue from here with higher limits in `[stop]` and --resume\n");
     }
+}
+
+/// The journal of a search that ended at a limit: `finished.journal` for `run.journal`.
+fn finished(journal: &Path) -> PathBuf {
+    let name = journal.file_name().unwrap_or_default().to_string_lossy();
+    journal.with_file_name(name.replacen("run", "finished", 1))
 }
 
 /// Prints a solution and writes its files.
@@ -434,7 +444,7 @@ fn open(
         );
     }
     let mut bytes = solving::header(origins);
-    let finished = path.with_file_name(FINISHED);
+    let finished = finished(path);
     let left = [path, &finished].into_iter().find(|path| session.world.exists(path));
     let known = match (known, left) {
         (Some(journal), _) => Some(journal.to_vec()),
