@@ -18,6 +18,8 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
 };
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 
 /// The type of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +33,7 @@ enum Kind {
 
 /// Checks the conditions and relations that a class itself writes.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
-    let mut walk = Walk { class, loops: Vec::new(), errors };
+    let mut walk = Walk { class, loops: Vec::new(), operations: RefCell::default(), errors };
     for component in class.components() {
         walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
@@ -54,6 +56,9 @@ struct Walk<'a, 'e> {
     class: Scope<'a>,
     /// The loop variables met; what they are is not looked at.
     loops: Vec<Ident>,
+    /// The types of the operations of the class, by where these are in memory: each term of a long sum
+    /// asks for that of all terms before it.
+    operations: RefCell<FxHashMap<*const Expression, Option<Kind>>>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
@@ -188,17 +193,32 @@ impl Walk<'_, '_> {
             ExpressionKind::Reference(reference) => self.kind_of_reference(reference),
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(Kind::Boolean),
             ExpressionKind::Binary { operator, left, right } => {
-                let both = [self.kind(left)?, self.kind(right)?];
-                match operator {
-                    _ if is_relation(*operator) || is_logical(*operator) => Some(Kind::Boolean),
-                    BinaryOperator::Add
-                    | BinaryOperator::Subtract
-                    | BinaryOperator::Multiply
-                    | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
-                    _ => None,
-                }
+                let place = std::ptr::from_ref(expression);
+                let known = self.operations.borrow().get(&place).copied();
+                known.unwrap_or_else(|| {
+                    let kind = self.kind_of_operation(*operator, left, right);
+                    self.operations.borrow_mut().insert(place, kind);
+                    kind
+                })
             }
             ExpressionKind::Call { function, .. } => self.kind_of_call(function),
+            _ => None,
+        }
+    }
+
+    fn kind_of_operation(
+        &self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+    ) -> Option<Kind> {
+        let both = [self.kind(left)?, self.kind(right)?];
+        match operator {
+            _ if is_relation(operator) || is_logical(operator) => Some(Kind::Boolean),
+            BinaryOperator::Add
+            | BinaryOperator::Subtract
+            | BinaryOperator::Multiply
+            | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
             _ => None,
         }
     }
