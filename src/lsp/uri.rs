@@ -24,10 +24,15 @@ const ESCAPED: &AsciiSet = &CONTROLS
     .add(b'|')
     .add(b'}');
 
-/// The path of a `file:` name; `None` for others, such as those of documents never saved.
+/// The path of a `file:` name; `None` for others, such as those of documents never saved, and for those
+/// of other machines (RFC 8089 §2): a part of the path in the place of the machine would name a file
+/// far above the one that was meant.
 pub fn path(uri: &Uri) -> Option<PathBuf> {
     let rest = uri.as_str().strip_prefix("file://")?;
-    let (_, path) = rest.split_at(rest.find('/')?);
+    let (machine, path) = rest.split_at(rest.find('/')?);
+    if !(machine.is_empty() || machine.eq_ignore_ascii_case("localhost")) {
+        return None;
+    }
     let decoded = percent_decode_str(path).decode_utf8().ok()?;
     let is_drive =
         matches!(decoded.as_bytes(), [b'/', letter, b':', ..] if letter.is_ascii_alphabetic());
@@ -57,6 +62,10 @@ mod tests {
             assert_eq!(path(&uri), Some(PathBuf::from(text)), "{}", uri.as_str());
         }
         assert_eq!(of_path(Path::new("a.mo")), None);
-        assert_eq!(path(&"untitled:Untitled-1".parse().expect("a name")), None);
+        for other in ["untitled:Untitled-1", "file://%2Fetc/passwd", "file://machine/a.mo"] {
+            assert_eq!(path(&other.parse().expect("a name")), None, "{other}");
+        }
+        let local = path(&"file://localhost/a.mo".parse().expect("a name"));
+        assert_eq!(local.as_deref(), Some(Path::new("/a.mo")));
     }
 }
