@@ -1,8 +1,10 @@
 //! What no bytes may make panic or hang. The fuzz targets call these functions with inputs that are
 //! led by coverage, the suite with a corpus and fixed mutations of it.
 
+use gapilib::cli::embedding::Embedding;
 use gapilib::flatten::{Library, flatten};
 use gapilib::identify::problem;
+use gapilib::lsp::{Client, Document, Documents, Workspace, answer};
 use gapilib::mat::{self, MatFile};
 use gapilib::results;
 use gapilib::script::Session;
@@ -12,7 +14,11 @@ use gapilib::source::SourceId;
 use gapilib::syntax::ast::StoredDefinition;
 use gapilib::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
 use gapilib::syntax::{decode, parse_script, parse_stored_definition, print};
-use std::path::Path;
+use lsp_types::{TextDocumentContentChangeEvent, TextDocumentItem};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 /// How often a session looks whether it has to stop: often enough for small scripts.
@@ -149,20 +155,36 @@ pub(crate) fn read_journal(bytes: &[u8]) {
     }
 }
 
-/// A model with all that a translation has: states, events, a function, a nonlinear equation.
+/// A model with what a translation may have: states, events, functions, loops, delays.
 const KEPT: &str = "model Kept
-  function f input Real u; output Real v; algorithm v := u*u + 1; end f;
+  function f input Real u; output Real v; algorithm v := u*u + 1; annotation(derivative = df); end f;
+  function df input Real u; input Real du; output Real dv; algorithm dv := 2*u*du; end df;
+  function total input Real u[:]; output Real s; protected Real k[size(u, 1)]; algorithm
+    s := 0; k := u; for i in 1:size(u, 1) loop k[i] := k[i]^2; s := s + k[integer(min(i, 2))]; end for;
+    assert(s >= 0, \"no sum\");
+  end total;
   parameter Real p = 2;
   parameter Integer n = 2;
   Real x[n](each start = 1, each fixed = true);
   Real y;
   Real z(start = 1);
+  Real a; Real b; Real c;
+  Real h(start = 1, fixed = true); Real v(start = 0, fixed = true);
+  Real late; Real[2] ends; Boolean high;
   discrete Real d(start = 0, fixed = true);
 equation
   for i in 1:n loop der(x[i]) = -p*x[i]; end for;
-  y = f(x[1]) + (if time > 0.5 then 1 else 0);
+  y = f(x[1]) + total(x) + (if time > 0.5 then exp(-x[2])*sqrt(1 + x[2]^2) else floor(3*x[1]));
   z^3 + z = y;
+  a + p*b - c = x[1]; b - a + p*c = x[2]; p*a + b + c*(1 + x[1]) = 1;
+  der(h) = v; der(v) = -9.81;
+  high = h > 0.5 and y < 5;
+  late = delay(x[1], 0.1);
+  (ends[1], ends[2]) = spatialDistribution(x[1], x[2], time, true, {0, 1}, {1, 1});
+  assert(h < 100, \"it is at \" + String(h));
+  when h < 0 then reinit(v, -0.7*pre(v)); end when;
   when sample(0.2, 0.2) then d = pre(d) + 1; end when;
+  when time > 0.95 then terminate(\"over\"); end when;
 end Kept;
 ";
 
@@ -185,6 +207,14 @@ pub(crate) fn read_cache_entry(bytes: &[u8]) {
     simulate_kept(OneEntry(Mutex::new(Some(bytes.to_vec()))));
 }
 
+/// Whether nothing is translated where there is this entry: it stays the only one.
+pub(crate) fn is_taken(entry: &[u8]) -> bool {
+    // A byte more than the entry has is read as well.
+    let longer = [entry, &[0]].concat();
+    let kept = simulate_kept(OneEntry(Mutex::new(Some(longer.clone()))));
+    kept.find("") == Some(longer)
+}
+
 /// The entry that is kept where there was none.
 pub(crate) fn cache_entry() -> Vec<u8> {
     let kept = simulate_kept(OneEntry::default());
@@ -198,4 +228,170 @@ fn simulate_kept(kept: OneEntry) -> Arc<OneEntry> {
     session
         .run_text("fuzz.mos", "openModel(\"Kept.mo\");\nsimulateModel(\"Kept\", stopTime = 1);\n");
     kept
+}
+
+/// Requests that name a place in a document, or the document alone.
+const REQUESTS: &[&str] = &[
+    "hover",
+    "completion",
+    "definition",
+    "references",
+    "documentHighlight",
+    "prepareRename",
+    "documentSymbol",
+    "semanticTokens/full",
+    "foldingRange",
+    "formatting",
+];
+
+/// An editor opens a text, asks for all that it can at some places, and changes the text there.
+pub(crate) fn serve_editor(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let world = || MemoryWorld::new().interrupted_after(QUESTIONS);
+    let mut workspace = Workspace::new(Client::default(), move || Session::new(Box::new(world())));
+    let uri: lsp_types::Uri = "file:///work/M.mo".parse().expect("a name");
+    let item = TextDocumentItem::new(uri.clone(), "modelica".to_owned(), 1, text.to_owned());
+    let mut document = Arc::new(Document::opened(item));
+    let name = json!({"uri": "file:///work/M.mo"});
+    // Places that the text itself chooses, the last of them outside of it.
+    for (version, chosen) in (2..).zip(bytes.iter().take(3).chain(&[u8::MAX])) {
+        let all = Documents::from([(uri.as_str().to_owned(), document.clone())]);
+        workspace.open(&document, &all);
+        let place = json!({"line": chosen / 16, "character": chosen % 64});
+        for method in REQUESTS {
+            let params = json!({
+                "textDocument": name,
+                "position": place,
+                "context": {"includeDeclaration": true},
+                "options": {"tabSize": 2, "insertSpaces": true},
+            });
+            _ = answer(&mut workspace, &all, &format!("textDocument/{method}"), params);
+        }
+        let range = json!({"start": place, "end": {"line": chosen / 8, "character": 3}});
+        let change = json!({"range": range, "text": "x; end "});
+        let change: TextDocumentContentChangeEvent =
+            serde_json::from_value(change).expect("a change");
+        document = Arc::new(document.changed(version, vec![change]));
+    }
+}
+
+/// What no script may read, and where it lies.
+const SECRET: &str = "5ecret";
+/// Names in the folder of the script.
+const NAMES: &[&str] = &["a", "b", "models", "results", "d.csv", "M.mo", "package.mo", "x.txt"];
+/// What a link leads to, from the folder of the script.
+const LEADS_TO: &[&str] = &[
+    "../victim",
+    "../victim/secret.csv",
+    "..",
+    ".",
+    "a",
+    "b/../../victim",
+    "../victim/new.csv",
+    "/",
+];
+/// Steps between the names of a path.
+const BETWEEN: &[&str] = &["/", "/../", "/./", "/../../", "/../victim/", "//"];
+
+/// Takes choices from bytes, the first ones again and again where these are at their end.
+struct Choices<'b>(std::iter::Cycle<std::slice::Iter<'b, u8>>);
+
+impl Choices<'_> {
+    fn one<'a>(&mut self, all: &[&'a str]) -> &'a str {
+        all[*self.0.next().unwrap_or(&0) as usize % all.len()]
+    }
+
+    fn path(&mut self) -> String {
+        let ends = [NAMES, &["secret.csv", "M.mo", "new.csv", ".profile", "Makefile"]].concat();
+        let start = self.one(&["", "", "", "./", "../", "../victim/", "../work/"]);
+        let (name, between) = (self.one(NAMES), self.one(BETWEEN));
+        match self.one(&["long", "short"]) {
+            "long" => format!("{start}{name}{between}{}", self.one(&ends)),
+            _ => format!("{start}{}", self.one(&ends)),
+        }
+    }
+
+    fn statement(&mut self) -> String {
+        let (path, other) = (self.path(), self.path());
+        match self
+            .one(&["read", "write", "copy", "move", "remove", "folder", "list", "model", "run"])
+        {
+            "read" => format!("print(readFile(\"{path}\"));\n"),
+            "write" => format!("writeFile(\"{path}\", \"new\");\n"),
+            "copy" => format!("Modelica.Utilities.Files.copy(\"{path}\", \"{other}\");\n"),
+            "move" => format!("Modelica.Utilities.Files.move(\"{path}\", \"{other}\");\n"),
+            "remove" => format!("Modelica.Utilities.Files.remove(\"{path}\");\n"),
+            "folder" => format!("Modelica.Utilities.Files.createDirectory(\"{path}\");\n"),
+            "list" => format!("Modelica.Utilities.Files.list(\"{path}\");\n"),
+            "model" => {
+                format!("openModel(\"{path}\");\nsimulateModel(\"M\", resultFile = \"{other}\");\n")
+            }
+            _ => format!("RunScript(\"{path}\");\nprint(readLine(\"{other}\", 1));\n"),
+        }
+    }
+}
+
+/// A tree of files, folders and links of a stranger, with a script in it: it reads and changes nothing
+/// beside its folder.
+#[cfg(unix)]
+pub(crate) fn visit_stranger(bytes: &[u8]) {
+    let base = tempfile::tempdir().expect("a temporary folder");
+    let base = base.path().canonicalize().expect("an absolute path");
+    let (victim, work) = (base.join("victim"), base.join("work"));
+    [&victim, &work].iter().for_each(|folder| fs::create_dir(folder).expect("made"));
+    fs::write(victim.join("secret.csv"), format!("time,{SECRET}\n0,1\n")).expect("written");
+    let model = format!("model M \"{SECRET}\" Real x = 1; end M;");
+    fs::write(victim.join("M.mo"), model).expect("written");
+    let mut choices = Choices(bytes.iter().cycle());
+    for _ in 0..4 {
+        let path = work.join(choices.one(NAMES));
+        // A name that is taken stays what it is.
+        _ = match choices.one(&["file", "folder", "link", "link"]) {
+            "file" => fs::write(&path, "model M Real x = 1; end M;"),
+            "folder" => fs::create_dir(&path),
+            _ => std::os::unix::fs::symlink(choices.one(LEADS_TO), &path),
+        };
+    }
+    let before = content(&victim);
+    let script = work.join("s.mos");
+    let statements: String = (0..12).map(|_| choices.statement()).collect();
+    let text = format!("cd(\"{}\");\n{statements}", work.display());
+    fs::write(&script, text).expect("written");
+    let screen = MemoryWorld::new();
+    let streams = screen.streams();
+    let embedding = Embedding { cache: false, threads: Some(1), ..Embedding::default() };
+    let out = work.join("out");
+    let session = embedding.session_for(
+        ("gapi run", &script),
+        (Some(&out), true),
+        (Box::new(screen), Arc::default()),
+    );
+    if let Ok(mut session) = session {
+        session.grant_script(&script);
+        _ = session.run_file(&script);
+    }
+    let text = fs::read_to_string(&script).unwrap_or_default();
+    assert_eq!(content(&victim), before, "changed by:\n{text}");
+    let shown = streams.output() + &streams.errors();
+    assert!(!shown.contains(SECRET), "{shown}\nshown by:\n{text}");
+    for (path, bytes) in content(&work) {
+        let has_secret = bytes.windows(SECRET.len()).any(|part| part == SECRET.as_bytes());
+        assert!(!has_secret, "{} has it by:\n{text}", path.display());
+    }
+    assert_eq!(fs::read_dir(&base).expect("readable").count(), 2, "made by:\n{text}");
+}
+
+/// The files below a folder; no link is followed.
+#[cfg(unix)]
+fn content(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let (path, kind) = (entry.path(), entry.file_type().expect("known"));
+        if kind.is_dir() {
+            found.extend(content(&path));
+        }
+        let bytes = if kind.is_file() { fs::read(&path).unwrap_or_default() } else { Vec::new() };
+        found.insert(path, bytes);
+    }
+    found
 }

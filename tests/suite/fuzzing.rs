@@ -226,9 +226,27 @@ fn journals() {
     fuzz(targets::read_journal, &[journal], 2000);
 }
 
+#[test]
+fn editors() {
+    deep(|| fuzz(targets::serve_editor, &files("tests/fuzz/seeds/models", &[".mo"]), 6));
+}
+
+/// Trees and scripts are chosen by bytes that look random.
+#[test]
+#[cfg(unix)]
+fn strangers() {
+    let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+    let mut input = || (0..120).map(|_| numbers.below(256) as u8).collect::<Vec<u8>>();
+    let inputs: Vec<_> = (0..30).map(|_| input()).collect();
+    deep(move || fuzz(targets::visit_stranger, &inputs, 2));
+}
+
 /// Their code is right here: what is wrong in them must be found when they are read.
 #[test]
-#[ignore = "the structure of entries whose code is right is not validated"]
 fn cache_entries() {
-    deep(|| fuzz(targets::read_cache_entry, &[targets::cache_entry()], 300));
+    deep(|| {
+        let entry = targets::cache_entry();
+        assert!(targets::is_taken(&entry), "an entry that is whole is translated again");
+        fuzz(targets::read_cache_entry, &[entry], 100);
+    });
 }

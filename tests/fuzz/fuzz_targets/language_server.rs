@@ -1,0 +1,8 @@
+//! Texts that an editor shows. Seeds: `tests/fuzz/seeds/models`.
+#![no_main]
+
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::serve_editor(bytes));
