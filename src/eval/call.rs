@@ -54,7 +54,8 @@ impl Evaluator<'_> {
                 self.call_builtin(&header, Vec::new(), span)
             }
             Target::Builtin(header) => {
-                let given = self.bound(&header, arguments, &[], span)?;
+                let given = self.bound(&header, arguments, &[], span);
+                let given = given.inspect_err(|error| self.refuse(&header, arguments, error))?;
                 self.call_builtin(&header, given, span)
             }
             Target::Language(entry) => match entry.meaning {
@@ -249,8 +250,43 @@ impl Evaluator<'_> {
                 *value = Some(reshaped(actual, &input.dims));
             }
         }
-        let values = self.complete(header, given, span)?;
-        self.host.call_builtin_among(header, values, span, self.scope)
+        let is_followed = self.host.begin_command(header, &given);
+        let done = self.complete(header, given, span);
+        let done =
+            done.and_then(|values| self.host.call_builtin_among(header, values, span, self.scope));
+        if is_followed {
+            self.host.end_command(done.as_ref().err());
+        }
+        done
+    }
+
+    /// A builtin is not called because of its arguments: the host learns what can be known of them.
+    pub(super) fn refuse(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: &ast::Arguments,
+        error: &Diagnostic,
+    ) {
+        let names = self.host.inputs_looked_at(header);
+        if names.is_empty() {
+            return;
+        }
+        let positional = header.inputs.iter().zip(&arguments.positional);
+        let named = arguments.named.iter().filter_map(|argument| {
+            let input = header.inputs.iter().find(|input| input.name == argument.name.node)?;
+            Some((input, &argument.value))
+        });
+        let mut given = vec![None; header.inputs.len()];
+        for (input, argument) in positional.chain(named) {
+            let at = header.inputs.iter().position(|own| own.name == input.name);
+            if let Some(at) = at.filter(|_| names.contains(&input.name.as_str())) {
+                let value = self.argument(input, argument);
+                given[at] = Some(value.unwrap_or(Value::nothing()));
+            }
+        }
+        if self.host.begin_command(header, &given) {
+            self.host.end_command(Some(error));
+        }
     }
 }
 

@@ -26,8 +26,11 @@ impl Evaluator<'_> {
             return Ok(outputs);
         }
         let mut scope = Scope::of_function(function.clone(), given, span);
+        self.host.begin_function();
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
-        inner.body(function).map_err(|error| traced(error, function, span))
+        let done = inner.body(function);
+        self.host.end_function(function);
+        done.map_err(|error| traced(error, function, span))
     }
 
     /// Values for all inputs of a header, its defaults evaluated.

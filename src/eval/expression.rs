@@ -107,9 +107,7 @@ impl Evaluator<'_> {
     pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
         self.begin_use(expression);
         let value = self.boolean(expression)?;
-        if self.scope.is_script() {
-            self.host.tested();
-        }
+        self.host.tested();
         Ok(value)
     }
 

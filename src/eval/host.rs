@@ -57,6 +57,30 @@ pub trait Host {
         self.call_builtin(header, arguments, span)
     }
 
+    /// Called before the inputs of a builtin are checked, with what it is given; `None` where the
+    /// default counts. Whether [`Host::end_command`] is to be called.
+    fn begin_command(&mut self, header: &Arc<Function>, given: &[Option<Value>]) -> bool {
+        let _ = (header, given);
+        false
+    }
+
+    /// Called when a builtin has ended, with its error, or was refused for its arguments.
+    fn end_command(&mut self, error: Option<&Diagnostic>) {
+        let _ = error;
+    }
+
+    /// Whether [`Host::begin_command`] looks at the inputs of builtins of this name.
+    fn is_looked_at(&self, name: Ident) -> bool {
+        let _ = name;
+        false
+    }
+
+    /// The inputs of a builtin that [`Host::begin_command`] looks at.
+    fn inputs_looked_at(&self, header: &Arc<Function>) -> &'static [&'static str] {
+        let _ = header;
+        &[]
+    }
+
     /// The value of a global variable, package constant or enumeration literal; `None` if there is
     /// none.
     fn variable(
@@ -89,17 +113,40 @@ pub trait Host {
         Ok(false)
     }
 
-    /// Called before a script evaluates what it assigns to a variable or tests in a condition.
+    /// Whether the variables of a script lose their values where an assignment to them fails.
+    fn loses_failed(&self) -> bool {
+        false
+    }
+
+    /// Called when an assignment of a script to what is no variable of it fails, or is not reached.
+    fn lose(&mut self, target: &ast::ComponentReference) {
+        let _ = target;
+    }
+
+    /// Called before the statements of a function are executed.
+    fn begin_function(&mut self) {}
+
+    /// Called after that.
+    fn end_function(&mut self, function: &Function) {
+        let _ = function;
+    }
+
+    /// Called before an iterator takes the values of a range.
+    fn iterates(&mut self, iterator: Ident, range: &ast::Expression) {
+        let _ = (iterator, range);
+    }
+
+    /// Called before what is assigned to a variable or tested in a condition is evaluated.
     fn begin_use(&mut self, value: &ast::Expression) {
         let _ = value;
     }
 
-    /// Called when a script assigns a value to a variable or to a part of one.
+    /// Called when a value is assigned to a variable or to a part of one.
     fn keep_status(&mut self, target: &ast::ComponentReference, value: &Value) {
         let _ = (target, value);
     }
 
-    /// Called when a script has evaluated a condition.
+    /// Called when a condition has been evaluated.
     fn tested(&mut self) {}
 
     /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.

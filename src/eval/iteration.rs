@@ -21,6 +21,9 @@ impl Evaluator<'_> {
         index: &ForIndex,
         body: Body<'_>,
     ) -> Result<Range, Diagnostic> {
+        if let Some(range) = &index.range {
+            self.host.iterates(index.name.node, range);
+        }
         match &index.range {
             None => self.deduced(index, body),
             Some(expression) => match &expression.kind {

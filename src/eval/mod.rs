@@ -42,12 +42,24 @@ pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, RunCompiled};
 pub use scalar_function::Compiled;
 pub use scope::Scope;
+pub use statement::targets;
 
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::value::Value;
 use std::sync::Arc;
+
+/// Statements of a script are not executed because of an error: see [`Host::lose`] and
+/// [`Host::begin_command`].
+pub fn leave_out(
+    statements: &[ast::Statement],
+    scope: &mut Scope,
+    host: &mut dyn Host,
+    error: &Diagnostic,
+) {
+    Evaluator { scope, host }.leave_out(statements, error);
+}
 
 /// The value of an expression. A call of a function with no output or with several gives a
 /// [`Value::Tuple`].

@@ -168,6 +168,18 @@ impl Scope {
         variable.unassigned.is_none().then_some(variable.value)
     }
 
+    /// Takes the value of a variable away; one that was declared keeps its type.
+    pub fn forget(&mut self, name: Ident) {
+        let Some(variable) = self.variables.get_mut(&name) else { return };
+        if variable.read_only {
+            return;
+        }
+        match variable.declared.clone().map(Variable::without_value) {
+            Some(Ok(without)) => *variable = without,
+            Some(Err(_)) | None => drop(self.variables.shift_remove(&name)),
+        }
+    }
+
     /// Removes all variables.
     pub fn clear(&mut self) {
         self.variables.clear();

@@ -2,6 +2,7 @@
 
 use super::deduction::Body;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
+use super::function::Target;
 use super::{Evaluator, Flow};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
@@ -14,8 +15,9 @@ use crate::value::Value;
 impl Evaluator<'_> {
     /// Executes statements in order, until one leads elsewhere.
     pub(super) fn statements(&mut self, statements: &[Statement]) -> Result<Flow, Diagnostic> {
-        for statement in statements {
-            let flow = self.statement(statement)?;
+        for (at, statement) in statements.iter().enumerate() {
+            let done = self.statement(statement);
+            let flow = done.inspect_err(|error| self.leave_out(&statements[at + 1..], error))?;
             if flow != Flow::Next {
                 return Ok(flow);
             }
@@ -26,15 +28,13 @@ impl Evaluator<'_> {
     fn statement(&mut self, statement: &Statement) -> Result<Flow, Diagnostic> {
         match &statement.kind {
             StatementKind::Assign { target, value } => {
-                self.begin_use(value);
-                let new = match self.scalar(value) {
-                    Some(scalar) => scalar.into(),
-                    None => self.expression(value)?,
-                };
-                self.keep_status(target, &new);
-                self.assign(target, new, statement.span)?;
+                let done = self.assign_value(target, value, statement.span);
+                done.inspect_err(|_| self.lose(std::slice::from_ref(statement)))?;
             }
-            StatementKind::MultiAssign { targets, value } => self.assign_outputs(targets, value)?,
+            StatementKind::MultiAssign { targets, value } => {
+                let done = self.assign_outputs(targets, value);
+                done.inspect_err(|_| self.lose(std::slice::from_ref(statement)))?;
+            }
             StatementKind::Call(call) => {
                 self.check_interrupted(statement.span)?;
                 self.outputs(call)?;
@@ -42,9 +42,13 @@ impl Evaluator<'_> {
             StatementKind::If { branches, otherwise } => {
                 return self.if_statement(branches, otherwise);
             }
-            StatementKind::For { indices, body } => return self.for_statement(indices, body),
+            StatementKind::For { indices, body } => {
+                let done = self.for_statement(indices, body);
+                return done.inspect_err(|error| self.leave_out(body, error));
+            }
             StatementKind::While { condition, body } => {
-                return self.while_statement(condition, body);
+                let done = self.while_statement(condition, body);
+                return done.inspect_err(|error| self.leave_out(body, error));
             }
             // Every statement of a script is an event.
             StatementKind::When { branches } if self.scope.is_script() => {
@@ -61,6 +65,53 @@ impl Evaluator<'_> {
             StatementKind::Return => return Ok(Flow::Return),
         }
         Ok(Flow::Next)
+    }
+
+    fn assign_value(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        self.begin_use(value);
+        let new = match self.scalar(value) {
+            Some(scalar) => scalar.into(),
+            None => self.expression(value)?,
+        };
+        self.keep_status(target, &new);
+        self.assign(target, new, span)
+    }
+
+    /// Statements of a script are not reached because of an error: what they would have assigned has no
+    /// value, and the host learns which of its commands are not called.
+    pub(super) fn leave_out(&mut self, statements: &[Statement], error: &Diagnostic) {
+        self.lose(statements);
+        if !self.scope.is_script() || !self.host.loses_failed() {
+            return;
+        }
+        for call in calls(statements) {
+            let ExpressionKind::Call { function, arguments } = &call.kind else { continue };
+            let name = function.parts.last().map(|part| part.name);
+            if name.is_some_and(|name| self.host.is_looked_at(name))
+                && let Ok(Target::Builtin(header)) = self.target(function)
+            {
+                self.refuse(&header, arguments, error);
+            }
+        }
+    }
+
+    /// What statements of a script that failed or were not reached would have assigned: these variables
+    /// have no value, whatever they had before.
+    fn lose(&mut self, statements: &[Statement]) {
+        if !self.scope.is_script() || !self.host.loses_failed() {
+            return;
+        }
+        for target in targets(statements) {
+            match self.scope.contains(target.parts[0].name) {
+                true => self.scope.forget(target.parts[0].name),
+                false => self.host.lose(target),
+            }
+        }
     }
 
     /// `(a, , b) := f(x)` (MLS §11.2.1.1)
@@ -93,18 +144,14 @@ impl Evaluator<'_> {
         Ok(())
     }
 
-    /// A script is going to assign or to test this value.
+    /// This value is going to be assigned or tested.
     pub(super) fn begin_use(&mut self, value: &Expression) {
-        if self.scope.is_script() {
-            self.host.begin_use(value);
-        }
+        self.host.begin_use(value);
     }
 
-    /// A script assigns this value, which may say whether a command succeeded.
+    /// This value is assigned, which may say whether a command succeeded.
     fn keep_status(&mut self, target: &ComponentReference, value: &Value) {
-        if self.scope.is_script() {
-            self.host.keep_status(target, value);
-        }
+        self.host.keep_status(target, value);
     }
 
     fn if_statement(
@@ -112,8 +159,13 @@ impl Evaluator<'_> {
         branches: &[(Expression, Vec<Statement>)],
         otherwise: &[Statement],
     ) -> Result<Flow, Diagnostic> {
-        for (condition, statements) in branches {
-            if self.condition(condition)? {
+        for (at, (condition, statements)) in branches.iter().enumerate() {
+            let holds = self.condition(condition).inspect_err(|error| {
+                let bodies = branches[at..].iter().map(|(_, statements)| statements);
+                bodies.for_each(|statements| self.leave_out(statements, error));
+                self.leave_out(otherwise, error);
+            })?;
+            if holds {
                 return self.statements(statements);
             }
         }
@@ -209,4 +261,53 @@ fn count(outputs: usize) -> String {
         1 => "one output".into(),
         n => format!("{n} outputs"),
     }
+}
+
+/// What statements assign to, in loops and branches too.
+pub fn targets(statements: &[Statement]) -> Vec<&ComponentReference> {
+    let mut all = Vec::new();
+    for statement in simple_statements(statements) {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => all.push(target),
+            StatementKind::MultiAssign { targets, .. } => all.extend(targets.iter().flatten()),
+            _ => {}
+        }
+    }
+    all
+}
+
+/// What statements call, as a statement or as the value that they assign.
+fn calls(statements: &[Statement]) -> Vec<&Expression> {
+    let mut all = Vec::new();
+    for statement in simple_statements(statements) {
+        match &statement.kind {
+            StatementKind::Assign { value, .. } | StatementKind::MultiAssign { value, .. } => {
+                all.push(value);
+            }
+            StatementKind::Call(call) => all.push(call),
+            _ => {}
+        }
+    }
+    all
+}
+
+/// The statements that are not loops or branches, in these too.
+fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
+    let mut all = Vec::new();
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::If { branches, otherwise } => {
+                let bodies = branches.iter().map(|(_, body)| body).chain([otherwise]);
+                all.extend(bodies.flat_map(|body| simple_statements(body)));
+            }
+            StatementKind::When { branches } => {
+                all.extend(branches.iter().flat_map(|(_, body)| simple_statements(body)));
+            }
+            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+                all.extend(simple_statements(body));
+            }
+            _ => all.push(statement),
+        }
+    }
+    all
 }

@@ -143,7 +143,9 @@ impl Model for CompiledModel {
     }
 
     fn names(&self) -> Vec<String> {
-        self.program.variables().iter().map(|variable| variable.name.to_string()).collect()
+        let driver = self.driven.as_ref().map(|(_, parameter)| parameter.as_str());
+        let names = self.program.variables().iter().map(|variable| &*variable.name);
+        names.filter(|name| Some(*name) != driver).map(str::to_owned).collect()
     }
 
     fn unit(&self, variable: &str) -> Option<String> {

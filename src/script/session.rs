@@ -160,6 +160,7 @@ impl Session {
     /// to standard error, to the transcript, and to the messages that the script can ask for.
     pub fn report(&mut self, diagnostic: Diagnostic) {
         let quiet = self.options.quiet;
+        let diagnostic = self.classes.in_users_terms(diagnostic);
         let is_error = self.output.report(&mut *self.world, &self.sources, quiet, diagnostic);
         if is_error && self.options.strictness == Strictness::Strict {
             self.execution.stop_for(Stop::Error);

@@ -3,10 +3,11 @@
 use super::faults::{cannot, escape_help, plain, shown};
 use super::policy::{Access, Grant, Refusal, refusal_of};
 use crate::bail;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::Fault;
 use crate::results::{self, Format, ResultTable};
 use crate::script::Session;
 use crate::script::errors::FILE_ERROR;
+use crate::script::language::transcript::PROMPT;
 use crate::script::world::normalized;
 use crate::syntax;
 use crate::value::Value;
@@ -26,10 +27,9 @@ impl Session {
 
     /// The bytes of a file that a script names.
     pub fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, Fault> {
-        let Some(found) = self.find_file(path) else {
+        let Some(found) = self.find_current(path)? else {
             return Err(self.missing_file(path));
         };
-        self.check_current(&found)?;
         self.world.read(&found).map_err(|error| cannot("read", path, &error))
     }
 
@@ -38,30 +38,39 @@ impl Session {
         Ok(syntax::decode(&self.read_bytes(path)?).0)
     }
 
+    /// As [`Session::find_file`], for reading.
+    ///
+    /// # Errors
+    /// A command was to write this file and did not.
+    pub fn find_current(&self, path: &Path) -> Result<Option<PathBuf>, Fault> {
+        // One beside the script does not stand for one that was not written.
+        self.check_current(&self.expanded(path))?;
+        let found = self.find_file(path);
+        found.as_deref().map_or(Ok(()), |found| self.check_current(found))?;
+        Ok(found)
+    }
+
     /// A fault if a command was to write this file and did not.
-    pub fn check_current(&self, found: &Path) -> Result<(), Fault> {
-        let Some(reason) = self.outdated.0.get(&normalized(&self.world.absolute(found))) else {
-            return Ok(());
+    pub fn check_current(&self, path: &Path) -> Result<(), Fault> {
+        let path = normalized(&self.world.absolute(path));
+        let Some(reason) = self.outdated.reason(&path) else { return Ok(()) };
+        let shown = path.display();
+        let state = match self.world.exists(&path) {
+            true => "is older than this script expects",
+            false => "was not written",
         };
         bail!(
             FILE_ERROR,
-            "`{}` is older than this script expects: {reason}", found.display();
+            "`{shown}` {state}: {reason}";
             help: "correct the first error, or read a file that the script has written"
         )
     }
 
-    /// What a simulation gives, noted if it failed: the result file was not written then.
-    pub(in crate::script) fn noting_outdated<T>(
-        &mut self,
-        file: &Path,
-        done: Result<T, Vec<Diagnostic>>,
-    ) -> Result<T, Vec<Diagnostic>> {
-        if let Err(errors) = &done {
-            let cause = errors.first().map_or("", |error| error.message.as_str());
-            let reason = format!("the simulation that writes it failed: {cause}");
-            self.outdated.0.entry(self.world.absolute(&self.expanded(file))).or_insert(reason);
-        }
-        done
+    /// A command is going to write this file: the path under which this is noted.
+    pub(in crate::script) fn expect_file(&mut self, path: &Path) -> PathBuf {
+        let path = normalized(&self.world.absolute(&self.expanded(path)));
+        self.outdated.expect(path.clone());
+        path
     }
 
     /// Writes a file anew, with the directories it lies in.
@@ -116,14 +125,26 @@ impl Session {
         self.write_file(path, bytes)
     }
 
+    /// Writes the log of a session anew, in place of one that another run has written.
+    pub(in crate::script) fn write_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        let expanded = self.expanded(path);
+        self.grant_replacement_of(&expanded, |start| start.starts_with(PROMPT.as_bytes()));
+        self.write_file(path, bytes)
+    }
+
     /// Every Modelica tool replaces its result files: another script may have written this one.
     fn grant_replacement(&mut self, path: &Path) {
+        self.grant_replacement_of(path, results::are_results);
+    }
+
+    /// Allows to replace a file that another run has written, if its beginning shows what it is.
+    fn grant_replacement_of(&mut self, path: &Path, is_own: impl Fn(&[u8]) -> bool) {
         let permitted = self.world.permits(path, Access::Write);
         if permitted.err().and_then(|error| refusal_of(&error)) != Some(Refusal::Existing) {
             return;
         }
         let start = self.world.read_start(path, results::BEGINNING);
-        if start.is_ok_and(|start| results::are_results(&start)) {
+        if start.is_ok_and(|start| is_own(&start)) {
             self.world.grant(Grant::Replace(path));
         }
     }
@@ -136,10 +157,10 @@ impl Session {
         let written = self.may(Access::Write, path).and_then(|()| self.make_parents(path));
         let written =
             written.and_then(|()| write(self).map_err(|error| cannot("write", path, &error)));
-        let path = self.world.absolute(path);
+        let path = normalized(&self.world.absolute(path));
         match &written {
-            Ok(()) => drop(self.outdated.0.remove(&path)),
-            Err(fault) => drop(self.outdated.0.insert(path, fault.message.clone())),
+            Ok(()) => self.outdated.note_written(&path),
+            Err(fault) => self.outdated.note_failed(path, fault.message.clone()),
         }
         written
     }

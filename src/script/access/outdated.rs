@@ -1,8 +1,46 @@
 //! Files that are older than a script believes.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
-/// Files that commands of this run were to write and did not, with the reason.
+/// Files that commands of this run were to write and did not.
 #[derive(Debug, Default)]
-pub struct Outdated(pub(super) BTreeMap<PathBuf, String>);
+pub struct Outdated {
+    /// Each with the reason.
+    files: BTreeMap<PathBuf, String>,
+    /// Files that the commands being executed are going to write. They can be read until then: a model may
+    /// read what the simulation before has written.
+    expected: BTreeSet<PathBuf>,
+}
+
+impl Outdated {
+    /// Why a file is older than a script believes, if it is.
+    pub fn reason(&self, file: &Path) -> Option<&str> {
+        self.files.get(file).map(String::as_str)
+    }
+
+    /// A command is going to write this file.
+    pub fn expect(&mut self, file: PathBuf) {
+        self.expected.insert(file);
+    }
+
+    /// The file was written.
+    pub fn note_written(&mut self, file: &Path) {
+        self.expected.remove(file);
+        self.files.remove(file);
+    }
+
+    /// The file could not be written.
+    pub fn note_failed(&mut self, file: PathBuf, reason: String) {
+        self.files.insert(file, reason);
+    }
+
+    /// The command that was going to write this file has ended: whether it has not written it.
+    pub fn end(&mut self, file: &Path, reason: &str) -> bool {
+        let is_missing = self.expected.remove(file);
+        if is_missing {
+            self.files.entry(file.to_path_buf()).or_insert_with(|| reason.to_owned());
+        }
+        is_missing
+    }
+}

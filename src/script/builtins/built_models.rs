@@ -31,6 +31,8 @@ pub(super) struct Executable {
 struct Built {
     programs: BTreeMap<String, Executable>,
     init_files: BTreeMap<String, Vec<(String, String)>>,
+    /// The classes that could not be built, by the names that their programs were to have.
+    refused: BTreeMap<String, String>,
 }
 
 /// Notes a model that was built, and returns the name of its init file.
@@ -39,7 +41,20 @@ pub(super) fn keep(session: &mut Session, prefix: &str, program: Executable) -> 
     let init_file = init_file(prefix);
     built.init_files.insert(init_file.clone(), Vec::new());
     built.programs.insert(prefix.to_owned(), program);
+    built.refused.remove(prefix);
     init_file
+}
+
+/// A class could not be built: an older program of the name does not stand for it.
+pub(super) fn refuse(session: &mut Session, prefix: &str, class: String) {
+    let built = session.extension::<Built>();
+    built.programs.remove(prefix);
+    built.refused.insert(prefix.to_owned(), class);
+}
+
+/// The class whose program was to have this name, if it could not be built.
+pub(super) fn refused(session: &mut Session, name: &str) -> Option<String> {
+    session.extension::<Built>().refused.get(name).cloned()
 }
 
 /// The name of the init file of a program.

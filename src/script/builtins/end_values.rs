@@ -1,6 +1,6 @@
 //! Values at the end of the last simulation, as a prompt shows them when a variable is named.
 
-use super::{plotting, results};
+use super::{last_results, results};
 use crate::script::Session;
 use crate::value::Value;
 use crate::value::show::{Style, show};
@@ -9,7 +9,7 @@ impl Session {
     /// The value that a variable has at the end of the last simulation, with its unit and the time;
     /// `None` where there is no such variable.
     pub fn shown_end_value(&mut self, name: &str) -> Option<String> {
-        let file = plotting::last_results(self)?;
+        let file = last_results::last_results(self).ok()??;
         let table = results::table(self, &file).ok()?;
         let value = *table.column(name).ok()?.last()?;
         let end = *table.time.last()?;

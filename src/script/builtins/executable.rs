@@ -3,7 +3,7 @@
 
 use super::built_models::{self, Executable, init_file};
 use super::openmodelica;
-use super::simflags::{SimulationFlags, unquoted_words};
+use super::simflags::{self, SimulationFlags, unquoted_words};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
@@ -27,15 +27,43 @@ const FAILED: i32 = 255;
 pub(super) fn answered(session: &mut Session, command: &str) -> Option<i32> {
     let (words, output) = words(command)?;
     let (first, flags) = words.split_first()?;
-    let name = first.strip_prefix("./").or(first.strip_prefix(".\\")).unwrap_or(first);
-    let name = name.strip_suffix(".exe").unwrap_or(name);
-    let program = built_models::program(session, name)?;
-    let done = run(session, name, &program, flags);
+    let name = program_name(first);
+    let done = match built_models::program(session, name) {
+        Some(program) => run(session, name, &program, flags),
+        None => {
+            let class = built_models::refused(session, name)?;
+            let fault = fault!(BAD_ARGUMENT, "there is no program `{name}`: `{class}` could not be \
+                                              built";
+                help: "correct the error of `buildModel`");
+            Err(vec![fault.at(session.call_site())])
+        }
+    };
     if let Some(file) = output {
         let written = session.write_file(Path::new(&file), b"");
         session.or_report(written);
     }
     Some(if session.or_report_all(done).is_some() { 0 } else { FAILED })
+}
+
+/// The class that a command simulates and the file that it writes, where it runs the program of a model
+/// that was built.
+pub(super) fn expected(session: &mut Session, command: &str) -> Option<(String, String)> {
+    let (words, _) = words(command)?;
+    let (first, flags) = words.split_first()?;
+    let name = program_name(first);
+    let (class, format, own) = match built_models::program(session, name) {
+        Some(program) => (program.model.problem.clone(), program.format, program.flags),
+        None => (built_models::refused(session, name)?, "mat".to_owned(), String::new()),
+    };
+    let mut all = unquoted_words(&own);
+    all.extend_from_slice(flags);
+    Some((class, simflags::result_file_of(session, &all, &format!("{name}_res.{format}"))))
+}
+
+/// The name of the program that a command line begins with.
+fn program_name(word: &str) -> &str {
+    let name = word.strip_prefix("./").or(word.strip_prefix(".\\")).unwrap_or(word);
+    name.strip_suffix(".exe").unwrap_or(name)
 }
 
 fn run(
@@ -51,14 +79,12 @@ fn run(
     let mut flags = parsed.map_err(|error| vec![error])?;
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
-    let written = flags.result_file(&file);
     let wanted = (file.as_str(), &program.filter);
     let model = match flags.csv_input {
         None => program.model.clone(),
         Some(_) => openmodelica::driven_model(session, &program.model.problem, &flags)?,
     };
-    let done = openmodelica::run(session, &model, &program.options, flags, wanted);
-    session.noting_outdated(written.as_ref(), done).map(|_| ())
+    openmodelica::run(session, &model, &program.options, flags, wanted).map(|_| ())
 }
 
 /// The words of a command line and the file that its output goes to; `None` if it is more than one

@@ -24,7 +24,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 /// What stands among the initial names where the models are linearized too.
-const LINEARIZE: &str = "linearize:";
+pub(super) const LINEARIZE: &str = "linearize:";
 
 /// A header whose inputs begin with those of `simulateModel`.
 macro_rules! header {
@@ -73,7 +73,8 @@ fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Valu
     check_count(&names, values.len())?;
     let failed = || Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]);
     let Some(model) = translated_model(session, &request.problem) else { return Ok(failed()) };
-    let done = simulated(session, &model, &request, &names, &values)?;
+    let done =
+        for_this_call(session, |session| simulated(session, &model, &request, &names, &values))?;
     let Some(simulated) = done else { return Ok(failed()) };
     Ok(Value::Tuple(vec![true.into(), last_values(&simulated.table, &finals)?.into()]))
 }
@@ -142,9 +143,22 @@ fn cube(dims: [usize; 3], elements: Vec<f64>) -> Value {
 
 fn check_count(names: &[String], values: usize) -> Result<(), Fault> {
     if names.len() != values {
-        bail!(BAD_ARGUMENT, "{} names, but {values} values are given", names.len());
+        let counted = |count: usize, noun: &str| match count {
+            1 => format!("1 {noun}"),
+            count => format!("{count} {noun}s"),
+        };
+        let (names, given) = (counted(names.len(), "name"), counted(values, "value"));
+        bail!(BAD_ARGUMENT, "`initialNames` has {names}, but `initialValues` {given}");
     }
     Ok(())
+}
+
+/// Simulates with values that hold for one call: the next simulations begin from those before it.
+fn for_this_call<T>(session: &mut Session, work: impl FnOnce(&mut Session) -> T) -> T {
+    let before = session.current_values();
+    let done = work(session);
+    session.restore_values(before);
+    done
 }
 
 /// Simulates once for each row; what a failed simulation would have given is NaN.
@@ -164,7 +178,10 @@ fn each_row(
     };
     let mut ok = true;
     for row in 0..values.rows {
-        match simulated(session, &model, request, names, values.row(row))? {
+        let done = for_this_call(session, |session| {
+            simulated(session, &model, request, names, values.row(row))
+        })?;
+        match done {
             Some(run) => all.extend(take(&run)?),
             None => {
                 ok = false;
@@ -183,17 +200,23 @@ fn simulated(
     names: &[String],
     values: &[f64],
 ) -> Result<Option<Simulated>, Failure> {
+    // Each row writes the file anew: that of the row before does not stand for it.
+    session.expect_file(&result_path(&request.file));
     for (name, value) in names.iter().zip(values) {
         session.set_parameter(name, *value)?;
     }
     let done = run_model(session, model, &request.options, &request.file);
-    let done = session.noting_outdated(&result_path(&request.file), done);
     Ok(session.or_report_all(done))
 }
 
 fn last_values(table: &ResultTable, names: &[String]) -> Result<Vec<f64>, Fault> {
     let last = |name: &String| Ok(table.column(name)?.last().copied().unwrap_or(f64::NAN));
     names.iter().map(last).collect()
+}
+
+/// The file of the linear model of this number.
+pub(super) fn linear_file(number: f64) -> String {
+    format!("dslin{number}.mat")
 }
 
 /// Linearizes at the end of the simulation of each row; the number in column `at` is that of the
@@ -214,16 +237,17 @@ fn each_linearized(
         let numbers = values.row(row);
         let others = names.iter().zip(numbers).enumerate().filter(|(column, _)| *column != at);
         let done = match is_translated {
-            true => {
-                others.into_iter().try_for_each(|(_, (n, v))| session.set_parameter(n, *v))?;
+            true => for_this_call(session, |session| {
+                let set = others.into_iter().map(|(_, (name, value))| (name, *value));
+                set.into_iter().try_for_each(|(name, value)| session.set_parameter(name, value))?;
                 let linear = linearized(session, &options);
-                session.or_report_all(linear)
-            }
+                Ok::<_, Fault>(session.or_report_all(linear))
+            })?,
             false => None,
         };
         match done {
             Some(linear) => {
-                let file = format!("dslin{}.mat", numbers[at]);
+                let file = linear_file(numbers[at]);
                 let written = write_dslin(session, &file, &linear);
                 ok &= session.or_report(written).is_some();
                 all.extend(last_values(&linear.results, finals)?);

@@ -10,7 +10,7 @@ use crate::script::world::Stamp;
 use std::path::{Path, PathBuf};
 
 /// The file in which the end of the last simulation is kept.
-const FINAL: &str = "dsfinal.txt";
+pub(super) const FINAL: &str = "dsfinal.txt";
 
 /// The file as the last simulation has left it, whether it could write it or not.
 #[derive(Default)]
@@ -55,7 +55,8 @@ pub(super) fn final_state(session: &mut Session, file: &str) -> Result<FinalStat
         Some(end) if is_last => Ok(end.clone()),
         None if is_last => bail!(
             BAD_ARGUMENT,
-            "there is no final state to continue from: no model has been simulated"
+            "there is no final state to continue from: no model has been simulated, or the last \
+             simulation failed"
         ),
         _ => FinalState::read(file, &session.read_bytes(Path::new(file))?),
     }

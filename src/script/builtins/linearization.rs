@@ -55,12 +55,13 @@ fn linearize_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
     request.options.stop = request.options.stop.or(request.options.start).or(Some(0.0));
     let linear = linearized(session, &request.options);
     let Some(linear) = session.or_report_all(linear) else { return Ok(false.into()) };
-    let file = match request.file.ends_with(".mat") {
-        true => request.file,
-        false => request.file + ".mat",
-    };
-    let written = write_dslin(session, &file, &linear);
+    let written = write_dslin(session, &linear_file(&request.file), &linear);
     Ok(session.succeeded(written))
+}
+
+/// The file of a linear model.
+pub(super) fn linear_file(name: &str) -> String {
+    if name.ends_with(".mat") { name.to_owned() } else { format!("{name}.mat") }
 }
 
 /// The matrices of Dymola's layout: `ABCD` = [A, B; C, D], `nx` and the names of x, u and y.
@@ -132,7 +133,7 @@ fn linearize(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     Ok(simulation_result([file, options, messages]))
 }
 
-const FILE: &str = "linearized_model.mo";
+pub(super) const FILE: &str = "linearized_model.mo";
 
 /// Writes the results to `file` and the linear model to its own; the settings used.
 fn translated_and_linearized(

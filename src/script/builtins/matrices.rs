@@ -55,7 +55,7 @@ impl Session {
                 "" => sentence,
                 name => format!("{name}: {sentence}"),
             };
-            self.note(mat::errors::DATA_NOTE, sentence);
+            self.note_about_data(mat::errors::DATA_NOTE, sentence);
         }
     }
 }

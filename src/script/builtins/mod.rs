@@ -20,6 +20,7 @@ mod initial;
 mod inputs;
 mod installation;
 mod introspection;
+mod last_results;
 mod linearization;
 mod loading;
 mod matrices;
@@ -33,6 +34,7 @@ mod problem;
 mod reference;
 mod refused;
 mod regular;
+mod result_files;
 mod results;
 mod scanning;
 mod scripts;
@@ -51,6 +53,9 @@ mod windows;
 pub use args::Args;
 pub(in crate::script) use classes::component_names;
 pub use reference::reference;
+pub(in crate::script) use result_files::{
+    begin_writing, end_writing, inputs_of_files, writes_files,
+};
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;

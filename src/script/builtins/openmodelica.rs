@@ -4,7 +4,6 @@ use super::built_models::{self, Executable};
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
-use crate::bail;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::Experiment;
@@ -43,10 +42,6 @@ pub(super) const FAMILY: Family = Family {
     ],
 };
 
-/// The result file of the last simulation, for `val`.
-#[derive(Default)]
-struct LastResults(Option<String>);
-
 const SIMULATE: &str = r#"
 function simulate "Simulates a model. Defaults come from its experiment annotation."
   input TypeName className;
@@ -77,10 +72,8 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
-        let written = flags.result_file(&file);
-        let model = driven_model(session, &class.to_string(), &flags);
-        let done = model.and_then(|model| run(session, &model, &options, flags, (&file, &filter)));
-        session.noting_outdated(written.as_ref(), done)
+        let model = driven_model(session, &class.to_string(), &flags)?;
+        run(session, &model, &options, flags, (&file, &filter))
     });
     let messages = match &done {
         Ok(_) => String::new(),
@@ -139,6 +132,7 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let flags = args.take("simflags")?;
     let done = simulation::translate_anew(session, &class.to_string());
     let Some(model) = session.or_report_all(done) else {
+        built_models::refuse(session, &prefix, class.to_string());
         return Ok(vec![String::new(), String::new()].into());
     };
     let program = Executable { model, options: wanted, format, filter, flags };
@@ -256,8 +250,7 @@ pub(super) fn write_results(
     }
     let format = crate::results::format_of_file(file)?;
     session.write_results(file.as_ref(), format.as_ref(), table)?;
-    session.extension::<LastResults>().0 = Some(file.to_owned());
-    super::plotting::note_results(session, file);
+    super::last_results::note_results(session, file);
     Ok(())
 }
 
@@ -355,12 +348,11 @@ fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("var")?;
     let time: Value = args.take("timePoint")?;
     let file: String = args.take("fileName")?;
-    let file = match (file.as_str(), &session.extension::<LastResults>().0) {
-        ("" | "<default>", Some(last)) => last.clone(),
-        ("" | "<default>", None) => {
-            bail!(BAD_ARGUMENT, "`{name}` has no value: no model has been simulated")
-        }
-        (named, _) => named.to_owned(),
+    let file = match file.as_str() {
+        "" | "<default>" => super::last_results::last_results(session)?.ok_or_else(|| {
+            fault!(BAD_ARGUMENT, "`{name}` has no value: no model has been simulated")
+        })?,
+        _ => file,
     };
     let table = super::results::table(session, &file)?;
     if time.rank() == 0 {

@@ -1,8 +1,9 @@
 //! Plots: each command draws an SVG file into the output folder.
 
-use super::{Args, Builtin, Failure, Family};
+use super::{Args, Builtin, Failure, Family, last_results};
 use crate::bail;
 use crate::diag::Fault;
+use crate::fault;
 use crate::plot::{Axis, Figure, Mark, Panel, Picture, Series};
 use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
@@ -48,35 +49,8 @@ const CHART: [usize; 2] = [64, 14];
 struct Plots {
     drawn: usize,
     last_drawn: Option<Figure>,
-    last_results: Option<String>,
-    /// The result files of all simulations, in order.
-    results: Vec<Kept>,
     /// What `plotArray`, `plotArrays` and `plotScatter` draw on: drawn already when it has series.
     vectors: Option<Figure>,
-}
-
-/// The result file of the last simulation.
-pub(super) fn last_results(session: &mut Session) -> Option<String> {
-    session.extension::<Plots>().last_results.clone()
-}
-
-/// A result file under the names that paths such as `Name[end].variable` have for it.
-struct Kept {
-    /// Of the model, and of the file.
-    names: [String; 2],
-    file: String,
-}
-
-/// Notes the result file that plots take where they name none.
-pub(super) fn note_results(session: &mut Session, file: &str) {
-    let problem = session.last_model().map(|model| model.problem.clone()).unwrap_or_default();
-    let model = problem.split('(').next().unwrap_or_default().trim().to_owned();
-    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let plots = session.extension::<Plots>();
-    // A file that is written again holds the last results alone.
-    plots.results.retain(|known| known.file != file);
-    plots.results.push(Kept { names: [model, stem], file: file.to_owned() });
-    plots.last_results = Some(file.to_owned());
 }
 
 /// The results and the variable in them that a path names: a variable of the last results, or
@@ -85,18 +59,16 @@ pub(super) fn curve(
     session: &mut Session,
     path: &str,
 ) -> Result<(Arc<ResultTable>, String), Fault> {
-    let last = results(session, "")?;
+    let last = results(session, "");
     let named = path.split_once("].").and_then(|(start, variable)| {
         let (name, number) = start.rsplit_once('[')?;
         Some((name, number, variable))
     });
-    let Some((name, number, variable)) = named.filter(|_| last.column(path).is_err()) else {
-        return Ok((last, path.to_owned()));
+    let is_of_last = last.as_ref().is_ok_and(|last| last.column(path).is_ok());
+    let Some((name, number, variable)) = named.filter(|_| !is_of_last) else {
+        return Ok((last?, path.to_owned()));
     };
-    let plots = session.extension::<Plots>();
-    let mut known = plots.results.iter().rev();
-    let found = known.find(|known| known.names.iter().any(|own| own == name));
-    let Some(file) = found.map(|found| found.file.clone()) else {
+    let Some(file) = last_results::results_of(session, name)? else {
         bail!(
             BAD_ARGUMENT,
             "`{path}`: there is no result of `{name}`";
@@ -357,14 +329,12 @@ impl Drawing {
 
 /// The result file that a plot takes: the one named, else that of the last simulation.
 fn results(session: &mut Session, file: &str) -> Result<Arc<ResultTable>, Fault> {
-    let file = match (file, &session.extension::<Plots>().last_results) {
-        ("" | "<default>", Some(last)) => last.clone(),
-        ("" | "<default>", None) => bail!(
-            BAD_ARGUMENT,
-            "there is nothing to plot: no model has been simulated";
-            help: "simulate first, or name a result file with `createPlot(filename=…)`"
-        ),
-        (named, _) => named.to_owned(),
+    let file = match file {
+        "" | "<default>" => last_results::last_results(session)?.ok_or_else(|| {
+            fault!(BAD_ARGUMENT, "there is nothing to plot: no model has been simulated";
+                help: "simulate first, or name a result file with `createPlot(filename=…)`")
+        })?,
+        named => named.to_owned(),
     };
     super::results::table(session, &file)
 }

@@ -44,11 +44,11 @@ struct LastRead(Option<(PathBuf, Option<Stamp>, Arc<ResultTable>)>);
 /// The results in a file; without an ending, `.mat` is meant.
 pub(super) fn table(session: &mut Session, name: &str) -> Result<Arc<ResultTable>, Fault> {
     let with_ending = format!("{name}.mat");
-    let found = session
-        .find_file(Path::new(name))
-        .or_else(|| session.find_file(Path::new(&with_ending)))
-        .ok_or_else(|| session.missing_file(Path::new(name)))?;
-    session.check_current(&found)?;
+    let found = match session.find_current(Path::new(name))? {
+        Some(found) => Some(found),
+        None => session.find_current(Path::new(&with_ending))?,
+    };
+    let found = found.ok_or_else(|| session.missing_file(Path::new(name)))?;
     let stamp = session.world.stamp(&found);
     if let Some((path, known, table)) = &session.extension::<LastRead>().0
         && *path == found
@@ -197,10 +197,15 @@ fn write_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Fail
         table.series.push(results::Series::new(name.as_str(), values));
     }
     table.check().map_err(|fault| Fault::new(BAD_ARGUMENT, fault.message))?;
-    let file = if file.contains('.') { file } else { format!("{file}.mat") };
+    let file = trajectory_file(file);
     let format = results::format_of_file(&file)?;
     let written = session.write_results(Path::new(&file), format.as_ref(), &table);
     Ok(session.succeeded(written))
+}
+
+/// The file that `writeTrajectory` writes.
+pub(super) fn trajectory_file(name: String) -> String {
+    if name.contains('.') { name } else { format!("{name}.mat") }
 }
 
 const READ_SIMULATION_RESULT: &str = r#"

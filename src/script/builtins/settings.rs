@@ -127,7 +127,7 @@ fn savelog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         true => session.output.log().statements(&session.sources),
         false => session.output.log().text(&session.sources),
     };
-    let written = session.write_file(file.as_ref(), contents.as_bytes());
+    let written = session.write_log(file.as_ref(), contents.as_bytes());
     Ok(session.succeeded(written))
 }
 

@@ -55,19 +55,31 @@ impl SimulationFlags {
     pub(super) fn of_words<'w>(
         words: impl Iterator<Item = &'w str>,
     ) -> Result<SimulationFlags, Fault> {
-        let mut flags = SimulationFlags::default();
+        match SimulationFlags::read(words) {
+            (flags, None) => Ok(flags),
+            (_, Some(fault)) => Err(fault),
+        }
+    }
+
+    /// What can be read of flags, and what is wrong with the first of the others.
+    fn read<'w>(words: impl Iterator<Item = &'w str>) -> (SimulationFlags, Option<Fault>) {
+        let (mut flags, mut wrong) = (SimulationFlags::default(), None);
         let mut words = words.peekable();
         while let Some(word) = words.next() {
-            let Some(flag) = word.strip_prefix('-') else {
-                bail!(BAD_ARGUMENT, "`{word}` in `simflags` is not a flag: flags start with `-`")
+            let taken = match word.strip_prefix('-').map(|flag| (flag, flag.split_once('='))) {
+                None => Err(fault!(
+                    BAD_ARGUMENT,
+                    "`{word}` in `simflags` is not a flag: flags start with `-`"
+                )),
+                Some((_, Some((name, value)))) => flags.take(name, value.to_owned()),
+                Some((name, None)) => {
+                    let next = words.next_if(|next| !next.starts_with('-'));
+                    flags.take(name, next.unwrap_or("").to_owned())
+                }
             };
-            let (name, value) = match flag.split_once('=') {
-                Some((name, value)) => (name, value.to_owned()),
-                None => (flag, words.next_if(|next| !next.starts_with('-')).unwrap_or("").into()),
-            };
-            flags.take(name, value)?;
+            wrong = wrong.or(taken.err());
         }
-        Ok(flags)
+        (flags, wrong)
     }
 
     fn take(&mut self, name: &str, value: String) -> Result<(), Fault> {
@@ -76,9 +88,9 @@ impl SimulationFlags {
         }
         match name {
             "override" => {
-                for setting in settings(&value) {
-                    self.set(&setting)?;
-                }
+                let set = settings(&value).into_iter().map(|setting| self.set(&setting));
+                // All that can be read, whatever is wrong with one of them.
+                set.collect::<Vec<_>>().into_iter().collect::<Result<(), Fault>>()?;
             }
             "overrideFile" => self.override_files.push(value),
             "csvInput" => self.csv_input = Some(value),
@@ -206,6 +218,19 @@ impl SimulationFlags {
             ..options
         }
     }
+}
+
+/// The result file that flags name, whatever is wrong with others, or else the usual one.
+pub(super) fn result_file(session: &Session, flags: &str, usual: &str) -> String {
+    result_file_of(session, &unquoted_words(flags), usual)
+}
+
+/// The same from separate words.
+pub(super) fn result_file_of(session: &Session, words: &[String], usual: &str) -> String {
+    let (mut flags, _) = SimulationFlags::read(words.iter().map(String::as_str));
+    // What is wrong with these files is reported where they are used.
+    let _ = flags.read_override_files(session);
+    flags.result_file(usual)
 }
 
 /// The words of a text; quotes keep blanks together and are taken away.

@@ -230,8 +230,8 @@ fn run(
     options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let done = model(session, problem).and_then(|model| run_model(session, &model, options, file));
-    session.noting_outdated(&result_path(file), done)
+    let model = model(session, problem)?;
+    run_model(session, &model, options, file)
 }
 
 /// Simulates and writes the result file.
@@ -265,6 +265,6 @@ fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<()
     // The name that Dymola's result files have.
     table.time_name = "Time".to_owned();
     session.write_results(&path, format.as_ref(), &table)?;
-    super::plotting::note_results(session, &path.to_string_lossy());
+    super::last_results::note_results(session, &path.to_string_lossy());
     Ok(())
 }

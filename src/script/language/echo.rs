@@ -1,5 +1,6 @@
 //! What is shown without being asked for, as each dialect shows it.
 
+use super::follow_up::runs_script;
 use crate::eval::ValueType;
 use crate::name::Ident;
 use crate::script::{Dialect, Echo, Session, builtins};
@@ -66,6 +67,7 @@ impl Session {
             Value::Tuple(values) if self.dialect() == Dialect::OpenModelica => {
                 self.answer_outputs(expression, values);
             }
+            Value::String(answers) if self.passes_on(expression, answers) => {}
             value if self.answers_names(expression) => {
                 let line = format!("{}\n", show(value, Style::OpenModelica).replace('"', ""));
                 self.echo(&line);
@@ -122,12 +124,22 @@ impl Session {
         }
     }
 
+    /// Whether what a script answers is passed on as it is: quoted once more at each level, as OpenModelica
+    /// does, long answers would double their backslashes each time.
+    fn passes_on(&mut self, expression: &Expression, answers: &str) -> bool {
+        const LONG: usize = 1 << 12;
+        let is_plain = answers.len() > LONG || self.execution.stop().is_some();
+        is_plain && runs_script(expression) && self.output.collect(answers)
+    }
+
     /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
-    pub fn echo_assignment(&mut self, name: Ident, is_new: bool) {
+    pub fn echo_assignment(&mut self, name: Ident, is_new: bool, expression: &Expression) {
         match self.dialect() {
             Dialect::OpenModelica if self.may_echo() => {
-                if let Some(value) = self.workspace.variables.get(name).cloned() {
-                    self.answer(&value);
+                match self.workspace.variables.get(name).cloned() {
+                    Some(Value::String(answers)) if self.passes_on(expression, &answers) => {}
+                    Some(value) => self.answer(&value),
+                    None => {}
                 }
             }
             Dialect::Dymola if is_new => self.echo_declaration(name),

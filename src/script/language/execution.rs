@@ -39,6 +39,8 @@ pub struct Execution {
     /// The folders of the scripts that are being run, outermost first.
     folders: Vec<PathBuf>,
     stop: Option<Stop>,
+    /// Whether the outermost script is a file, not what was typed at a prompt.
+    is_file: bool,
     /// Where the command that is being run was called.
     call: Option<Span>,
     /// Whether that was in a function, whose variables the command does not see.
@@ -59,6 +61,16 @@ impl Execution {
     /// The innermost script ends.
     pub fn leave(&mut self) {
         self.folders.pop();
+    }
+
+    /// Whether the outermost script is a file from here on.
+    pub fn set_file(&mut self, is_file: bool) {
+        self.is_file = is_file;
+    }
+
+    /// Whether a statement of a text that is no file is being executed, not one of a script that it runs.
+    pub fn is_typed(&self) -> bool {
+        !self.is_file && self.folders.len() <= 1
     }
 
     /// How many scripts have called each other.

@@ -1,5 +1,6 @@
 //! One cause, one error: what cannot be done because an earlier statement failed is noted once.
 
+use crate::eval;
 use crate::name::Ident;
 use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
@@ -51,7 +52,12 @@ impl FollowUps {
     pub fn not_done(&mut self, statements: &[InteractiveStatement]) {
         for statement in statements {
             match &statement.kind {
-                InteractiveKind::Statement(statement) => self.statement(statement),
+                InteractiveKind::Statement(statement) => {
+                    let targets = eval::targets(std::slice::from_ref(statement)).into_iter();
+                    let names = targets.filter(|target| target.parts.len() == 1);
+                    self.missing.extend(names.map(|target| target.parts[0].name));
+                    self.statement(statement);
+                }
                 InteractiveKind::Expression(expression) => self.expression(expression),
                 InteractiveKind::Declaration(clause) => {
                     self.missing.extend(clause.components.iter().map(|c| c.name.node));
@@ -66,12 +72,7 @@ impl FollowUps {
 
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
-            StatementKind::Assign { target, value } => {
-                self.missing.extend(target.as_ident());
-                self.expression(value);
-            }
-            StatementKind::MultiAssign { targets, value } => {
-                self.missing.extend(targets.iter().flatten().filter_map(|t| t.as_ident()));
+            StatementKind::Assign { value, .. } | StatementKind::MultiAssign { value, .. } => {
                 self.expression(value);
             }
             StatementKind::Call(call) => self.expression(call),
@@ -94,9 +95,13 @@ impl FollowUps {
     }
 
     fn expression(&mut self, expression: &Expression) {
-        if let ExpressionKind::Call { function, .. } = &expression.kind {
-            let name = function.parts.last().map_or("", |part| part.name.as_str());
-            self.anything |= name.eq_ignore_ascii_case("RunScript");
-        }
+        self.anything |= runs_script(expression);
     }
+}
+
+/// Whether an expression is a call that runs a script.
+pub(super) fn runs_script(expression: &Expression) -> bool {
+    let ExpressionKind::Call { function, .. } = &expression.kind else { return false };
+    let parts = function.parts.last();
+    parts.is_some_and(|part| part.name.as_str().eq_ignore_ascii_case("RunScript"))
 }

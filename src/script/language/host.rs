@@ -10,7 +10,7 @@ use crate::name::{Ident, Name};
 use crate::script::builtins;
 use crate::script::builtins::{BuiltinId, Failure};
 use crate::script::errors::{INTERRUPTED, OWN_FUNCTION};
-use crate::script::{Dialect, Session};
+use crate::script::{Dialect, Echo, Session};
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Expression};
 use crate::value::Value;
@@ -95,6 +95,22 @@ impl Host for Session {
         result
     }
 
+    fn begin_command(&mut self, header: &Arc<Function>, given: &[Option<Value>]) -> bool {
+        builtins::begin_writing(self, header, given)
+    }
+
+    fn end_command(&mut self, error: Option<&Diagnostic>) {
+        builtins::end_writing(self, error);
+    }
+
+    fn is_looked_at(&self, name: Ident) -> bool {
+        builtins::writes_files(name)
+    }
+
+    fn inputs_looked_at(&self, header: &Arc<Function>) -> &'static [&'static str] {
+        builtins::inputs_of_files(header)
+    }
+
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         if let Some(value) = self.workspace.flag_at(reference) {
             return Ok(Some(value));
@@ -143,6 +159,28 @@ impl Host for Session {
                 Ok(false)
             }
         }
+    }
+
+    /// At a prompt the user sees the error, and goes on with the value before.
+    fn loses_failed(&self) -> bool {
+        let is_prompt = self.options.echo == Echo::Dialogue && self.execution.is_typed();
+        !is_prompt && !self.is_interrupted() && self.execution.stop().is_none()
+    }
+
+    fn lose(&mut self, target: &ComponentReference) {
+        self.lose_in_model(target);
+    }
+
+    fn begin_function(&mut self) {
+        self.statuses.begin_function();
+    }
+
+    fn end_function(&mut self, function: &Function) {
+        self.statuses.end_function(function.outputs.iter().map(|output| output.name));
+    }
+
+    fn iterates(&mut self, iterator: Ident, range: &Expression) {
+        self.statuses.iterates(iterator, range);
     }
 
     fn begin_use(&mut self, value: &Expression) {

@@ -3,6 +3,7 @@
 use super::parsed_scripts::Parsed;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault, suggest};
+use crate::eval;
 use crate::script::access::faults::{cannot, escape_help, shown};
 use crate::script::access::policy::Access;
 use crate::script::builtins::Failure;
@@ -23,10 +24,12 @@ impl Session {
     /// Runs a script from the command line as the outermost one.
     pub fn run_file(&mut self, path: &Path) -> RunStatus {
         self.grant_script(path);
+        self.execution.set_file(true);
         let name = path.to_string_lossy().into_owned();
         if let Err(diagnostics) = self.run_named(&name) {
             diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
         }
+        self.execution.set_file(false);
         self.finish()
     }
 
@@ -80,6 +83,8 @@ impl Session {
     /// Runs a script that another one names; its errors end it and come back with a trace.
     pub(in crate::script) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
         if self.execution.scripts() >= MAX_DEPTH {
+            // Each level may run others: without an end here there would be exponentially many.
+            self.execution.stop_for(Stop::Error);
             bail!(
                 SCRIPTS_TOO_DEEP,
                 "scripts call each other more than {MAX_DEPTH} levels deep; the last one is \
@@ -144,7 +149,7 @@ impl Session {
             let statements = script.part(at)?;
             if let Err(diagnostic) = self.statements(&statements, outermost) {
                 for later in at + 1..script.count() {
-                    self.follow_ups.not_done(&script.part(later)?);
+                    self.leave_out(&script.part(later)?, &diagnostic);
                 }
                 return Err(diagnostic);
             }
@@ -173,7 +178,7 @@ impl Session {
             self.follow_ups.failed(statement);
             // OpenModelica also continues scripts that scripts run.
             if !outermost && self.dialect() == Dialect::Dymola {
-                self.follow_ups.not_done(&statements[at + 1..]);
+                self.leave_out(&statements[at + 1..], &diagnostic);
                 return Err(diagnostic);
             }
             self.report_failed(diagnostic);
@@ -184,6 +189,25 @@ impl Session {
             self.interrupt(last.span);
         }
         Ok(())
+    }
+
+    /// These statements are not executed because of an error: what they would have assigned has no
+    /// value, and what they would have written is out of date.
+    fn leave_out(&mut self, statements: &[ast::InteractiveStatement], error: &Diagnostic) {
+        self.follow_ups.not_done(statements);
+        let all: Vec<ast::Statement> = statements
+            .iter()
+            .filter_map(|statement| match &statement.kind {
+                ast::InteractiveKind::Statement(statement) => Some(statement.clone()),
+                ast::InteractiveKind::Expression(call) => Some(ast::Statement {
+                    kind: ast::StatementKind::Call(call.clone()),
+                    comment: ast::Comment::default(),
+                    span: statement.span,
+                }),
+                _ => None,
+            })
+            .collect();
+        self.with_scope(|scope, session| eval::leave_out(&all, scope, session, error));
     }
 
     fn report_failed(&mut self, diagnostic: Diagnostic) {
@@ -311,6 +335,7 @@ impl Session {
         &mut self,
         path: &Path,
     ) -> Result<(SourceId, Arc<str>), Fault> {
+        self.check_current(path)?;
         let bytes = self.world.read(path).map_err(|error| cannot("read", path, &error))?;
         let (text, warning) = syntax::decode(&bytes);
         let current = self.world.current_dir();

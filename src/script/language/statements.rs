@@ -52,12 +52,12 @@ impl Session {
 
     fn statement(&mut self, statement: &Statement) -> Result<(), Diagnostic> {
         match &statement.kind {
-            StatementKind::Assign { target, .. } => {
+            StatementKind::Assign { target, value } => {
                 let is_new =
                     target.as_ident().is_some_and(|name| !self.workspace.variables.contains(name));
                 self.execute(statement)?;
                 if let Some(name) = target.as_ident() {
-                    self.echo_assignment(name, is_new);
+                    self.echo_assignment(name, is_new, value);
                 }
                 Ok(())
             }

@@ -3,6 +3,9 @@
 use crate::diag::Code;
 use std::fmt;
 
+/// What stands before a statement.
+pub const PROMPT: &str = ">>> ";
+
 /// One statement and its answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exchange {
@@ -76,7 +79,7 @@ impl fmt::Display for Transcript {
 /// A statement behind prompts, and its answer.
 pub(super) fn interleaved(f: &mut impl fmt::Write, input: &str, answer: &str) -> fmt::Result {
     for (at, line) in input.lines().enumerate() {
-        let prompt = if at == 0 { ">>> " } else { "... " };
+        let prompt = if at == 0 { PROMPT } else { "... " };
         writeln!(f, "{}", format!("{prompt}{line}").trim_end())?;
     }
     f.write_str(answer)?;

@@ -78,6 +78,11 @@ impl Workspace {
         self.flag(&name).cloned().or_else(unset)
     }
 
+    /// Whether a flag changes anything.
+    pub fn has_effect(flag: &str) -> bool {
+        UNSET.iter().any(|(known, _)| *known == flag)
+    }
+
     /// Sets a flag; `false` if the name is not one of a flag.
     pub fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
         let is_flag = is_flag(target);

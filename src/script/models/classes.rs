@@ -83,7 +83,7 @@ impl Enclosing {
 
 impl Classes {
     /// The diagnostic without names and places of classes that the user has not written.
-    pub(super) fn in_users_terms(&self, diagnostic: Diagnostic) -> Diagnostic {
+    pub(in crate::script) fn in_users_terms(&self, diagnostic: Diagnostic) -> Diagnostic {
         self.enclosing.iter().fold(diagnostic, |diagnostic, enclosing| {
             let place = |span: Span| match span.source == enclosing.source {
                 true => enclosing.place,
@@ -94,7 +94,7 @@ impl Classes {
     }
 
     /// What messages call the class of this name.
-    pub(super) fn shown_name(&self, name: &Name) -> Option<&str> {
+    pub(in crate::script) fn shown_name(&self, name: &Name) -> Option<&str> {
         let is_it =
             |enclosing: &&Enclosing| name.is_simple() && name.first() == Some(enclosing.name);
         self.enclosing.iter().find(is_it).map(|enclosing| enclosing.model.as_str())

@@ -4,9 +4,13 @@ use super::changes::{Changes, Given, literal};
 use super::final_state::FinalState;
 use super::translated::Translated;
 use super::uses::Uses;
+use crate::diag::Fault;
+use crate::fault;
 use crate::flatten::BaseType;
 use crate::name::Ident;
+use crate::script::errors::BAD_PARAMETER_VALUE;
 use crate::source::Span;
+use crate::syntax::ast::ComponentReference;
 use crate::syntax::print;
 use indexmap::IndexMap;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -43,13 +47,27 @@ pub struct Current {
     pub changes: Changes,
     /// Values that states and discrete variables have at the start in place of those of the initial equations.
     pub imported: IndexMap<Arc<str>, f64>,
+    /// Names that scripts could not give a value: the one before does not stand for it.
+    pub unset: BTreeSet<String>,
 }
 
 impl Current {
     /// The model with the values that it has itself.
     pub fn of(model: Arc<Translated>) -> Current {
         let (overrides, imported) = (IndexMap::new(), IndexMap::new());
-        Current { model, overrides, changes: Changes::default(), imported }
+        Current { model, overrides, changes: Changes::default(), imported, unset: BTreeSet::new() }
+    }
+
+    /// # Errors
+    /// An assignment to a parameter failed, and none has given it a value since.
+    pub fn check_set(&self) -> Result<(), Fault> {
+        let Some(name) = self.unset.first() else { return Ok(()) };
+        let problem = &self.model.problem;
+        Err(
+            fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` has no value: the assignment to it \
+                                         failed";
+            help: "correct the assignment, or translate the model again"),
+        )
     }
 
     /// What scripts set by hand, as they could write it.
@@ -96,6 +114,20 @@ impl CompiledModels {
     /// Makes a model, with the values that it has itself, the one that dotted names refer to.
     pub fn refer_anew_to(&mut self, model: &Arc<Translated>) {
         self.current = Some(Current::of(model.clone()));
+    }
+
+    /// An assignment to something in the current model failed.
+    pub fn note_unset(&mut self, target: &ComponentReference) {
+        if let Some(current) = &mut self.current {
+            current.unset.insert(target.name().to_string());
+        }
+    }
+
+    /// Something in the current model has got a value.
+    pub fn note_set(&mut self, target: &ComponentReference) {
+        if let Some(current) = &mut self.current {
+            current.unset.remove(&target.name().to_string());
+        }
     }
 
     /// Whether a warning about a model is to be reported: it was not yet.

@@ -4,7 +4,7 @@ use super::addressing::{addressed, flat_name};
 use super::changes::{Given, literal};
 use super::simulation::translate;
 use super::translated::Translated;
-use crate::diag::Diagnostic;
+use crate::diag::{At, Diagnostic};
 use crate::flatten::flat_reference;
 use crate::script::Session;
 use crate::script::errors::START_VALUES_MISSING;
@@ -45,6 +45,7 @@ impl Session {
         };
         translate(self, &last.problem)?;
         let Some(current) = self.current_values() else { return Ok(plain) };
+        current.check_set().at(self.call_site()).map_err(|error| vec![error])?;
         if !current.imported.is_empty() {
             self.note_not_continued(problem);
         }

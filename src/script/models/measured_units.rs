@@ -133,7 +133,7 @@ impl Session {
 
     fn note_units(&mut self, sentence: String) {
         if self.extension::<Units>().said.insert(sentence.clone()) {
-            self.note(UNITS_DIFFER, sentence);
+            self.note_about_data(UNITS_DIFFER, sentence);
         }
     }
 }
@@ -172,4 +172,42 @@ fn mismatch(
     );
     let is_needed = conversion.is_none_or(|conversion| !conversion.is_identity());
     is_needed.then_some(Mismatch { units, conversion })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::script::world::MemoryWorld;
+    use crate::script::{Options, Session};
+
+    const LINE: &str = "model Line
+  parameter Real R(unit=\"Ohm.cm2\") = 0.2;
+  input Real i(unit=\"A/cm2\");
+  output Real U(unit=\"V\") = 1 - R*i;
+end Line;
+";
+    const SCRIPT: &str = "(ok, s, X, Y) = Exp_Adq_SISO(\"pol.csv\", \"j\", \"U\");
+P = [0.1; 0.2; 0.3];
+F = Fit(Eval(\"\", \"Line\", X, P, {\"R\"}, \"i\", \"U\"), Y);
+(Q, G) = Fit_Order(P, F, 3, 2, 1);
+";
+
+    #[test]
+    fn what_happened_to_the_data_is_in_the_report_of_a_quiet_run() {
+        let data = "j [mA/cm2],U [mV]\n100,980\n200,960\n250,\n300,940\n400,921\n";
+        let world = MemoryWorld::new().with_file("pol.csv", data.as_bytes().to_vec());
+        let streams = world.streams();
+        let options = Options { quiet: true, ..Options::default() };
+        let mut session = Session::new(Box::new(world)).with_options(options);
+        session.load_text("Line.mo", LINE).expect("classes");
+        let status = session.run_text("fit.mos", SCRIPT);
+        let (said, errors) = (streams.output(), streams.errors());
+        assert_eq!(status.code, 0, "{said}{errors}");
+        let folder = session.world.output_dir();
+        let result = session.world.read(&folder.join("result.json")).expect("the result");
+        let result = String::from_utf8(result).expect("text");
+        for words in ["the column is converted, times 0.001", "pol.csv: "] {
+            assert!(said.contains(words), "{words}: {said}");
+            assert!(result.contains(words), "{words}: {result}");
+        }
+    }
 }

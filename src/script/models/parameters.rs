@@ -5,15 +5,17 @@ use super::changes::{Changed, Given};
 use super::compiled::Current;
 use super::final_state::FinalState;
 use super::translated::Translated;
-use super::typed::{may_be, number_in, number_of, unquoted};
+use super::typed::{number_in, number_of, unquoted};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::name::Ident;
 use crate::script::errors::{
-    BAD_PARAMETER_VALUE, SHARED_NAME, START_IS_GUESS, TRANSLATED_AGAIN, UNKNOWN_PARAMETER,
+    BAD_PARAMETER_VALUE, NO_WINDOW, SHARED_NAME, START_IS_GUESS, TRANSLATED_AGAIN,
+    UNKNOWN_PARAMETER,
 };
+use crate::script::language::workspace::Workspace;
 use crate::script::{Dialect, Session};
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, ReferencePart};
@@ -30,13 +32,23 @@ impl Session {
         span: Span,
     ) -> Result<bool, Diagnostic> {
         if self.workspace.set_flag(target, value) {
+            self.note_idle_flag(target);
             return Ok(true);
         }
         if self.models.last().is_none() {
             return Err(self.nothing_translated(target).at(target.span));
         }
         self.set_values(target, value).at(span)?;
+        self.models.note_set(target);
         Ok(true)
+    }
+
+    /// Says once for each flag that it has no effect.
+    fn note_idle_flag(&mut self, flag: &ComponentReference) {
+        let name = flag.name().to_string();
+        if !Workspace::has_effect(&name) && self.models.is_new_note(Ident::new(&name)) {
+            self.note(NO_WINDOW, format!("the flag `{name}` is stored; it has no effect here"));
+        }
     }
 
     /// Gives a parameter of the model translated last, an array of them or a part of one, a value.
@@ -184,6 +196,11 @@ impl Session {
         self.models.current = before;
     }
 
+    /// There is no simulation whose end others could continue.
+    pub(in crate::script) fn forget_end(&mut self) {
+        self.models.end = None;
+    }
+
     /// Where the last simulation ended.
     pub(in crate::script) fn last_end(&self) -> Option<&FinalState> {
         self.models.end.as_ref()
@@ -208,14 +225,14 @@ impl Session {
     }
 
     /// Gives the parameter of the model translated last that has this name a value; said once for each
-    /// name. `false` if the value cannot be meant for it: then it is a variable of the script.
+    /// name. `false` if it cannot be set: then it is a variable of the script.
     pub(in crate::script) fn assign_to_model(
         &mut self,
         name: Ident,
         value: &Value,
     ) -> Result<bool, Fault> {
         let Some(model) = self.models.last().cloned() else { return Ok(false) };
-        if let Some(why) = unlike(&model, name, value) {
+        if let Some(why) = unlike(&model, name) {
             self.models.note_own(name);
             self.note_shared_name(
                 name,
@@ -224,9 +241,32 @@ impl Session {
             );
             return Ok(false);
         }
-        self.set_values(&ComponentReference::from_name(&name.into(), Span::NONE), value)?;
+        let target = ComponentReference::from_name(&name.into(), Span::NONE);
+        let set = self.set_values(&target, value);
+        set.map_err(|fault| {
+            let problem = &model.problem;
+            let text = format!(
+                "a parameter of `{problem}` has this name: rename the variable of the script"
+            );
+            fault.help(text)
+        })?;
+        self.models.note_set(&target);
         self.note_shared_name(name, "parameter", "it is set");
         Ok(true)
+    }
+
+    /// An assignment to a parameter of the model translated last fails, or is not reached.
+    pub(in crate::script) fn lose_in_model(&mut self, target: &ComponentReference) {
+        let name = target.parts[0].name;
+        let is_model = match target.parts.as_slice() {
+            [_] => self.is_of_model(name),
+            _ => self
+                .shaped_models()
+                .any(|model| addressed(&model, &without_start(target).0).is_some()),
+        };
+        if is_model {
+            self.models.note_unset(target);
+        }
     }
 
     /// A variable of scripts has got a value that has the name of a parameter; the parameter keeps
@@ -330,34 +370,16 @@ fn numbers(found: &Addressed, name: &str, value: &Value) -> Result<Vec<f64>, Fau
     }
 }
 
-/// Why a value cannot be meant for a parameter: nobody can set it, or it is of another kind.
-fn unlike(model: &Translated, name: Ident, value: &Value) -> Option<String> {
+/// Why an assignment cannot be meant for a parameter, whatever its value: it cannot be set.
+fn unlike(model: &Translated, name: Ident) -> Option<String> {
     let declared = model.declarations.get(name.as_str())?;
-    let rank = declared.dims.len();
     let target = ComponentReference::from_name(&name.into(), Span::NONE);
     let has_slot = addressed(model, &target)
         .is_some_and(|found| model.program.find_parameter(&found.names[0]).is_ok());
     let may_change = !declared.is_final && !declared.says_fixed;
     let has_value = !matches!(declared.base, BaseType::ExternalObject(_) | BaseType::Clock);
     let is_settable = has_slot || may_change && has_value;
-    match () {
-        () if !is_settable => Some(format!("`{name}` is final or computed by the model")),
-        () if rank != value.rank() => {
-            Some(format!("it is {}, and the value is {}", kind(rank), kind(value.rank())))
-        }
-        () if !may_be(&declared.base, value) => {
-            Some(format!("the value is a {}", value.type_name()))
-        }
-        () => None,
-    }
-}
-
-fn kind(rank: usize) -> &'static str {
-    match rank {
-        0 => "a scalar",
-        1 => "a vector",
-        _ => "an array",
-    }
+    (!is_settable).then(|| format!("`{name}` is final or computed by the model"))
 }
 
 /// The reference to a variable in one to its start value, and what follows on its name.

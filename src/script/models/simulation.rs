@@ -486,6 +486,9 @@ fn prepared(
     };
     let last = session.models.last().filter(|last| std::ptr::eq(&***last, model)).cloned();
     let Some(last) = last else { return Ok((None, untouched())) };
+    if let Some(current) = &session.models.current {
+        current.check_set().at(call)?;
+    }
     let changed = session.shaped_model(&last)?;
     match &session.models.current {
         Some(current) => Ok((Some(changed.clone()), with_values(current, &changed).at(call)?)),

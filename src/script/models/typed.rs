@@ -34,22 +34,6 @@ pub(super) fn number_of(base: &BaseType, name: &str, value: &Value) -> Result<f6
     })
 }
 
-/// Whether a value, or its elements, may be one of a type.
-pub(super) fn may_be(base: &BaseType, value: &Value) -> bool {
-    let kind = |value: &Value| match value {
-        Value::Real(_) | Value::Integer(_) => base != &BaseType::String,
-        Value::Boolean(_) => base == &BaseType::Boolean,
-        Value::Enumeration(_) => matches!(base, BaseType::Enumeration(_)),
-        Value::String(_) => base == &BaseType::String,
-        _ => false,
-    };
-    match value {
-        Value::Array(array) if array.elements.is_empty() => true,
-        Value::Array(array) => kind(&array.elements.get(0)),
-        scalar => kind(scalar),
-    }
-}
-
 /// The value of numbers for variables of a type: a scalar without dimensions, else an array.
 pub(super) fn value_of(base: &BaseType, dims: Vec<usize>, numbers: Vec<f64>) -> Option<Value> {
     let elements = match base {

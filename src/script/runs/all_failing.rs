@@ -13,8 +13,8 @@ use crate::script::models::static_curve::DRIVER;
 use crate::source::Span;
 use std::sync::Arc;
 
-/// Fewer failures may be bad luck: where half of the search space fails, so do ten individuals once
-/// in a thousand runs.
+/// Fewer failures may be bad luck, and the next population has some that can be simulated: where half of
+/// the search space fails, so do ten individuals once in a thousand runs.
 const ENOUGH: usize = 10;
 
 impl Session {
@@ -46,8 +46,10 @@ impl Session {
         let identification = self.extension::<Identification>();
         let has_said = std::mem::take(&mut identification.is_hopeless);
         let all_failed = recorder.evaluations == recorder.failures;
-        if all_failed && recorder.failures >= ENOUGH as u64 && !has_said && !interrupted {
-            self.report(nothing_simulated(recorder, "has no result", None).at(Span::NONE));
+        if all_failed && recorder.failures > 0 && !has_said && !interrupted {
+            let fault = nothing_simulated(recorder, "has no result", None).at(Span::NONE);
+            // One individual alone is a question of the script, which gets its answer, 1e60.
+            self.report(if recorder.failures == 1 { fault.warning() } else { fault });
         }
     }
 
@@ -95,14 +97,20 @@ fn nothing_simulated(
     consequence: &str,
     example: Option<&FailedSimulation>,
 ) -> Fault {
-    let all = recorder.failures;
+    let all = match recorder.failures {
+        1 => "the only individual could not be simulated".to_owned(),
+        all => format!("none of {all} individuals could be simulated"),
+    };
     let most = recorder.main_cause().map(|(cause, count)| {
         let text = example.map_or_else(|| cause.to_owned(), FailedSimulation::to_string);
-        format!("; {count} times: {text}")
+        match count {
+            1 => format!(": {text}"),
+            _ => format!("; {count} times: {text}"),
+        }
     });
     fault!(
         BAD_POPULATION,
-        "the run {consequence}: none of {all} individuals could be simulated{}",
+        "the run {consequence}: {all}{}",
         most.unwrap_or_default();
         help: "correct the model, the units of the data, or the search ranges"
     )
@@ -175,6 +183,21 @@ print(\"goes on\");
 ";
         let (code, said) = run(script);
         assert!(code == 1 && said.contains("goes on") && said.contains("none of 12"), "{said}");
+    }
+
+    #[test]
+    fn a_run_with_fewer_individuals_than_that_says_so_at_its_end() {
+        for (population, said_of, ends_with) in
+            [("[1.0]", "the only individual", 0), ("[1; 2; 3]", "none of 3", 1)]
+        {
+            let script = format!(
+                "D = Eval(\"\", \"Growth\", {{0.5, 1.0}}, {population}, {{\"a\"}}, \"time\", \"x\");\n\
+                 print(\"goes on\");\n"
+            );
+            let (code, said) = run(&script);
+            assert!(said.contains("goes on") && said.contains(said_of), "{said}");
+            assert_eq!(code, ends_with, "{said}");
+        }
     }
 
     #[test]

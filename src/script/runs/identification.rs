@@ -3,10 +3,12 @@
 
 use super::problem::fault_codes;
 use super::tracing;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Code, Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
-use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, ScriptError, Solution};
+use crate::identify::problem::{
+    Finding, FindingKind, Fingerprint, NOISE_OF_FORMULAS, ScriptError, Severity, Solution,
+};
 use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Model as _, Quantity, Question, Recorder,
     Simulated, Study,
@@ -46,6 +48,10 @@ pub(in crate::script) struct Identification {
     reported: usize,
     /// The number of the first message of this run.
     first_message: usize,
+    /// What was said of the data of this run.
+    data_notes: Vec<String>,
+    /// How many of these are older than the measurement read last.
+    older_notes: usize,
 }
 
 /// An evaluator that is ready for the next population.
@@ -110,11 +116,22 @@ impl Session {
         if x.is_empty() {
             bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
         }
+        let identification = self.extension::<Identification>();
+        identification.older_notes = identification.data_notes.len();
         self.note_data(&content, notes);
         for ((name, unit), values) in names.iter().zip(&units).zip([&x, &y]) {
             self.column_measured((file, name), unit.as_deref(), values);
         }
         Ok(Measurement { file: file.to_owned(), x, y })
+    }
+
+    /// Says something about the data that a script compares its models with: now and in the report.
+    pub(in crate::script) fn note_about_data(&mut self, code: Code, sentence: String) {
+        let notes = &mut self.extension::<Identification>().data_notes;
+        if !notes.contains(&sentence) {
+            notes.push(sentence.clone());
+        }
+        self.note(code, sentence);
     }
 
     /// A number for the place in the scripts that a command was called from: the same whenever the
@@ -133,7 +150,10 @@ impl Session {
     /// one before is reported.
     pub(in crate::script) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
         if !self.identification().recorder.history.generations.is_empty() {
+            let identification = self.identification();
+            let own = identification.data_notes.split_off(identification.older_notes);
             report_run(self)?;
+            self.identification().data_notes = own;
         }
         let identification = self.identification();
         identification.recorder.measured(measurement);
@@ -280,7 +300,7 @@ impl Session {
         let stamps = x.chunk_by(|a, b| a == b);
         let (pairs, others): (Vec<&[f64]>, Vec<&[f64]>) = stamps.partition(|own| own.len() > 1);
         if let Some(pair) = pairs.first().filter(|_| !others.is_empty()) {
-            self.note(mat::errors::DATA_NOTE, format!(
+            self.note_about_data(mat::errors::DATA_NOTE, format!(
                 "time stamps such as {} are in several consecutive rows: the first row is compared \
                  with the value before an event there, the others with the value after it",
                 pair[0]
@@ -291,7 +311,7 @@ impl Session {
                 let mat::Calendar { name, seconds, .. } = days;
                 format!("; if they are {name}, write `Xexp := (Xexp .- Xexp[1])*{seconds}`")
             });
-            self.note(mat::errors::DATA_NOTE, format!(
+            self.note_about_data(mat::errors::DATA_NOTE, format!(
                 "the measured times begin at {low} s and last {} s, but the simulation begins at \
                  {start} s; if the initial values are those of {low} s, give the model \
                  `annotation(experiment(StartTime = {low}))`, or count the times from the first one{days}",
@@ -466,16 +486,22 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
         .collect();
     let ending =
         Ending { recorder: &recorder, models, noise, processors, probe, interrupted, error };
-    let Some(solution) = ending.solution() else { return Ok(()) };
+    let Some(mut solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
     for (measured, study, is_relative) in compared {
         session.compared(&measured, &study.model, (&study.y, is_relative));
     }
+    let notes = std::mem::take(&mut session.extension::<Identification>().data_notes);
+    solution.findings.extend(notes.into_iter().map(about_data));
     let now = session.world.monotonic_seconds();
     let seconds = now - started.unwrap_or(now);
     let text = format!("{}  {:<12} {seconds:.2} s\n", solution.text(), "time");
     session.print_report(&text, &solution.brief());
     write_files(session, &solution, seconds)
+}
+
+fn about_data(sentence: String) -> Finding {
+    Finding::new(FindingKind::Data, sentence).severity(Severity::Information)
 }
 
 /// Writes the files of a run into the folder of the results; those of further runs of the session

@@ -9,6 +9,7 @@ use super::inputs::{self, Times};
 use super::time_axis::{self, Origin};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::mat::MatFile;
 use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
@@ -53,7 +54,8 @@ impl Driven {
 }
 
 /// Lets the inputs of the model `class` follow the columns of a file that have their names. Between
-/// the samples they continue as `interpolation` says, `hold` or `linear`, or as they look.
+/// the samples they continue as `interpolation` says, `hold` or `linear`, or as they look; those that are
+/// not Real are held.
 ///
 /// # Errors
 ///
@@ -89,7 +91,10 @@ pub fn driven(
     }
     let columns = found.iter().map(|name| {
         let named = ColumnEntry::named(Some((*name).clone()));
-        let interpolation = interpolation.map(str::to_owned);
+        let variable = flat.variables.values().find(|v| is_part_of(name, &v.name));
+        // Nothing lies between two Booleans or Integers.
+        let is_real = variable.is_none_or(|variable| variable.base == BaseType::Real);
+        let interpolation = interpolation.map(|own| if is_real { own } else { "hold" }.to_owned());
         ((*name).clone(), Column::More(Box::new(ColumnEntry { interpolation, ..named })))
     });
     let entry = ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() };
@@ -106,6 +111,11 @@ pub fn driven(
     let (first, last) =
         (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
     Ok(Driven { class, first, last })
+}
+
+/// Whether a name is that of a variable or of one of its elements.
+fn is_part_of(name: &str, variable: &str) -> bool {
+    name.strip_prefix(variable).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
 }
 
 /// The column of time in seconds, and the date that it counts from.
