@@ -265,7 +265,9 @@ fn functions_of_parameters_are_named() {
     let tafel: Formula = |p, x| p[0] - p[1] * ((x + 0.1) / p[2]).ln();
     let arrhenius: Formula = |p, x| p[0] * (-p[1] / 2494.0).exp() * x;
     let power: Formula = |p, x| p[0] * (p[1] * (x + 0.5)).powf(p[2]);
-    let cases: [(Formula, &[(&str, [f64; 2])], fn(f64) -> f64, &str, &[&str]); 3] = [
+    type Ranges = &'static [(&'static str, [f64; 2])];
+    type Case = (Formula, Ranges, fn(f64) -> f64, &'static str, &'static [&'static str]);
+    let cases: [Case; 3] = [
         (
             tafel,
             &[("E", [-5.0, 5.0]), ("A", [0.01, 2.0]), ("i0", [1e-9, 1e3])],

@@ -194,7 +194,7 @@ F = Fit(Eval(\"\", \"Line\", X, P, {\"R\"}, \"i\", \"U\"), Y);
     #[test]
     fn what_happened_to_the_data_is_in_the_report_of_a_quiet_run() {
         let data = "j [mA/cm2],U [mV]\n100,980\n200,960\n250,\n300,940\n400,921\n";
-        let world = MemoryWorld::new().with_file("pol.csv", data.as_bytes().to_vec());
+        let world = MemoryWorld::new().with_file("pol.csv", data.as_bytes());
         let streams = world.streams();
         let options = Options { quiet: true, ..Options::default() };
         let mut session = Session::new(Box::new(world)).with_options(options);

@@ -258,7 +258,7 @@ fn solve_built(
     } else {
         let solved =
             |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?).map(with);
-        solution = with_statistics(session, &mut run, solution, (&solved, all, options))?;
+        solution = with_statistics(session, &mut run, solution, &solved, all, options)?;
         interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
         solving::draw_curves(&experiments, &mut solution, &validation);
     }
@@ -321,15 +321,13 @@ fn with_statistics(
     session: &mut Session,
     run: &mut Run,
     found: Solution,
-    (solved, all, options): (
-        &dyn Fn(&Run) -> Result<Solution, Fault>,
-        Vec<solving::SolvedSearch>,
-        &RunOptions,
-    ),
+    solved: &dyn Fn(&Run) -> Result<Solution, Fault>,
+    all: Vec<solving::SolvedSearch>,
+    options: &RunOptions,
 ) -> Result<Solution, Fault> {
     run.evaluation.cancel_by(session.world.interrupt_flag());
     run.evaluation.show_by(session.world.status());
-    let made = statistics(session, run, (solved, all, options));
+    let made = statistics(session, run, solved, all, options);
     run.evaluation.show("");
     run.evaluation.show_by(None);
     run.evaluation.cancel_by(None);
@@ -344,11 +342,9 @@ fn with_statistics(
 fn statistics(
     session: &mut Session,
     run: &mut Run,
-    (solved, all, options): (
-        &dyn Fn(&Run) -> Result<Solution, Fault>,
-        Vec<solving::SolvedSearch>,
-        &RunOptions,
-    ),
+    solved: &dyn Fn(&Run) -> Result<Solution, Fault>,
+    all: Vec<solving::SolvedSearch>,
+    options: &RunOptions,
 ) -> Result<Solution, Fault> {
     run.evaluation.show("minimum");
     solving::conclude(run);
