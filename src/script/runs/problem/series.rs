@@ -4,7 +4,7 @@
 use super::data::{self, Measured, Notes, VariableUnit};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
-use super::sigma;
+use super::{sigma, time_axis};
 use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
@@ -132,6 +132,9 @@ impl Comparison<'_> {
                 column.place(*first),
                 column.place(*last)
             ));
+        }
+        if time_axis::are_replicates(&self.x) {
+            return rows;
         }
         let mut skipped = Vec::new();
         let mut kept = Vec::with_capacity(rows.len());

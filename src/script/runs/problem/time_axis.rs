@@ -127,6 +127,12 @@ pub(super) fn repeated(name: &str, column: &Column) -> Option<String> {
     ))
 }
 
+/// Whether every time stamp repeats: then rows are replicates, not values before and after an event.
+pub(super) fn are_replicates(times: &[f64]) -> bool {
+    let known: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+    known.chunk_by(|a, b| a == b).all(|stamp| stamp.len() > 1)
+}
+
 /// The long steps between times that do not decrease.
 pub(super) fn gaps(times: &[f64]) -> Vec<Gap> {
     let steps: Vec<(usize, f64)> = times

@@ -142,6 +142,21 @@ fn inputs_that_begin_late_or_end_early_and_units_without_another_are_named() {
 }
 
 #[test]
+fn replicates_beside_an_input_are_compared_from_the_first_on() {
+    let rows = (0..9).flat_map(|k| [f64::from(k) / 2.0; 2]).enumerate().map(|(row, t)| {
+        let noise = if row % 2 == 0 { 0.01 } else { -0.01 };
+        format!("{t},{},1,0\n", 2.0 * (1.0 - (-t).exp()) + noise)
+    });
+    let data = format!("time,y,a,b\n{}", rows.collect::<String>());
+    let entries = "outputs = { y = \"y\" }\ninputs = { \"u[1]\" = \"a\", \"u[2]\" = \"b\" }";
+    let problem = "model = \"Mixer\"\n[method]\nname = \"levenberg_marquardt\"\n\
+        [parameters]\nK = { min = 0.1, max = 10 }";
+    let solution = found(problem, entries, &data);
+    value(&solution, "K", 2.0);
+    assert_eq!(solution.unwrap().series[0].points.len(), 18);
+}
+
+#[test]
 fn elements_are_fixed_tied_set_started_and_constrained() {
     let data = table("time,y", |t| two_cells(t).to_string());
     let outputs = "outputs = { y = \"y\" }";
