@@ -249,10 +249,10 @@ pub(crate) fn serve_editor(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let world = || MemoryWorld::new().interrupted_after(QUESTIONS);
     let mut workspace = Workspace::new(Client::default(), move || Session::new(Box::new(world())));
-    let uri: lsp_types::Uri = "file:///work/M.mo".parse().expect("a name");
+    let uri: lsp_types::Uri = "file:///home/M.mo".parse().expect("a name");
     let item = TextDocumentItem::new(uri.clone(), "modelica".to_owned(), 1, text.to_owned());
     let mut document = Arc::new(Document::opened(item));
-    let name = json!({"uri": "file:///work/M.mo"});
+    let name = json!({"uri": "file:///home/M.mo"});
     // Places that the text itself chooses, the last of them outside of it.
     for (version, chosen) in (2..).zip(bytes.iter().take(3).chain(&[u8::MAX])) {
         let all = Documents::from([(uri.as_str().to_owned(), document.clone())]);
@@ -303,7 +303,7 @@ impl Choices<'_> {
 
     fn path(&mut self) -> String {
         let ends = [NAMES, &["secret.csv", "M.mo", "new.csv", ".profile", "Makefile"]].concat();
-        let start = self.one(&["", "", "", "./", "../", "../victim/", "../work/"]);
+        let start = self.one(&["", "", "", "./", "../", "../victim/", "../inside/"]);
         let (name, between) = (self.one(NAMES), self.one(BETWEEN));
         match self.one(&["long", "short"]) {
             "long" => format!("{start}{name}{between}{}", self.one(&ends)),
@@ -337,7 +337,7 @@ impl Choices<'_> {
 pub(crate) fn visit_stranger(bytes: &[u8]) {
     let base = tempfile::tempdir().expect("a temporary folder");
     let base = base.path().canonicalize().expect("an absolute path");
-    let (victim, work) = (base.join("victim"), base.join("work"));
+    let (victim, work) = (base.join("victim"), base.join("inside"));
     [&victim, &work].iter().for_each(|folder| fs::create_dir(folder).expect("made"));
     fs::write(victim.join("secret.csv"), format!("time,{SECRET}\n0,1\n")).expect("written");
     let model = format!("model M \"{SECRET}\" Real x = 1; end M;");

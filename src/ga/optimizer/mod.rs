@@ -207,10 +207,10 @@ pub fn test_minimum(
     // What the step to the minimum of the linear model would change of the residuals.
     let freedom = residuals.len().saturating_sub(offset.rank).max(1) as f64;
     let moved = offset.relative.map(|own| own * (offset.rank as f64 / freedom).sqrt() * length);
-    // Residuals of the size of the errors of the simulation: a change of this size cannot be told.
-    let is_told =
+    // Residuals of the size of the errors of the simulation: a change of this size is not noticeable.
+    let is_noticeable =
         length > FROM_THE_SOLVER * error || moved.is_none_or(|moved| moved > ERRORS * error);
-    let is_near = length <= error || !is_told;
+    let is_near = length <= error || !is_noticeable;
     let is_exact = length == 0.0 || !offset.blind && offset.rank > 0 && is_near;
     (offset, is_exact || levenberg_marquardt::is_minimum(&offset, length, accuracy, MINIMUM))
 }

@@ -34,7 +34,7 @@ fn points(data: fn(f64) -> f64) -> Vec<(f64, f64)> {
 }
 
 /// Slope, Σ(x − mean)² and the least sum of squares of a straight line.
-fn line(points: &[(f64, f64)]) -> [f64; 3] {
+pub(super) fn line(points: &[(f64, f64)]) -> [f64; 3] {
     let n = points.len() as f64;
     let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
     let sxx: f64 = points.iter().map(|(x, _)| (x - mx) * (x - mx)).sum();

@@ -1,5 +1,6 @@
 //! Verdicts against closed forms, and against profiles that are computed here.
 
+use super::irregular_tests::line;
 use super::statistics::student_quantile;
 use super::tests::{decay, problem};
 use super::{
@@ -51,19 +52,10 @@ fn rise(parameters: usize) -> f64 {
     student_quantile(0.975, freedom).powi(2) / freedom
 }
 
-/// Slope, Σ(x − mean)² and the least sum of squares of a straight line through the data.
-fn line(data: fn(f64) -> f64) -> [f64; 3] {
-    let points: Vec<(f64, f64)> = (0..NOISE.len())
-        .map(|k| k as f64 / 4.0)
-        .zip(NOISE)
-        .map(|(x, e)| (x, data(x) + e))
-        .collect();
-    let n = points.len() as f64;
-    let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let sxx: f64 = points.iter().map(|(x, _)| (x - mx) * (x - mx)).sum();
-    let slope = points.iter().map(|(x, y)| (x - mx) * (y - my)).sum::<f64>() / sxx;
-    let rest = points.iter().map(|(x, y)| (y - my - slope * (x - mx)).powi(2)).sum();
-    [slope, sxx, rest]
+/// [`line`] of a model's data with the noise.
+fn line_through(data: fn(f64) -> f64) -> [f64; 3] {
+    let at = (0..NOISE.len()).map(|k| k as f64 / 4.0);
+    line(&at.zip(NOISE).map(|(x, e)| (x, data(x) + e)).collect::<Vec<_>>())
 }
 
 /// A falling line with a slope that must not be negative: the best slope is the end of its range, and
@@ -71,7 +63,7 @@ fn line(data: fn(f64) -> f64) -> [f64; 3] {
 #[test]
 fn at_an_end_of_its_range_a_parameter_is_bounded_on_one_side() {
     let data = |x: f64| 2.0 - 0.004 * x;
-    let [slope, sxx, rest] = line(data);
+    let [slope, sxx, rest] = line_through(data);
     assert!(slope < 0.0);
     for range in [[1e-5, 1e5], [1e-8, 1e2], [0.0, 5.0], [0.0, 500.0]] {
         let solution =
@@ -99,7 +91,7 @@ fn the_width_of_the_range_does_not_decide() {
             parameter(&solved(posed(|p, x| p[0] + p[1] * x, &ranges, data)), "c").clone()
         })
         .into();
-    let [slope, sxx, rest] = line(data);
+    let [slope, sxx, rest] = line_through(data);
     let half = (rest * rise(2) / sxx).sqrt();
     assert!(slope - half < 0.0, "the interval holds 0");
     for own in &found {
@@ -116,7 +108,7 @@ fn a_small_value_in_a_wide_range_is_not_at_its_end() {
     let data = |x: f64| 1.0 + x;
     let ranges = [("b", [-10.0, 10.0]), ("c", [0.0, 1.0])];
     let solution = solved(posed(|p, x| p[0] + 1e7 * p[1] * x, &ranges, data));
-    let [slope, sxx, rest] = line(data);
+    let [slope, sxx, rest] = line_through(data);
     let c = parameter(&solution, "c");
     let half = 1e-7 * (rest * rise(2) / sxx).sqrt();
     let [low, high] = c.interval.unwrap();
@@ -347,7 +339,7 @@ fn a_function_has_the_interval_of_a_regression() {
     let ranges = [("E", [-5.0, 5.0]), ("A", [0.01, 2.0]), ("i0", [1e-9, 1e3])];
     let data = |x: f64| 1.0 + 0.3 * (x - 1.0);
     let solution = solved(posed(formula, &ranges, data));
-    let [_, sxx, rest] = line(data);
+    let [_, sxx, rest] = line_through(data);
     // At x = 1 the line has this value, with t s √(1/n + (1 − mean)²/Sxx).
     let mean = 15.0 / 8.0;
     let half = student_quantile(0.975, 13.0)

@@ -26,7 +26,7 @@ use crate::ga::optimizer::FROM_THE_SOLVER;
 /// right to a fifth or so.
 const FACTOR: f64 = 2.0;
 /// Rises below this part of the one that the interval allows say nothing.
-const TOLD: f64 = 0.1;
+const NOTICEABLE: f64 = 0.1;
 /// A linear interval is tested where the ranges of the others allow this part of the way to its ends.
 const TESTED: f64 = 0.7;
 /// Intervals whose ends differ by less than this part of their width are the same.
@@ -292,9 +292,9 @@ impl Solution {
                 Ok(row) => square(run, statistics, row) - smallest,
                 Err(_) => f64::INFINITY,
             };
-            let is_told = rise.abs().max(expected) > TOLD * allowed;
+            let is_noticeable = rise.abs().max(expected) > NOTICEABLE * allowed;
             parts[at] >= TESTED
-                && (!is_told || rise <= FACTOR * expected && rise >= expected / FACTOR)
+                && (!is_noticeable || rise <= FACTOR * expected && rise >= expected / FACTOR)
         };
         let fails = |number: &usize| !(holds(2 * number) && holds(2 * number + 1));
         (0..which.len()).filter(fails).map(|number| which[number]).collect()

@@ -41,7 +41,7 @@ const EXACT: f64 = 1e-9;
 const NO_EFFECT: f64 = 1e-10;
 /// Where no parameter has an effect of so many times the errors of the simulation, derivatives are
 /// errors, and say nothing of what cancels.
-const TOLD: f64 = 1e4;
+const NOTICEABLE: f64 = 1e4;
 /// Elsewhere, derivatives are as exact as at the best point up to this factor.
 const ELSEWHERE: f64 = 100.0;
 /// Points elsewhere at which a lack of rank must show, where its form is not known.
@@ -354,7 +354,7 @@ impl Statistics {
 }
 
 impl Statistics {
-    /// Standard errors and correlations as they are told: where parameters stand at ends of their
+    /// Standard errors and correlations as they are reported: where parameters stand at ends of their
     /// ranges, those of the others with these held.
     pub(super) fn tabulated(&self) -> Option<&Uncertainty> {
         self.at_bounds.as_ref().map_or(self.uncertainty.as_ref(), |own| Some(&own.held))
@@ -387,7 +387,7 @@ impl Statistics {
 }
 
 /// The side on which the range lies, for parameters that stand at an end of it: those that cannot be
-/// told from that end by their standard errors.
+/// distinguished from that end by their standard errors.
 fn inward(problem: &Problem, values: &[f64], found: Option<&Uncertainty>) -> Vec<Option<f64>> {
     let side = |k: usize| {
         let (free, value) = (&problem.parameters[k], values[k]);
@@ -444,8 +444,8 @@ fn elsewhere(
         *simulations += took;
         let columns = weighted(&jacobian, scales);
         let simulated = simulated.unwrap_or_default();
-        let effect =
-            largest_effect(&columns, values) > TOLD * problem.noise * size(&simulated, scales);
+        let effect = largest_effect(&columns, values)
+            > NOTICEABLE * problem.noise * size(&simulated, scales);
         if effect && columns.iter().flatten().all(|value| value.is_finite()) {
             found.push(Sensitivities { values: values.clone(), columns });
         }

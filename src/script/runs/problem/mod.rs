@@ -376,7 +376,7 @@ fn why_stopped(session: &Session, what: &str) -> String {
 }
 
 /// Writes what the search has found before the statistics, which may take long. What cannot be
-/// written now is told when all is written.
+/// written now is reported when all is written.
 fn write_quietly(session: &mut Session, folder: &Path, solution: &Solution, seconds: f64) {
     for (name, text) in files_of(session, solution, seconds) {
         let _ = session.write_file(&folder.join(name), text.as_bytes());
