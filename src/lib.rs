@@ -45,73 +45,61 @@
 //!                                └── ga: selection, crossover, mutation, random numbers
 //! ```
 //!
-//! A module owns one stage and one noun, imports only modules below it (a test checks the table in
-//! `tests/suite/architecture.rs`), and never changes what the stage before it made:
+//! # The crates
 //!
+//! A module owns one stage and one noun, imports only modules before it (`tests/suite/architecture` has
+//! the table), and never changes what the stage before it made. The modules lie in six crates, each of
+//! which knows only those before it; this one is what programs embed, and the program `gapi`.
+//!
+//! `src/base`, what all parts share:
 //! - [`elementary`]: elementary functions with the same bits on every machine;
-//! - [`source`], [`name`], [`diag`], [`registry`]: places, names, diagnostics, named choices;
+//! - [`source`], [`name`], [`diag`], [`registry`], [`budget`]: places, names, diagnostics, named
+//!   choices, limits;
+//! - [`graph`], [`units`]: matching, sorting, tearing; units of measurement and their conversion;
+//! - [`plot`], [`page`], [`bibliography`]: figures, HTML pages, the works that are cited.
+//!
+//! `src/numerics`, without Modelica:
+//! - [`sim`]: integrators, events, trajectories;
+//! - [`ga`]: the genetic algorithm and other optimizers;
+//! - [`mat`], [`results`]: files of tables and of results.
+//!
+//! `src/modelica`, the compiler:
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
 //! - [`mod@format`]: the layout of classes and scripts: indentation, blanks, line breaks;
-//! - [`value`], [`symbolic`], [`graph`]: values and their operations; scalar expressions; matching,
-//!   sorting, tearing;
+//! - [`value`], [`symbolic`]: values and their operations; scalar expressions;
 //! - [`functions`], [`eval`]: the functions and operators of the language; the interpreter;
 //! - [`external`]: functions that libraries declare `external`, in Rust;
 //! - [`bytecode`]: functions that loop and branch, as instructions;
 //! - [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
 //!   equations;
 //! - [`causalize`]: structural analysis: index reduction, block lower triangular form, tearing;
-//! - [`codegen`], [`runtime`]: a program of instruction tapes, and the systems that execute it;
-//! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
-//! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
-//! - [`units`]: units of measurement and their conversion;
-//! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
-//! - [`models`]: the Modelica packages that are part of the program;
-//! - [`script`]: sessions and their commands; [`lessons`]: exercises with checks;
-//! - [`lsp`]: what editors ask about open documents; [`cli`]: the command line, the only door outside.
+//! - [`codegen`], [`runtime`]: a program of instruction tapes, and the systems that execute it.
+//!
+//! `src/identify`:
+//! - [`identify`]: populations of simulations, and what they say of the parameters.
+//!
+//! `src/script`:
+//! - [`script`]: sessions and their commands;
+//! - [`packages`]: the Modelica packages that are part of the program;
+//! - [`teach`], [`lessons`]: recorded runs of the genetic algorithm; exercises with checks.
+//!
+//! `src/cli`, with the feature `cli`:
+//! - `cli`: the command line, the only door outside;
+//! - `lsp`: what editors ask about open documents.
 
-#![cfg_attr(
-    not(all(feature = "jit", feature = "xlsx", feature = "hdf5", feature = "pictures")),
-    allow(dead_code, unused_imports, reason = "what only the parts that are left out use")
-)]
-#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
-
-pub mod bibliography;
-pub mod diag;
-pub mod elementary;
-pub mod models;
-pub mod name;
-pub mod registry;
-pub mod source;
-
-pub mod budget;
-pub mod bytecode;
-pub mod causalize;
-pub mod codegen;
-pub mod eval;
-pub mod external;
-pub mod flatten;
-pub mod format;
-pub mod functions;
-pub mod ga;
-pub mod graph;
-pub mod identify;
-pub mod lessons;
-pub mod lower;
-pub mod mat;
-pub mod page;
-pub mod plot;
-pub mod results;
-pub mod runtime;
-pub mod script;
-pub mod sim;
-mod singular_values;
-pub mod symbolic;
-pub mod syntax;
-pub mod teach;
-pub mod units;
-pub mod value;
+pub use gapilib_base::{
+    bibliography, budget, diag, elementary, graph, name, page, plot, registry, source, units,
+};
+pub use gapilib_identify as identify;
+pub use gapilib_modelica::{
+    bytecode, causalize, codegen, eval, external, flatten, format, functions, lower, runtime,
+    symbolic, syntax, value,
+};
+pub use gapilib_numerics::{ga, mat, results, sim};
+pub use gapilib_script as script;
+pub use gapilib_script::{lessons, packages, teach};
 
 #[cfg(feature = "cli")]
-pub mod cli;
+pub use gapilib_cli as cli;
 #[cfg(feature = "lsp")]
-pub mod lsp;
+pub use gapilib_cli::lsp;

@@ -3,14 +3,14 @@
 use super::check::{CheckArgs, FlattenArgs};
 use super::compare::CompareArgs;
 use super::completions::CompletionsArgs;
+#[cfg(feature = "lsp")]
+use super::connection::LspArgs;
 use super::explain::ExplainArgs;
 use super::fmt::FmtArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
 use super::journal::JournalArgs;
 use super::lesson::LessonArgs;
-#[cfg(feature = "lsp")]
-use super::lsp::LspArgs;
 use super::man::ManArgs;
 use super::new::NewArgs;
 use super::options::Global;

@@ -10,7 +10,7 @@ use crate::script::language::parsing::{self, Reading};
 use crate::script::models::{checking, simulation};
 use crate::source::Span;
 use crate::syntax::errors::NOT_A_SCRIPT;
-use crate::{lsp, models};
+use crate::{lsp, packages};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -95,7 +95,7 @@ fn loaded_from(session: &mut Session) -> String {
     let roots: Vec<Ident> = session.library().roots().collect();
     let line = |top: Ident| {
         let file = session.source_file(&Name::from(top))?;
-        Some(match file.starts_with(models::FOLDER) {
+        Some(match file.starts_with(packages::FOLDER) {
             true => format!("`{top}` is part of gapi\n"),
             false => format!("`{top}` is loaded from `{}`\n", file.display()),
         })

@@ -2,8 +2,8 @@
 //! own.
 //!
 //! ```
-//! use gapilib::cli::embedding::Embedding;
-//! use gapilib::script::world::MemoryWorld;
+//! use gapilib_cli::embedding::Embedding;
+//! use gapilib_script::world::MemoryWorld;
 //! use std::sync::Arc;
 //!
 //! // Any screen will do; that of a world in memory keeps what is printed.

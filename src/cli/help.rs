@@ -31,8 +31,8 @@ pub(super) struct HelpArgs {
 
 /// The ledgers, as they are in the repository.
 const LEDGERS: [(DialectName, &str, &str); 2] = [
-    (DialectName::Dymola, "Dymola", include_str!("../../compat/dymola.toml")),
-    (DialectName::Openmodelica, "OpenModelica", include_str!("../../compat/openmodelica.toml")),
+    (DialectName::Dymola, "Dymola", include_str!("compat/dymola.toml")),
+    (DialectName::Openmodelica, "OpenModelica", include_str!("compat/openmodelica.toml")),
 ];
 
 /// Prints what is asked for.

@@ -3,10 +3,10 @@
 use super::named;
 use super::terminal;
 use crate::diag::visible;
-use crate::identify::problem::{Origins, Record, ShardFile, decode};
 use crate::script::runs::journal::{ScriptEntry, read_script_journal};
-use crate::teach::Trace;
 use clap::{Args, ValueHint};
+use gapilib_identify::problem::{Origins, Record, ShardFile, decode};
+use gapilib_script::teach::Trace;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;

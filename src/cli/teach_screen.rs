@@ -2,9 +2,9 @@
 
 use super::hangup::{self, Input};
 use super::live::release;
-use crate::teach::Trace;
-use crate::teach::quiz::Score;
-use crate::teach::screen::{self, Key, Screen};
+use gapilib_script::teach::Trace;
+use gapilib_script::teach::quiz::Score;
+use gapilib_script::teach::screen::{self, Key, Screen};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};

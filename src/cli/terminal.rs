@@ -4,10 +4,10 @@
 use super::live::Live;
 use super::options::Colour;
 use crate::diag::{visible, visible_coloured};
-use crate::identify::problem::Status;
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
 use crate::script::world::Screen;
+use gapilib_identify::problem::Status;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};

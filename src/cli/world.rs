@@ -10,13 +10,13 @@ use super::output::Output;
 use super::signals;
 use super::terminal::Terminal;
 use crate::external::c::CCompiler;
-use crate::identify::problem::Status;
-use crate::identify::ranks::Ranks;
-use crate::models;
+use crate::packages;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
 use crate::script::world::{Content, Environment, FileReader, Files, Screen, Stamp};
+use gapilib_identify::problem::Status;
+use gapilib_identify::ranks::Ranks;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -212,11 +212,11 @@ impl Files for SystemWorld {
     }
 
     fn exists(&self, path: &Path) -> bool {
-        models::read(path).is_some() || models::list(path).is_some() || self.at(path).exists()
+        packages::read(path).is_some() || packages::list(path).is_some() || self.at(path).exists()
     }
 
     fn is_dir(&self, path: &Path) -> bool {
-        models::list(path).is_some() || self.at(path).is_dir()
+        packages::list(path).is_some() || self.at(path).is_dir()
     }
 
     fn stamp(&self, path: &Path) -> Option<Stamp> {

@@ -14,42 +14,6 @@ const INTERVALS: usize = 500;
 const MOST_INTERVALS: f64 = 1e6;
 
 /// A compiled model under the name that the script gave it.
-///
-/// ```
-/// use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate as _};
-/// use gapilib::identify::{CompiledModel, Model as _};
-/// use gapilib::script::Session;
-/// use gapilib::script::models::simulation::translate;
-/// use gapilib::script::world::MemoryWorld;
-/// use std::sync::Arc;
-///
-/// let mut session = Session::new(Box::new(MemoryWorld::new()));
-/// let classes = "model Decay
-///   parameter Real k = 1;
-///   Real x(start = 1, fixed = true);
-/// equation
-///   der(x) = -k*x;
-/// end Decay;";
-/// session.load_text("Decay.mo", classes).unwrap();
-/// let translated = translate(&mut session, "Decay").unwrap();
-/// let model = CompiledModel::new("Decay", translated.program.clone());
-/// assert_eq!(model.parameters()[0].name, "k");
-///
-/// // Simulated again and again with other values of `k`: x at two points in time.
-/// let experiment = Experiment {
-///     name: String::new(),
-///     settings: model.settings(),
-///     model: Arc::new(model),
-///     second_attempt: true,
-///     x_name: "time".to_owned(),
-///     observations: vec![Observation { y_name: "x".to_owned(), x: vec![0.5, 1.0] }],
-///     parameters: vec![(0, "k".to_owned())],
-/// };
-/// let mut simulator = ModelSimulator::new(&[experiment]).unwrap();
-/// let mut x = [0.0; 2];
-/// simulator.simulate(&[2.0], &mut x).unwrap();
-/// assert!((x[1] - (-2.0f64).exp()).abs() < 1e-3);
-/// ```
 pub struct CompiledModel {
     name: String,
     program: Arc<Program>,

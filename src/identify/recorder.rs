@@ -334,7 +334,7 @@ impl Best {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::{FailedSimulation, Quantity};
+    use crate::{FailedSimulation, Quantity};
 
     fn study() -> Arc<Study> {
         let quantity = |name: &str| Quantity { name: name.to_owned(), unit: String::new() };

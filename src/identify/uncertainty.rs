@@ -6,7 +6,7 @@
 //! parameters of very different size do not disturb each other. A direction in which the simulation
 //! does not change at all has no finite deviation.
 //!
-//! Reference: [Walter and Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 4.
+//! Reference: [Walter and Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 4.
 
 use crate::elementary;
 use crate::singular_values::SingularValues;

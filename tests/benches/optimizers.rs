@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 #[allow(dead_code, reason = "a module of the tests of the library, too")]
-#[path = "../../src/ga/optimizer/problems.rs"]
+#[path = "../../src/numerics/ga/optimizer/problems.rs"]
 mod problems;
 
 const SEEDS: u64 = 10;

@@ -3,7 +3,7 @@
 
 use crate::host::{self, Command};
 use crate::runs::Change;
-use gapilib::models;
+use gapilib::packages;
 use gapilib::script::access::policy::{Access, Grant};
 use gapilib::script::runs::view::{Fitted, Progress, Spread, View};
 use gapilib::script::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
@@ -172,15 +172,15 @@ struct Reader(Arc<dyn FileReader>);
 
 impl FileReader for Reader {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        models::read(path).map_or_else(|| self.0.read(path), |bytes| Ok(bytes.to_vec()))
+        packages::read(path).map_or_else(|| self.0.read(path), |bytes| Ok(bytes.to_vec()))
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        models::list(path).map_or_else(|| self.0.list_dir(path), Ok)
+        packages::list(path).map_or_else(|| self.0.list_dir(path), Ok)
     }
 
     fn is_file(&self, path: &Path) -> bool {
-        models::read(path).is_some() || self.0.is_file(path)
+        packages::read(path).is_some() || self.0.is_file(path)
     }
 }
 
@@ -194,7 +194,7 @@ impl Files for LiveWorld {
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        models::read(path).map_or_else(|| self.memory.read(path), |bytes| Ok(bytes.to_vec()))
+        packages::read(path).map_or_else(|| self.memory.read(path), |bytes| Ok(bytes.to_vec()))
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -210,11 +210,11 @@ impl Files for LiveWorld {
     }
 
     fn exists(&self, path: &Path) -> bool {
-        models::read(path).is_some() || models::list(path).is_some() || self.memory.exists(path)
+        packages::read(path).is_some() || packages::list(path).is_some() || self.memory.exists(path)
     }
 
     fn is_dir(&self, path: &Path) -> bool {
-        models::list(path).is_some() || self.memory.is_dir(path)
+        packages::list(path).is_some() || self.memory.is_dir(path)
     }
 
     fn stamp(&self, path: &Path) -> Option<Stamp> {
@@ -222,7 +222,7 @@ impl Files for LiveWorld {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        models::list(path).map_or_else(|| self.memory.list_dir(path), Ok)
+        packages::list(path).map_or_else(|| self.memory.list_dir(path), Ok)
     }
 
     fn reader(&self) -> Arc<dyn FileReader> {

@@ -2,9 +2,9 @@
 //! stands its code, which only this user's program can make: any other object is compiled again.
 
 use super::hex;
-use crate::cli::cache_folder;
-use crate::cli::disk::read_named;
+use crate::cache_folder;
 use crate::diag::Fault;
+use crate::disk::read_named;
 use crate::external::errors::EXTERNAL_COMPILER;
 use crate::fault;
 use std::fs;

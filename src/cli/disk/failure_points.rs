@@ -101,10 +101,10 @@ impl Files for DiskWorld {
         self.disk.create_folders(&self.at(path))
     }
     fn exists(&self, path: &Path) -> bool {
-        models::read(path).is_some() || models::list(path).is_some() || self.at(path).exists()
+        packages::read(path).is_some() || packages::list(path).is_some() || self.at(path).exists()
     }
     fn is_dir(&self, path: &Path) -> bool {
-        models::list(path).is_some() || self.at(path).is_dir()
+        packages::list(path).is_some() || self.at(path).is_dir()
     }
     fn stamp(&self, _: &Path) -> Option<Stamp> {
         None

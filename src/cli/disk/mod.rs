@@ -12,7 +12,7 @@ mod record;
 mod steps;
 mod temporary;
 
-use crate::models;
+use crate::packages;
 use crate::script::access::policy::{Access, Change, ExternalCode, Grant, Policy, RECORD, Refusal};
 use crate::script::world::{Content, FileReader, normalized};
 use place::Place;
@@ -119,7 +119,7 @@ impl Disk {
     /// The path is refused, or cannot be resolved.
     pub(super) fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         match access {
-            Access::Read if models::read(path).is_some() => Ok(()),
+            Access::Read if packages::read(path).is_some() => Ok(()),
             Access::Read if self.is_named_device(access, path) => Ok(()),
             Access::Write if self.is_named_device(access, path) => Ok(()),
             Access::Read => self.to_read(path).map(|_| ()),
@@ -280,7 +280,7 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
 
 impl FileReader for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        if let Some(bytes) = models::read(path) {
+        if let Some(bytes) = packages::read(path) {
             return Ok(bytes.to_vec());
         }
         match self.is_named_device(Access::Read, path) {
@@ -290,7 +290,7 @@ impl FileReader for Disk {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        match models::list(path) {
+        match packages::list(path) {
             Some(names) => Ok(names),
             None => self.to_read(path)?.list(),
         }
@@ -298,7 +298,7 @@ impl FileReader for Disk {
 
     fn is_file(&self, path: &Path) -> bool {
         // The answer does not reveal whether a file that may not be read exists.
-        models::read(path).is_some() || path.is_file() && self.to_read(path).is_ok()
+        packages::read(path).is_some() || path.is_file() && self.to_read(path).is_ok()
     }
 }
 

@@ -8,7 +8,7 @@ use super::Safety;
 use super::steps::step;
 use super::temporary::{is_old, is_temporary, temporary_name};
 use crate::budget::has_memory;
-use crate::cli::memory;
+use crate::memory;
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
 use rustix::fs::{self, AtFlags, FileType, Mode, OFlags, Stat};

@@ -38,7 +38,7 @@ pub(super) mod failing {
 
     /// What happens at the chosen step.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub(in crate::cli::disk) enum Failure {
+    pub(in crate::disk) enum Failure {
         /// The call fails; those after it do not.
         Fault,
         /// The process ends there: nothing reaches the disk any more.
@@ -47,19 +47,19 @@ pub(super) mod failing {
 
     /// The steps of this thread: how many were done, and which fails.
     #[derive(Debug, Clone, Copy, Default)]
-    pub(in crate::cli::disk) struct Plan {
-        pub(in crate::cli::disk) done: usize,
-        pub(in crate::cli::disk) fail_at: Option<(usize, Failure)>,
+    pub(in crate::disk) struct Plan {
+        pub(in crate::disk) done: usize,
+        pub(in crate::disk) fail_at: Option<(usize, Failure)>,
     }
 
     thread_local! {
-        pub(in crate::cli::disk) static PLAN: Cell<Plan> = const {
+        pub(in crate::disk) static PLAN: Cell<Plan> = const {
             Cell::new(Plan { done: 0, fail_at: None })
         };
     }
 
     /// Whether the process has ended as planned.
-    pub(in crate::cli::disk) fn has_crashed() -> bool {
+    pub(in crate::disk) fn has_crashed() -> bool {
         let plan = PLAN.get();
         plan.fail_at.is_some_and(|(at, how)| how == Failure::Crash && plan.done >= at)
     }

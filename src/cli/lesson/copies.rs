@@ -1,8 +1,8 @@
 //! The learner's folder: copies of the lessons, and what is passed.
 
-use crate::cli::{disk, named};
 use crate::lessons::{Lesson, Progress};
 use crate::syntax;
+use crate::{disk, named};
 use std::io;
 use std::path::{Path, PathBuf};
 

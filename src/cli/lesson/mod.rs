@@ -273,7 +273,7 @@ fn filled(text: &str) -> String {
     let begins = |c: char| c.is_alphabetic() || c == '(';
     let is_prose = |part: &&str| part.lines().all(|line| line.starts_with(begins));
     let paragraphs = text.trim_end().split("\n\n").map(|part| match is_prose(&part) {
-        true => crate::teach::plain::wrapped(part),
+        true => gapilib_script::teach::plain::wrapped(part),
         false => format!("{part}\n"),
     });
     paragraphs.collect::<Vec<_>>().join("\n")

@@ -5,8 +5,8 @@
 //! way on every system, without another dependency.
 
 use super::copies::Copies;
-use crate::cli::{hangup, terminal};
 use crate::lessons::Lesson;
+use crate::{hangup, terminal};
 use std::io::IsTerminal as _;
 use std::time::{Duration, SystemTime};
 

@@ -1,7 +1,7 @@
 //! Keys that are pressed while a run goes on. A thread reads them, so that Ctrl-C works in the
 //! midst of a long simulation.
 
-use crate::cli::hangup::{self, Input};
+use crate::hangup::{self, Input};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -2,10 +2,10 @@
 //! prompts have.
 
 use super::record::Record;
-use crate::cli::terminal;
 use crate::script::access::policy::Grant;
 use crate::script::models::{checking, simulation};
 use crate::script::{Dialect, RunStatus, Session, builtins};
+use crate::terminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

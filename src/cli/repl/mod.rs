@@ -35,7 +35,7 @@ Examples:
 
 Exit code: 0 after :quit or Ctrl-D, the argument of `exit(…)`, or 1 if statements that do not come from \
                         a terminal had errors.")]
-pub(in crate::cli) struct ReplArgs {
+pub(crate) struct ReplArgs {
     /// Folder for results and figures
     #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,

@@ -1,9 +1,9 @@
 //! Which scripts are tested, and what is wrong where there is nothing to test.
 
-use crate::cli::{disk, named};
 use crate::script::language::parsing::{Reading, read};
 use crate::script::language::workspace::matches;
 use crate::source::SourceMap;
+use crate::{disk, named};
 use std::path::{Component, Path, PathBuf};
 
 /// The ending of a transcript, after the name of its script.

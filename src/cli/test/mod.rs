@@ -49,7 +49,7 @@ Examples:
 
 Exit code: 0 if all agree; 1 if one does not or has no reference, if a transcript has no script, or if \
                         there is no script to test; 2 for an invalid command line.")]
-pub(in crate::cli) struct TestArgs {
+pub(crate) struct TestArgs {
     /// Scripts, patterns such as `tests/*.mos`, or folders with scripts
     #[arg(default_value = ".", value_hint = ValueHint::AnyPath)]
     pub paths: Vec<PathBuf>,

@@ -9,7 +9,7 @@ const MARK: &str = "// gapi test:";
 
 /// How a script is compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Args)]
-pub(in crate::cli) struct Settings {
+pub(crate) struct Settings {
     /// Relative tolerance of numbers that are not integers [default: 2e-6; for embedded results 5e-3]
     #[arg(long, value_name = "T", value_parser = number)]
     pub tolerance: Option<f64>,

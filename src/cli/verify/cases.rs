@@ -5,7 +5,7 @@
 //!   collection is the name of the model;
 //! - that of BuildingsPy: one file `Library_Examples_Model.txt` a model.
 
-use crate::cli::disk::{list_named, read_named};
+use crate::disk::{list_named, read_named};
 use crate::name::{Ident, Name};
 use std::io;
 use std::path::{Path, PathBuf};

@@ -7,8 +7,8 @@ use super::options::{Global, seconds};
 use super::pool::{self, Ended, Watch};
 use super::session;
 use super::terminal::{self, Terminal};
-use crate::cli::disk::list_named;
 use crate::diag::{Diagnostic, Fault};
+use crate::disk::list_named;
 use crate::name::Name;
 use crate::results::{self, Compared};
 use crate::script::Session;
@@ -40,7 +40,7 @@ comparisonSignals.txt; its path below the collection is the name of the model. O
 Library_Examples_Model.txt as BuildingsPy writes them, with samples of all signals.
 
 Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
-pub(in crate::cli) struct VerifyArgs {
+pub(crate) struct VerifyArgs {
     /// Modelica files or package folders, in addition to those of --library
     #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,

@@ -12,7 +12,7 @@
 //! add up to n G, and factors √G wᵢ/κ and √G wᵢ/(κ s_g), for which the gradient is exact;
 //! κ² = n / (Σ_given uᵢ² + Σ_g n_g).
 //!
-//! Reference: [Seber & Wild 1989](crate::bibliography#seber-wild-1989), section 2.2 and chapter 11.
+//! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
 use super::{Fitness, checked};
 use crate::elementary;

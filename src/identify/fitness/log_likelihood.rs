@@ -1,7 +1,7 @@
 //! Negative logarithm of the likelihood of normal errors whose variance is estimated along:
 //! n/2 (ln(2π s²) + 1) with s² = Σ (wⱼ (yⱼ − ŷⱼ))² / n.
 //!
-//! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
+//! Reference: [walter-pronzato-1997](gapilib_base::bibliography#walter-pronzato-1997).
 
 use super::{Fitness, checked, differences};
 use crate::elementary;

@@ -1,6 +1,6 @@
 //! RMSE divided by the range of the measured values.
 //!
-//! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
+//! Reference: [walter-pronzato-1997](gapilib_base::bibliography#walter-pronzato-1997).
 
 use super::{Fitness, checked, differences};
 use crate::registry::Entry;

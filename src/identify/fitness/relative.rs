@@ -1,6 +1,6 @@
 //! Σ (wⱼ (yⱼ − ŷⱼ) / yⱼ)² / n; a measured 0 makes it useless, which shows as a failure.
 //!
-//! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
+//! Reference: [walter-pronzato-1997](gapilib_base::bibliography#walter-pronzato-1997).
 
 use super::{Fitness, checked, differences};
 use crate::registry::Entry;

@@ -13,11 +13,11 @@
 //! with w = ψ(u)/u in the search, √(2ρ) at last; their gradients are exact. The covariance of the
 //! parameters is that of M-estimators, v (JᵀJ)⁻¹ (Huber 1981, (7.6.5)).
 //!
-//! Reference: [Huber & Ronchetti 2009](crate::bibliography#huber-ronchetti-2009), chapters 6, 7.
+//! Reference: [Huber & Ronchetti 2009](gapilib_base::bibliography#huber-ronchetti-2009), chapters 6, 7.
 
 use super::{Fitness, Robustness, checked, differences};
 use crate::elementary;
-use crate::identify::problem::distributions::{normal_density, normal_two_sided};
+use crate::problem::distributions::{normal_density, normal_two_sided};
 use crate::registry::Entry;
 
 /// 95 % efficient for normal errors.
@@ -243,7 +243,7 @@ fn density_at_zero(residuals: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::problem::distributions::normal_quantile;
+    use crate::problem::distributions::normal_quantile;
     use crate::registry::Options;
 
     fn make(entry: &Entry<dyn Fitness>, scale: f64) -> Box<dyn Fitness> {

@@ -1,6 +1,6 @@
 //! √(Σ (wⱼ (yⱼ − ŷⱼ))² / n), in the unit of the measured variable.
 //!
-//! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
+//! Reference: [walter-pronzato-1997](gapilib_base::bibliography#walter-pronzato-1997).
 
 use super::{Fitness, checked, differences};
 use crate::registry::Entry;

@@ -1,6 +1,6 @@
 //! Σ (wⱼ (yⱼ − ŷⱼ))².
 //!
-//! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), equation (1).
+//! Reference: [Rubio et al. 2006](gapilib_base::bibliography#rubio-2006), equation (1).
 
 use super::{Fitness, checked, differences};
 use crate::ga::FAILED_FITNESS;

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
-use crate::identify::table::significant;
+use crate::table::significant;
 
 /// Probability of any false alarm among the residual tests of a solution.
 const FAMILY: f64 = 0.01;

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::diag::Fault;
 use crate::elementary;
-use crate::identify::fitness::{Fitness, median_deviation};
-use crate::identify::table::significant;
+use crate::fitness::{Fitness, median_deviation};
+use crate::table::significant;
 
 /// The tolerance is divided by this.
 const TIGHTER: f64 = 100.0;

@@ -4,7 +4,7 @@
 //! differences of its gradient, do both: damped Newton steps, and the test that the Hessian matrix
 //! is positive definite and the step left lies within a thousandth of a standard error.
 //!
-//! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §2.1 and §3.4.
+//! Reference: [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §2.1 and §3.4.
 
 use super::limits::along;
 use super::minimum_test::is_at_minimum;

@@ -10,7 +10,7 @@ use super::refit::Refit;
 use super::statistics::sensitivities;
 use super::{Evaluation, Problem, Statistics};
 use crate::diag::Fault;
-use crate::identify::uncertainty_given;
+use crate::uncertainty_given;
 
 /// Fractions of the range that are tried on each side: from this on, each larger by the factor.
 const FIRST: f64 = 1e-3;

@@ -6,13 +6,13 @@
 //! thousandth of their standard errors of the minimum. Genes held by a bound are left out; residuals
 //! of the size of rounding are tested by the step of Gauss and Newton.
 //!
-//! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
+//! Reference: [Bates & Watts 1981](gapilib_base::bibliography#bates-watts-1981).
 
 use super::minimum_test::tested;
 use super::run::Cause;
 use super::{Linearization, Problem, Run, curvature, held, limits};
 use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached};
-use crate::identify::table::significant;
+use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
 /// A minimum with a larger relative offset is one whose residuals are those of rounding.

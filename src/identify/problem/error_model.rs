@@ -3,7 +3,7 @@
 use super::{Finding, FindingKind, Problem, Series, Severity};
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::fitness::{Concentrated, Fitness};
+use crate::fitness::{Concentrated, Fitness};
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

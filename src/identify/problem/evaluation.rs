@@ -5,7 +5,7 @@ use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
-use crate::identify::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
+use crate::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary};
 use rayon::prelude::*;

@@ -4,12 +4,12 @@
 use super::event_limits::{Limit, limits};
 use super::{Failed, FailureKind, Portable, PortableExperiment, PortableSettings, Simulate};
 use crate::diag::{Diagnostic, Fault};
-use crate::identify::plan::{Plan, TIME, plan, with_driver};
-use crate::identify::pointwise::Pointwise;
-use crate::identify::{Instance, Model, Path};
+use crate::plan::{Plan, TIME, plan, with_driver};
+use crate::pointwise::Pointwise;
 use crate::sim::{
     Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
 };
+use crate::{Instance, Model, Path};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

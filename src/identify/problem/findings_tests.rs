@@ -1,9 +1,9 @@
 //! What a report must say and must not say, for data of known faults.
 
 use super::*;
+use crate::fitness::FITNESSES;
 use crate::ga::Mrg32k3a;
 use crate::ga::optimizer::METHODS;
-use crate::identify::fitness::FITNESSES;
 use crate::registry::{self, Options};
 
 type Formula = fn(&[f64], f64) -> f64;
@@ -98,7 +98,7 @@ fn problem(
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(3000), ..Stop::default() },
         noise: 1e-12,
-        inference: crate::identify::problem::Inference::default(),
+        inference: crate::problem::Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Outputs(x.clone(), formulas.clone())))),
     }
 }

@@ -7,7 +7,7 @@
 //! are rightly held is tried out: they are moved to both sides, near and far, and the others fitted
 //! again; nothing may be better by more than the test leaves open.
 //!
-//! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
+//! Reference: [Bates & Watts 1981](gapilib_base::bibliography#bates-watts-1981).
 
 use super::limits::along;
 use super::minimum_test::is_at_minimum;

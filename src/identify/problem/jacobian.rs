@@ -7,7 +7,7 @@
 //! points that cannot be simulated, the derivative is that of the parabola through three points on
 //! one side.
 //!
-//! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §8.1.
+//! Reference: [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §8.1.
 
 use super::{Evaluation, Failed, Free, Linearization, NOISE_OF_FORMULAS, Problem};
 use crate::elementary;

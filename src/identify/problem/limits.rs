@@ -5,7 +5,7 @@
 //! back onto the limits; the test of Bates and Watts is made in the same space, and the multipliers
 //! tell whether the constraints hold the point at all (an active-set method for inequalities).
 //!
-//! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §12.3 and §15.3.
+//! Reference: [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §12.3 and §15.3.
 
 use super::inference::Constraint;
 use super::minimum_test::is_at_minimum;

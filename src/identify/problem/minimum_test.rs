@@ -1,6 +1,6 @@
 //! Whether a point is a minimum of the sum of squares, by the relative offset.
 //!
-//! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
+//! Reference: [Bates & Watts 1981](gapilib_base::bibliography#bates-watts-1981).
 
 use super::{Evaluation, Linearization, Problem, Run};
 use crate::ga::optimizer::{Offset, test_minimum};

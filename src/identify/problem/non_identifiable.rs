@@ -6,7 +6,7 @@
 //! matter; where the same relative changes have none, only products do. What is determined then
 //! are the combinations orthogonal to all such directions.
 //!
-//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 2.
+//! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 2.
 
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;

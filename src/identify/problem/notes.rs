@@ -9,8 +9,8 @@ use super::{
     Severity, Solution, SolvedSeries, Statistics,
 };
 use crate::elementary;
-use crate::identify::table::{digits_of, ends, significant};
-use crate::identify::uncertainty_given;
+use crate::table::{digits_of, ends, significant};
+use crate::uncertainty_given;
 
 /// Beyond this condition number digits of the sensitivities are lost.
 const ILL_CONDITIONED: f64 = 1e4;

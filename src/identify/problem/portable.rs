@@ -2,8 +2,8 @@
 //!
 //! Models go as compiled programs, so that the other process needs none of their files.
 
+use crate::PortableModel;
 use crate::diag::Fault;
-use crate::identify::PortableModel;
 use crate::sim::{OutputGrid, Settings, TimeBudget, find_integrator};
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@
 //! S(p) < S_min (1 + t² / (points − parameters)),  t the 97.5 % quantile of Student's distribution
 //! ```
 //!
-//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), §5.
+//! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), §5.
 
 use super::refit::Refit;
 use super::statistics::distributions::{chi_square_quantile, student_quantile};

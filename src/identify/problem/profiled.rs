@@ -7,8 +7,8 @@ use super::{
     EndingKind, Finding, FindingKind, Profile, Profiles, Run, Severity, Solution, Verdict,
 };
 use crate::diag::Fault;
-use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
+use crate::table::significant;
 use crate::{bail, fault};
 
 /// Ends of other descents from which the fits of a profile begin as well.

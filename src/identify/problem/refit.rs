@@ -4,7 +4,7 @@ use super::{Best, Evaluation, Free, Problem, Run, Simulate};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
-use crate::identify::ranks::Processors;
+use crate::ranks::Processors;
 use crate::registry::{self, Options};
 
 /// Evaluations of one fit.

@@ -7,7 +7,7 @@ use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
 };
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
-use crate::identify::ranks::Processors;
+use crate::ranks::Processors;
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
 use indexmap::IndexMap;

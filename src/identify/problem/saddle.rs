@@ -8,8 +8,8 @@
 
 use super::{Best, Finding, FindingKind, Run, Severity};
 use crate::diag::Fault;
-use crate::identify::table::significant;
 use crate::singular_values::SingularValues;
+use crate::table::significant;
 use nalgebra::DMatrix;
 
 /// So many saddles one after the other.

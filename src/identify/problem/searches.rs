@@ -3,7 +3,7 @@
 
 use super::{Best, Finding, FindingKind, Run, Solution, SolvedSearch};
 use crate::ga::has_failed;
-use crate::identify::table::{quoted, significant};
+use crate::table::{quoted, significant};
 use std::fmt::Write;
 
 /// Objectives above the smallest by less than this part of it count as equal.

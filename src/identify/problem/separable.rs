@@ -9,7 +9,7 @@
 use super::sensitivities::Sensitivities;
 use super::{Evaluation, Free, Problem};
 use crate::elementary;
-use crate::identify::table::significant;
+use crate::table::significant;
 
 /// A parameter is changed by this factor, or by this part of its range where it is not positive.
 const FACTOR: f64 = 1.25;

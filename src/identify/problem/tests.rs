@@ -1,8 +1,8 @@
 //! Problems put in Rust: a straight line and a product.
 
 use super::*;
+use crate::fitness::FITNESSES;
 use crate::ga::optimizer::METHODS;
-use crate::identify::fitness::FITNESSES;
 use crate::registry::{self, Options};
 
 /// y = f(parameters, x) at the points.

@@ -1,8 +1,8 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
 use super::{EndingKind, Profile, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
-use crate::identify::table::{counted, digits_of, ends, quoted, significant};
 use crate::plot::{self, Comparison, Figure};
+use crate::table::{counted, digits_of, ends, quoted, significant};
 use std::fmt::Write;
 
 /// How many causes of failure are shown.

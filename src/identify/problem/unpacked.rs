@@ -6,8 +6,8 @@ use super::{Experiment, ModelSimulator, Observation, Simulate};
 use crate::codegen::Program;
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::{CompiledModel, Model, PortableModel};
 use crate::registry::BAD_OPTION;
+use crate::{CompiledModel, Model, PortableModel};
 use std::sync::Arc;
 
 /// The simulator; `clock` measures the budgets of time.

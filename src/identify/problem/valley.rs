@@ -3,7 +3,7 @@
 
 use super::grounds::Grounds;
 use super::{Finding, FindingKind, Severity, Solution, Statistics, Verdict};
-use crate::identify::table::ends;
+use crate::table::ends;
 
 /// A combination is worth a word where its interval is narrower than this part of its value.
 const NARROW: f64 = 0.2;

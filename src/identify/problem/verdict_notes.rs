@@ -3,7 +3,7 @@
 use super::statistics::BEYOND;
 use super::verdicts::{ByProfile, Judged};
 use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
-use crate::identify::table::{ends, significant};
+use crate::table::{ends, significant};
 
 /// What must be known about a parameter.
 pub fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {

@@ -9,8 +9,8 @@
 //! would leave the range, where there is no standard error, where the model is curved. What a
 //! budget of simulations does not allow is not said.
 //!
-//! References: [Bates & Watts 1988](crate::bibliography#bates-watts-1988), chapter 6;
-//! [Raue et al. 2009](crate::bibliography#raue-2009).
+//! References: [Bates & Watts 1988](gapilib_base::bibliography#bates-watts-1988), chapter 6;
+//! [Raue et al. 2009](gapilib_base::bibliography#raue-2009).
 
 use super::effects::{Effect, Finite};
 use super::grounds::Grounds;

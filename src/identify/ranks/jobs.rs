@@ -6,7 +6,7 @@ use super::coordinator::{Arrived, Patience, Prepared, State};
 use super::message::Work;
 use super::remote::{Remote, Request};
 use super::simulation::Simulation;
-use crate::identify::problem::Simulate;
+use crate::problem::Simulate;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Mutex, PoisonError};

@@ -1,7 +1,7 @@
 //! What ranks say to each other.
 
 use super::simulation::{Asked, Batch, Simulation};
-use crate::identify::problem::Portable;
+use crate::problem::Portable;
 use serde::{Deserialize, Serialize};
 
 /// A rank, as it introduces itself.

@@ -16,7 +16,7 @@
 //!                 ─────── Cancel, End ────▶
 //! ```
 //!
-//! Reference: [Polychronopoulos & Kuck 1987](crate::bibliography#polychronopoulos-kuck-1987), guided
+//! Reference: [Polychronopoulos & Kuck 1987](gapilib_base::bibliography#polychronopoulos-kuck-1987), guided
 //! self-scheduling.
 
 pub mod chunk;

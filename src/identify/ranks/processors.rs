@@ -2,7 +2,7 @@
 
 use super::coordinator::{Prepared, Ranks};
 use crate::diag::Fault;
-use crate::identify::problem::Portable;
+use crate::problem::Portable;
 use std::sync::Arc;
 
 /// What simulates: threads of this process, and other ranks where there are any.
@@ -26,7 +26,7 @@ impl Processors {
     /// # Errors
     ///
     /// Those of [`Ranks::prepare`].
-    pub(in crate::identify) fn prepare(
+    pub(crate) fn prepare(
         &self,
         simulator: impl FnOnce() -> Result<Portable, String>,
     ) -> Result<(Option<Prepared>, Option<String>), Fault> {

@@ -1,7 +1,7 @@
 //! A simulator whose simulations another rank does.
 
 use super::simulation::{Asked, Simulation, cancelled};
-use crate::identify::problem::{Failed, Simulate};
+use crate::problem::{Failed, Simulate};
 use std::sync::mpsc::{Receiver, Sender};
 
 /// What a job wants to be simulated.

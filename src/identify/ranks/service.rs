@@ -5,7 +5,7 @@ use super::coordinator::Patience;
 use super::message::{About, Order, Report, Work, decode, encode};
 use super::simulation::{Simulation, simulate};
 use crate::diag::Fault;
-use crate::identify::problem::{Portable, Simulate, unpacked};
+use crate::problem::{Portable, Simulate, unpacked};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};

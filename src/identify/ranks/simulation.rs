@@ -1,6 +1,6 @@
 //! One simulation as it is asked for and answered, by a thread of this process or by another rank.
 
-use crate::identify::problem::{Failed, FailureKind, Simulate};
+use crate::problem::{Failed, FailureKind, Simulate};
 use serde::{Deserialize, Serialize};
 
 /// What is wanted of an individual.

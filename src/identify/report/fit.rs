@@ -4,8 +4,8 @@ use super::Section;
 use super::explanations::BAND;
 use super::parts::{explained, figure, one_panel, series};
 use super::view::{self, CurvePoint, View};
-use crate::identify::problem::{Band, SolvedSeries};
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::problem::{Band, SolvedSeries};
 use maud::{Markup, html};
 
 pub fn section(view: &View) -> Option<Section> {

@@ -6,7 +6,7 @@
 
 use maud::{Markup, html};
 
-const CHAPTER: &str = include_str!("../../../docs/src/report.md");
+const CHAPTER: &str = include_str!("../docs/report.md");
 
 /// The chapter below its title.
 pub fn chapter() -> Markup {

@@ -7,8 +7,8 @@ use super::parts::{axis, explained, number, one_panel, scrolling, series, small_
 use super::view::{Pair, View, is_logarithmic};
 use crate::elementary;
 use crate::ga::has_failed;
-use crate::identify::problem::SolvedParameter;
 use crate::plot::{Figure, Mark};
+use crate::problem::SolvedParameter;
 use maud::{Markup, html};
 
 /// Ellipses drawn; with more parameters the table shows the others.

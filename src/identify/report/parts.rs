@@ -1,9 +1,9 @@
 //! Pieces that several sections use.
 
 use super::explanations::Explanation;
-use crate::identify::problem::SolvedParameter;
-use crate::identify::table::significant;
 use crate::plot::{Axis, Figure, Mark, Panel, Scale, Series};
+use crate::problem::SolvedParameter;
+use crate::table::significant;
 use maud::{Markup, PreEscaped, html};
 
 /// A figure with a caption; `label` says in words what it shows.

@@ -6,8 +6,8 @@ use super::explanations::PROFILE;
 use super::parts::{axis, explained, number, one_panel, series, small_figure};
 use super::view::{View, is_logarithmic};
 use crate::elementary;
-use crate::identify::problem::{Profile, Solution, SolvedParameter};
 use crate::plot::{Axis, Figure, Mark};
+use crate::problem::{Profile, Solution, SolvedParameter};
 use maud::{Markup, html};
 
 /// A profile is drawn up to so many times the rise from its least to the limit.

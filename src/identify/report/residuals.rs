@@ -4,7 +4,7 @@ use super::Section;
 use super::explanations::{AUTOCORRELATION, R_SQUARED, RMSE, RUNS};
 use super::parts::{explained, number, quantity, scrolling};
 use super::view::View;
-use crate::identify::problem::{Finding, FindingKind, Solution, SolvedSeries};
+use crate::problem::{Finding, FindingKind, Solution, SolvedSeries};
 use maud::{Markup, html};
 
 pub fn section(view: &View) -> Option<Section> {

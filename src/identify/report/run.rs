@@ -3,7 +3,7 @@
 use super::Section;
 use super::parts::{number, scrolling};
 use super::view::View;
-use crate::identify::problem::Solution;
+use crate::problem::Solution;
 use maud::{Markup, html};
 
 /// Generations in the table; of a longer run an even choice.

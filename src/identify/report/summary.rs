@@ -2,7 +2,7 @@
 
 use super::parts::number;
 use super::view::View;
-use crate::identify::problem::Verdict;
+use crate::problem::Verdict;
 use maud::{Markup, html};
 
 pub fn head(view: &View) -> Markup {

@@ -4,8 +4,8 @@ use super::Section;
 use super::explanations::{INTERVAL, STANDARD_ERROR};
 use super::parts::{explained, number, quantity, scrolling};
 use super::view::{View, fraction};
-use crate::identify::problem::{SolvedParameter, Verdict};
-use crate::identify::table::digits_of;
+use crate::problem::{SolvedParameter, Verdict};
+use crate::table::digits_of;
 use maud::{Markup, html};
 
 /// Headings. On a phone, where each row is a block, they stand before the values.

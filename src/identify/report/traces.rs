@@ -3,8 +3,8 @@
 use super::Section;
 use super::parts::{axis, number, one_panel, series, small_figure};
 use super::view::View;
-use crate::identify::problem::SolvedParameter;
 use crate::plot::{Axis, Mark};
+use crate::problem::SolvedParameter;
 use maud::{Markup, html};
 
 pub fn section(view: &View) -> Option<Section> {

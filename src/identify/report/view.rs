@@ -2,7 +2,7 @@
 
 use crate::elementary;
 use crate::ga::optimizer::DescentEnd;
-use crate::identify::problem::{
+use crate::problem::{
     Band, BandPoint, EndingKind, Finding, Severity, Solution, SolvedDescent, SolvedParameter,
     SolvedSeries,
 };

@@ -2,7 +2,7 @@
 
 use super::policy::{Access, Refusal, refusal_of};
 use crate::diag::Fault;
-use crate::script::errors::{FILE_ERROR, REFUSED};
+use crate::errors::{FILE_ERROR, REFUSED};
 use std::io;
 use std::path::Path;
 

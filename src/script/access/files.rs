@@ -2,15 +2,15 @@
 
 use super::faults::{cannot, escape_help, plain, shown};
 use super::policy::{Access, Grant, Refusal, refusal_of};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::FILE_ERROR;
+use crate::language::transcript::PROMPT;
 use crate::results::{self, Format, ResultTable};
-use crate::script::Session;
-use crate::script::errors::FILE_ERROR;
-use crate::script::language::transcript::PROMPT;
-use crate::script::world::normalized;
 use crate::syntax;
 use crate::value::Value;
+use crate::world::normalized;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -67,7 +67,7 @@ impl Session {
     }
 
     /// A command is going to write this file: the path under which this is noted.
-    pub(in crate::script) fn expect_file(&mut self, path: &Path) -> PathBuf {
+    pub(crate) fn expect_file(&mut self, path: &Path) -> PathBuf {
         let path = normalized(&self.world.absolute(&self.expanded(path)));
         self.outdated.expect(path.clone());
         path
@@ -83,11 +83,7 @@ impl Session {
 
     /// The same, safe against a power cut: for journals and what a run comes to. Of what scripts write in
     /// loops it would take far longer than the simulations.
-    pub(in crate::script) fn write_safely(
-        &mut self,
-        path: &Path,
-        bytes: &[u8],
-    ) -> Result<(), Fault> {
+    pub(crate) fn write_safely(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
         self.write_by(&path, &mut |session| session.world.write(&path, bytes))
     }
@@ -115,18 +111,14 @@ impl Session {
     }
 
     /// The same for results that are written already.
-    pub(in crate::script) fn write_result_file(
-        &mut self,
-        path: &Path,
-        bytes: &[u8],
-    ) -> Result<(), Fault> {
+    pub(crate) fn write_result_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let expanded = self.expanded(path);
         self.grant_replacement(&expanded);
         self.write_file(path, bytes)
     }
 
     /// Writes the log of a session anew, in place of one that another run has written.
-    pub(in crate::script) fn write_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    pub(crate) fn write_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let expanded = self.expanded(path);
         self.grant_replacement_of(&expanded, |start| start.starts_with(PROMPT.as_bytes()));
         self.write_file(path, bytes)
@@ -176,7 +168,7 @@ impl Session {
 
     /// Whether a folder (`Some(true)`) or a file has this path, as a script asks: what may not be
     /// read stays unknown. That the folders above the working directory exist is no secret.
-    pub(in crate::script) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
+    pub(crate) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
         let path = normalized(&self.world.absolute(&self.expanded(path)));
         if !self.world.current_dir().starts_with(&path) {
             self.may(Access::Read, &path)?;
@@ -205,7 +197,7 @@ impl Session {
 
     /// Windows' separators, `file://` and `$NAME` at the beginning of a path. A variable that is
     /// not set or not readable stays as it is.
-    pub(in crate::script) fn expanded(&self, path: &Path) -> PathBuf {
+    pub(crate) fn expanded(&self, path: &Path) -> PathBuf {
         let text = plain(&path.to_string_lossy());
         let Some(rest) = text.strip_prefix('$') else { return PathBuf::from(text) };
         let (name, rest) = rest.split_once('/').unwrap_or((rest, ""));
@@ -216,12 +208,12 @@ impl Session {
     }
 
     /// Removes a file or an empty directory.
-    pub(in crate::script) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
+    pub(crate) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
         self.world.remove(path).map_err(|error| cannot("remove", path, &error))
     }
 
     /// Makes a directory and the ones it lies in.
-    pub(in crate::script) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
+    pub(crate) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
     }
 

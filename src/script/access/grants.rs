@@ -7,15 +7,15 @@
 
 use super::faults::{cannot, escape_help, shown};
 use super::policy::{Access, Grant};
+use crate::Session;
 use crate::diag::Fault;
+use crate::errors::FILE_ERROR;
 use crate::fault;
-use crate::script::Session;
-use crate::script::errors::FILE_ERROR;
 use std::path::Path;
 
 impl Session {
     /// A fault unless a file of this path may be read, written, made or removed.
-    pub(in crate::script) fn may(&self, access: Access, path: &Path) -> Result<(), Fault> {
+    pub(crate) fn may(&self, access: Access, path: &Path) -> Result<(), Fault> {
         let verb = if access == Access::Read { "read" } else { "change" };
         if access == Access::Write
             && let Some(help) = escape_help(path)
@@ -53,7 +53,7 @@ impl Session {
 
     /// Results may be written into this folder of a model that a script has opened, which is where
     /// Dymola puts them, if the folder may be read.
-    pub(in crate::script) fn trust_results(&mut self, folder: &Path) {
+    pub(crate) fn trust_results(&mut self, folder: &Path) {
         if self.world.permits(folder, Access::Read).is_ok() {
             self.world.grant(Grant::Results(folder));
         }
@@ -91,10 +91,7 @@ impl Session {
     }
 
     /// The content of an environment variable; `None` if it is not set.
-    pub(in crate::script) fn environment_variable(
-        &self,
-        name: &str,
-    ) -> Result<Option<String>, Fault> {
+    pub(crate) fn environment_variable(&self, name: &str) -> Result<Option<String>, Fault> {
         self.process.variable(|name| self.world.env(name), self.options.permissions, name)
     }
 }

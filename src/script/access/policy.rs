@@ -1,6 +1,6 @@
 //! Which files a script or a model may read, make, replace and remove.
 //!
-//! The rules work on real paths: a [`World`](crate::script::world::World) resolves a path once, links and
+//! The rules work on real paths: a [`World`](crate::world::World) resolves a path once, links and
 //! `..` included, asks here, and acts on what it has resolved. So a name that leads somewhere else
 //! is judged by where it leads.
 

@@ -4,8 +4,8 @@ use super::faults::cannot;
 use super::permissions::Permissions;
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::errors::REFUSED;
-use crate::script::world::Environment;
+use crate::errors::REFUSED;
+use crate::world::Environment;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

@@ -1,11 +1,11 @@
 //! The models that `buildModel` has built, and their init files; both exist in the session alone.
 
 use super::simflags::SimulationFlags;
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::simulation::{SimulationOptions, Translated};
+use crate::errors::BAD_ARGUMENT;
+use crate::models::simulation::{SimulationOptions, Translated};
 use regex::Regex;
 use std::collections::BTreeMap;
 use std::sync::Arc;

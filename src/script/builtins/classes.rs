@@ -4,12 +4,11 @@ use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
+use crate::models::modification::{modification_at, no_modification};
+use crate::models::simulation;
 use crate::name::{Ident, Name};
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::modification::{modification_at, no_modification};
-use crate::script::models::simulation;
-use crate::script::{Dialect, Session};
 use crate::source::SourceId;
 use crate::syntax::ast::{
     Argument, Binding, CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause,
@@ -18,6 +17,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::{self, print};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -146,7 +146,7 @@ pub(super) struct Component<'c> {
 }
 
 /// The names of the components that a class declares itself.
-pub(in crate::script) fn component_names(class: &ClassDefinition) -> Vec<Ident> {
+pub(crate) fn component_names(class: &ClassDefinition) -> Vec<Ident> {
     components(class).into_iter().map(|component| component.one.name.node).collect()
 }
 

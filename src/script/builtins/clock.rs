@@ -1,8 +1,8 @@
 //! The time of day, and names that are free at the time.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::external::date_and_time;
-use crate::script::Session;
 use crate::value::Value;
 
 /// What `Modelica.Utilities.System` tells of the moment and the process.

@@ -3,10 +3,10 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::results::{self, ResultTable, Series, Values};
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Numbers as strings, as Dymola's scripts write them.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::script::Session;
+use crate::Session;
 use crate::value::Value;
 use crate::value::format;
 

@@ -4,9 +4,9 @@ use super::matrices::{read_file, write_matrix};
 use super::strings::string_array;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
+use crate::errors::BAD_ARGUMENT;
 use crate::value::{RealMatrix, Value};
+use crate::{Dialect, Session};
 use std::path::Path;
 
 /// The commands of this file.

@@ -1,7 +1,7 @@
 //! Values at the end of the last simulation, as a prompt shows them when a variable is named.
 
 use super::{last_results, results};
-use crate::script::Session;
+use crate::Session;
 use crate::value::Value;
 use crate::value::show::{Style, show};
 

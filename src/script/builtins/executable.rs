@@ -6,10 +6,10 @@ use super::openmodelica;
 use super::simflags::{self, SimulationFlags, unquoted_words};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic};
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::Path;
 
 /// The commands of this file.

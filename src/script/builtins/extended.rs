@@ -5,12 +5,12 @@ use super::simulation::{Request, result_path, run_model, translated_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
+use crate::models::linearization::linearized;
+use crate::models::simulation::{Simulated, Translated};
 use crate::results::ResultTable;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::linearization::linearized;
-use crate::script::models::simulation::{Simulated, Translated};
-use crate::script::{Dialect, Session};
 use crate::value::{ArrayValue, Elements, RealMatrix, Value, element_count};
+use crate::{Dialect, Session};
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {

@@ -2,13 +2,13 @@
 
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
+use crate::access::faults::cannot;
+use crate::access::policy::Access;
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::access::faults::cannot;
-use crate::script::access::policy::Access;
-use crate::script::errors::FILE_ERROR;
-use crate::script::{Dialect, Session};
+use crate::errors::FILE_ERROR;
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::{Path, PathBuf};
 
 /// `Modelica.Utilities.Files`.

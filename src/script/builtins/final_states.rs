@@ -1,12 +1,12 @@
 //! The file `dsfinal.txt`, in which the end of the last simulation is kept, and copies of it.
 
+use crate::Session;
+use crate::access::policy::Grant;
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::Session;
-use crate::script::access::policy::Grant;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::final_state::{self, FinalState};
-use crate::script::world::Stamp;
+use crate::errors::BAD_ARGUMENT;
+use crate::models::final_state::{self, FinalState};
+use crate::world::Stamp;
 use std::path::{Path, PathBuf};
 
 /// The file in which the end of the last simulation is kept.

@@ -4,18 +4,18 @@
 
 use super::inputs;
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::FOLLOW_UP;
 use crate::ga::errors::{BAD_POPULATION, SIZE_MISMATCH};
 use crate::ga::{self, Gene, Genomes};
 use crate::identify::Question;
 use crate::identify::errors::BAD_DATA;
 use crate::identify::fitness::sum_of_squares;
 use crate::identify::problem::Free;
-use crate::script::Session;
-use crate::script::errors::FOLLOW_UP;
-use crate::script::runs::identification::Request;
-use crate::script::runs::refinement::Refinement;
+use crate::runs::identification::Request;
+use crate::runs::refinement::Refinement;
 use crate::teach::MutationCall;
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, FromValue, RealMatrix, Value};

@@ -3,11 +3,11 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
-use crate::script::models::final_state::FinalState;
-use crate::script::models::simulation::Translated;
-use crate::script::{Dialect, Session};
+use crate::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
+use crate::models::final_state::FinalState;
+use crate::models::simulation::Translated;
 use crate::value::Value;
+use crate::{Dialect, Session};
 use indexmap::IndexMap;
 use std::sync::Arc;
 

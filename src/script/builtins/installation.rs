@@ -3,8 +3,8 @@
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
 use crate::name::Name;
-use crate::script::{Dialect, Session};
 use crate::value::{ArrayValue, Elements, Value};
+use crate::{Dialect, Session};
 
 /// The commands of OpenModelica.
 pub(super) const FAMILY: Family = Family {
@@ -42,7 +42,7 @@ end getModelicaPath;
 
 fn get_modelica_path(session: &mut Session, _: Args) -> Result<Value, Failure> {
     let own = session.library_folders().iter().map(|folder| folder.display().to_string());
-    let all: Vec<String> = own.chain([crate::models::FOLDER.to_owned()]).collect();
+    let all: Vec<String> = own.chain([crate::packages::FOLDER.to_owned()]).collect();
     Ok(text(all.join(":")))
 }
 
@@ -63,7 +63,7 @@ end getInstallationDirectoryPath;
 "#;
 
 fn get_installation_directory_path(_: &mut Session, _: Args) -> Result<Value, Failure> {
-    Ok(text(crate::models::FOLDER.to_owned()))
+    Ok(text(crate::packages::FOLDER.to_owned()))
 }
 
 const GET_LOADED_LIBRARIES: &str = r#"

@@ -4,15 +4,15 @@ use super::classes::{Component, asked, components};
 use super::strings::{string_array, text};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
+use crate::errors::BAD_ARGUMENT;
 use crate::name::Name;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, Element, Equation,
     EquationKind, ExpressionKind, Extends, Modification, Restriction, Section, VariabilityPrefix,
 };
 use crate::syntax::print;
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::sync::Arc;
 
 macro_rules! questions {

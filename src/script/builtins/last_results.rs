@@ -1,10 +1,10 @@
 //! What the last simulation has left: the results that commands take which name none.
 
+use crate::Session;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::name::Name;
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use std::path::Path;
 
 /// The simulations so far, each result file once, in order.

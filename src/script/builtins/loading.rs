@@ -4,11 +4,11 @@ use super::classes::constant_names;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Diagnostic;
+use crate::errors::{BAD_ARGUMENT, INTERRUPTED};
 use crate::name::Name;
-use crate::script::errors::{BAD_ARGUMENT, INTERRUPTED};
-use crate::script::{Dialect, Session};
 use crate::syntax::ast::{ClassSpecifier, Element, Section, Visibility};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::{Path, PathBuf};
 
 /// Dymola's commands.
@@ -40,10 +40,7 @@ pub(super) const OPENMODELICA: Family = Family {
 
 impl Session {
     /// A negative answer: whether there is a value; the errors are reported if there is none.
-    pub(in crate::script) fn or_report_all<T>(
-        &mut self,
-        result: Result<T, Vec<Diagnostic>>,
-    ) -> Option<T> {
+    pub(crate) fn or_report_all<T>(&mut self, result: Result<T, Vec<Diagnostic>>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
             Err(errors) => {

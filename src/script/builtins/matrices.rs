@@ -1,11 +1,11 @@
 //! Matrices in files: MAT of every version, text in the `#1` format, and CSV.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::mat::{self, MatFile, Matrix};
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::value::{RealMatrix, Value};
 use std::borrow::Cow;
 use std::path::Path;
@@ -43,11 +43,7 @@ fn matrix_of<'f>(file: &'f MatFile, name: &str) -> Result<Cow<'f, Matrix>, Fault
 impl Session {
     /// Says what should be known of data that were read: notes about the columns, and in a table the
     /// lines that were left out.
-    pub(in crate::script) fn note_data(
-        &mut self,
-        file: &MatFile,
-        notes: impl IntoIterator<Item = String>,
-    ) {
+    pub(crate) fn note_data(&mut self, file: &MatFile, notes: impl IntoIterator<Item = String>) {
         let general = file.warnings.iter().filter(|_| file.is_table()).cloned();
         let all: Vec<String> = general.chain(notes).collect();
         for sentence in all {

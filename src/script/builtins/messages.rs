@@ -2,7 +2,7 @@
 
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
-use crate::script::Session;
+use crate::Session;
 use crate::value::Value;
 
 /// The commands of this file.

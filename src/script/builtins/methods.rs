@@ -1,8 +1,8 @@
 //! Integration methods of the two tools that are not here, and what is taken instead.
 
-use crate::script::Session;
-use crate::script::errors::METHOD_REPLACED;
-use crate::script::models::simulation::SimulationOptions;
+use crate::Session;
+use crate::errors::METHOD_REPLACED;
+use crate::models::simulation::SimulationOptions;
 
 /// Methods that keep the tolerance with implicit formulas, or that choose between formulas.
 const IMPLICIT: &[&str] = &[

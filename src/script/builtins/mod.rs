@@ -51,19 +51,17 @@ mod upgrade;
 mod windows;
 
 pub use args::Args;
-pub(in crate::script) use classes::component_names;
+pub(crate) use classes::component_names;
 pub use reference::reference;
-pub(in crate::script) use result_files::{
-    begin_writing, end_writing, inputs_of_files, writes_files,
-};
+pub(crate) use result_files::{begin_writing, end_writing, inputs_of_files, writes_files};
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
 use crate::name::Name;
-use crate::script::{Dialect, Session};
 use crate::source::SourceId;
 use crate::syntax;
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, OnceLock};
 

@@ -7,6 +7,7 @@
 use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_genomes};
 use super::inputs;
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval;
 use crate::ga::crossover::Parents;
@@ -16,8 +17,7 @@ use crate::ga::operators::{self, Kind, Size};
 use crate::ga::survival::{Brood, Rated, Survivor, Wanted};
 use crate::ga::{Genomes, Mrg32k3a, crossover, mutation, sampling, selection, survival};
 use crate::registry::{BAD_OPTION, Choice};
-use crate::script::Session;
-use crate::script::runs::problem::{operators as chosen, own_function};
+use crate::runs::problem::{operators as chosen, own_function};
 use crate::teach::{Action, Operation};
 use crate::value::{RealMatrix, Value};
 use crate::{bail, fault};

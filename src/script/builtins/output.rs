@@ -3,11 +3,11 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::codegen::VariableInfo;
+use crate::models::simulation::Translated;
 use crate::results::ResultTable;
-use crate::script::models::simulation::Translated;
-use crate::script::{Dialect, Session};
 use crate::syntax::ast::CausalityPrefix;
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::collections::HashSet;
 
 /// The commands of this file.

@@ -3,12 +3,12 @@
 use super::{Args, Builtin, Failure, Family, last_results};
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::plot::{Axis, Figure, Mark, Panel, Picture, Series};
 use crate::results::ResultTable;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Echo, Session};
 use crate::value::{RealMatrix, Value};
+use crate::{Dialect, Echo, Session};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -638,7 +638,7 @@ fn plot_parametric_curve(session: &mut Session, args: Args) -> Result<Value, Fai
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::world::MemoryWorld;
+    use crate::world::MemoryWorld;
 
     #[test]
     fn columns_are_series_and_a_cleared_diagram_has_none() {

@@ -1,10 +1,10 @@
 //! Identification as a problem of its own, from a script.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
-use crate::script::Session;
-use crate::script::runs::problem;
-use crate::script::runs::problem::RunOptions;
+use crate::runs::problem;
+use crate::runs::problem::RunOptions;
 use crate::value::Value;
 use crate::value::errors::TYPE_MISMATCH;
 use std::path::Path;

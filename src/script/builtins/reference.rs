@@ -1,7 +1,7 @@
 //! The reference of the guide: the declarations of all commands, as Markdown.
 
 use super::{FAMILIES, Family, refused};
-use crate::script::Dialect;
+use crate::Dialect;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 

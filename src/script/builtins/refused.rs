@@ -1,9 +1,9 @@
 //! Commands of other tools that are not carried out, each with its reason.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
-use crate::script::Session;
-use crate::script::errors::REFUSED;
+use crate::errors::REFUSED;
 use crate::value::Value;
 
 macro_rules! refused {

@@ -4,10 +4,10 @@ use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use regex::{Regex, RegexBuilder};
 
 /// The commands of this file.

@@ -2,10 +2,10 @@
 //! whatever fails, the older file is not read as if the command had written it.
 
 use super::{executable, last_results, simulation};
+use crate::Session;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::name::Ident;
-use crate::script::Session;
 use crate::value::{FromValue, RealMatrix, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -104,7 +104,7 @@ const SIMULATING: &[&str] = &[
 ];
 
 /// Whether a command of this name writes files.
-pub(in crate::script) fn writes_files(name: Ident) -> bool {
+pub(crate) fn writes_files(name: Ident) -> bool {
     command_named(name).is_some()
 }
 
@@ -118,12 +118,12 @@ fn command_named(name: Ident) -> Option<&'static str> {
 }
 
 /// The inputs of a command that say what it is going to write; none of other commands.
-pub(in crate::script) fn inputs_of_files(header: &Function) -> &'static [&'static str] {
+pub(crate) fn inputs_of_files(header: &Function) -> &'static [&'static str] {
     command_of(header).map_or(&[], |_| INPUTS)
 }
 
 /// A command is given these arguments: notes what it is going to write. Whether there is anything.
-pub(in crate::script) fn begin_writing(
+pub(crate) fn begin_writing(
     session: &mut Session,
     header: &Arc<Function>,
     values: &[Option<Value>],
@@ -138,7 +138,7 @@ pub(in crate::script) fn begin_writing(
 }
 
 /// The command that began last has ended: what it has not written is out of date.
-pub(in crate::script) fn end_writing(session: &mut Session, error: Option<&Diagnostic>) {
+pub(crate) fn end_writing(session: &mut Session, error: Option<&Diagnostic>) {
     let Some(writing) = session.extension::<Begun>().0.pop() else { return };
     let reported = session.output.messages.first_unhandled(writing.first_message);
     let cause = reported.or(error).map_or("nothing was written", |cause| &*cause.message);

@@ -3,11 +3,11 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::results::{self, ResultTable};
-use crate::script::errors::BAD_ARGUMENT;
-use crate::script::world::Stamp;
-use crate::script::{Dialect, Session};
 use crate::value::{ArrayValue, Elements, RealMatrix, Value};
+use crate::world::Stamp;
+use crate::{Dialect, Session};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -3,10 +3,10 @@
 
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::Session;
-use crate::script::errors::SCRIPT_ERROR;
+use crate::errors::SCRIPT_ERROR;
 use crate::value::Value;
 
 /// The commands of this file.

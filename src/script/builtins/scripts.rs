@@ -1,8 +1,8 @@
 //! Scripts that run scripts.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 
 /// Dymola's `RunScript`.
 pub(super) const FAMILY: Family = Family {

@@ -2,8 +2,8 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::name::Name;
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -216,8 +216,7 @@ fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         }
         None => {
             let known = super::names();
-            let fault =
-                crate::fault!(crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`");
+            let fault = crate::fault!(crate::errors::BAD_ARGUMENT, "there is no command `{name}`");
             let hint = crate::diag::suggest::did_you_mean(&name, known.iter().copied());
             session.report_fault(fault.help_if(hint));
             Ok(false.into())

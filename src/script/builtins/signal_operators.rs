@@ -5,10 +5,10 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::Fault;
 use crate::elementary;
+use crate::errors::{BAD_ARGUMENT, NO_WINDOW};
 use crate::results::ResultTable;
-use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
-use crate::script::{Dialect, Session};
 use crate::value::{FromValue, Value};
+use crate::{Dialect, Session};
 use crate::{bail, fault};
 
 /// The commands of this file.

@@ -1,12 +1,12 @@
 //! The flags that OpenModelica's simulation programs take (`simflags`): those that act, those that
 //! are refused because results would differ without them, and the rest, which have no effect.
 
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::{BAD_ARGUMENT, NO_WINDOW, UNKNOWN_PARAMETER};
 use crate::fault;
-use crate::script::Session;
-use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW, UNKNOWN_PARAMETER};
-use crate::script::models::simulation::SimulationOptions;
+use crate::models::simulation::SimulationOptions;
 use std::path::Path;
 
 /// What `simflags` asks for.
@@ -271,7 +271,7 @@ fn settings(list: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::SimulationFlags;
-    use crate::script::models::simulation::SimulationOptions;
+    use crate::models::simulation::SimulationOptions;
 
     #[test]
     fn flags_are_read_in_all_their_forms() {

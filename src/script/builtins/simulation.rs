@@ -3,12 +3,12 @@
 use super::methods::with_method_of_ours;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::errors::NO_TRANSLATED_MODEL;
+use crate::models::simulation;
+use crate::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::results::{self, ResultTable};
-use crate::script::errors::NO_TRANSLATED_MODEL;
-use crate::script::models::simulation;
-use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -4,9 +4,9 @@ use super::strings::{string_array, text};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
-use crate::script::{Dialect, Session};
+use crate::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::path::Path;
 
 /// The commands of this file.

@@ -1,11 +1,11 @@
 //! `Modelica.Utilities.Strings`: positions count characters from 1, as the library defines them.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
 use crate::value::{
     ArrayValue, Elements, EnumerationDefinition, EnumerationValue, Value, check_length,
 };

@@ -3,8 +3,8 @@
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family, executable};
 use crate::diag::Fault;
-use crate::script::{Dialect, Session};
 use crate::value::Value;
+use crate::{Dialect, Session};
 
 /// Commands with the same meaning in both tools.
 pub(super) const FAMILY: Family = Family {

@@ -7,17 +7,17 @@
 use super::classes::asked;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{Diagnostic, Fault};
+use crate::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
 use crate::fault;
 use crate::flatten::{self, Library};
+use crate::models::simulation;
 use crate::name::{Ident, Name};
-use crate::script::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
-use crate::script::models::simulation;
-use crate::script::{Dialect, Session};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Element, ElementPrefixes, Section,
 };
 use crate::syntax::{self, print};
 use crate::value::Value;
+use crate::{Dialect, Session};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;

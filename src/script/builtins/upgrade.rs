@@ -4,11 +4,11 @@
 //! converted as they are written: in full, or as the beginning of a longer name.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::{
     Argument, Binding, ClassDefinition, ClassSpecifier, ComponentClause, ComponentReference,

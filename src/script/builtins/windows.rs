@@ -2,7 +2,7 @@
 //! effect.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::script::Session;
+use crate::Session;
 use crate::value::Value;
 
 macro_rules! windowless {

@@ -1,8 +1,8 @@
 //! What called names stand for, remembered until a class or an import changes.
 
+use crate::Dialect;
 use crate::eval::{Callee, Function};
 use crate::name::{Ident, Name};
-use crate::script::Dialect;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Constants and types of loaded packages, as scripts name them.
 
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Function, FunctionComponent, ValueType};
 use crate::name::{Ident, Name};
-use crate::script::Session;
 use crate::source::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::ComponentReference;
@@ -21,7 +21,7 @@ impl Session {
             return Ok(None);
         }
         for candidate in self.workspace.candidates(&reference.name()) {
-            if let Some(value) = crate::script::builtins::constant(&candidate) {
+            if let Some(value) = crate::builtins::constant(&candidate) {
                 return Ok(Some(value));
             }
             if let Some(value) = self.constant_in_package(&candidate)? {

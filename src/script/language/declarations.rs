@@ -1,11 +1,11 @@
 //! Declarations of variables in scripts.
 
+use crate::Session;
 use crate::diag::Diagnostic;
+use crate::errors::BAD_ARGUMENT;
 use crate::eval::{self, Given, ValueType};
 use crate::fault;
 use crate::name::Name;
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::source::Span;
 use crate::syntax::ast::{
     Argument, Binding, ComponentClause, ComponentDeclaration, Modification, Subscript,

@@ -3,11 +3,11 @@
 use super::follow_up::runs_script;
 use crate::eval::ValueType;
 use crate::name::Ident;
-use crate::script::{Dialect, Echo, Session, builtins};
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::value::Value;
 use crate::value::show::{Style, show};
+use crate::{Dialect, Echo, Session, builtins};
 
 /// The variable that has the value of the last expression at a prompt.
 pub const ANSWER: &str = "ans";
@@ -15,7 +15,7 @@ pub const ANSWER: &str = "ans";
 impl Session {
     /// Runs a script whose answers are the value of the statement that runs it, as OpenModelica's
     /// are: what the statements answer, line by line. In Dymola's dialect there are none.
-    pub(in crate::script) fn collecting_answers<T>(
+    pub(crate) fn collecting_answers<T>(
         &mut self,
         work: impl FnOnce(&mut Session) -> T,
     ) -> (T, String) {

@@ -1,7 +1,7 @@
 //! The state of execution: the scripts being run, the command that was called, and why execution
 //! stops.
 
-use crate::script::options::Strictness;
+use crate::options::Strictness;
 use crate::source::Span;
 use std::path::{Path, PathBuf};
 

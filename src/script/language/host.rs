@@ -1,19 +1,19 @@
 //! The session as the host of evaluation: it answers calls, dotted names and questions.
 
 use super::workspace::check_type;
+use crate::builtins;
+use crate::builtins::{BuiltinId, Failure};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::errors::{INTERRUPTED, OWN_FUNCTION};
 use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
 use crate::external::c::Request;
 use crate::external::{Entry, Outside, Random};
-use crate::models::FOLDER;
 use crate::name::{Ident, Name};
-use crate::script::builtins;
-use crate::script::builtins::{BuiltinId, Failure};
-use crate::script::errors::{INTERRUPTED, OWN_FUNCTION};
-use crate::script::{Dialect, Echo, Session};
+use crate::packages::FOLDER;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Expression};
 use crate::value::Value;
+use crate::{Dialect, Echo, Session};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -281,9 +281,7 @@ impl Session {
                 // What has no place of its own was found by this call.
                 diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic.or_at(span)));
                 let last = last.map(|diagnostic| diagnostic.or_at(span));
-                last.unwrap_or_else(|| {
-                    Fault::new(crate::script::errors::SCRIPT_ERROR, "failed").at(span)
-                })
+                last.unwrap_or_else(|| Fault::new(crate::errors::SCRIPT_ERROR, "failed").at(span))
             }
         }
     }

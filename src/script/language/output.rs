@@ -5,8 +5,8 @@ use super::log::Log;
 use super::messages::Messages;
 use super::transcript::Transcript;
 use crate::diag::{Diagnostic, render};
-use crate::script::world::Screen;
 use crate::source::{SourceMap, Span};
+use crate::world::Screen;
 use std::collections::{BTreeSet, HashSet};
 
 /// The answers of a session.

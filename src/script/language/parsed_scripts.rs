@@ -1,8 +1,7 @@
 //! Scripts as they were read, each once as long as its file stays as it is.
 
 use crate::diag::Diagnostic;
-use crate::script::options::Dialect;
-use crate::script::world::Stamp;
+use crate::options::Dialect;
 use crate::source::SourceId;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, InteractiveKind,
@@ -10,6 +9,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_modification};
 use crate::syntax::{RUN_COMMAND, ScriptParts};
+use crate::world::Stamp;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,18 +1,18 @@
 //! Scripts that run scripts: finding them, reading each once, and the trace through them.
 
 use super::parsed_scripts::Parsed;
+use crate::access::faults::{cannot, escape_help, shown};
+use crate::access::policy::Access;
 use crate::bail;
+use crate::builtins::Failure;
 use crate::diag::{Diagnostic, Fault, suggest};
+use crate::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use crate::eval;
-use crate::script::access::faults::{cannot, escape_help, shown};
-use crate::script::access::policy::Access;
-use crate::script::builtins::Failure;
-use crate::script::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
-use crate::script::language::execution::Stop;
-use crate::script::world::normalized;
-use crate::script::{Dialect, RunStatus, Session};
+use crate::language::execution::Stop;
 use crate::source::{SourceId, Span};
 use crate::syntax::{self, ScriptParts, ast};
+use crate::world::normalized;
+use crate::{Dialect, RunStatus, Session};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -81,7 +81,7 @@ impl Session {
     }
 
     /// Runs a script that another one names; its errors end it and come back with a trace.
-    pub(in crate::script) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
+    pub(crate) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
         if self.execution.scripts() >= MAX_DEPTH {
             // Each level may run others: without an end here there would be exponentially many.
             self.execution.stop_for(Stop::Error);
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// What scripts that are not run would have defined is not missed.
-    pub(in crate::script) fn script_not_run(&mut self) {
+    pub(crate) fn script_not_run(&mut self) {
         self.follow_ups.script_not_run();
     }
 
@@ -211,7 +211,7 @@ impl Session {
     }
 
     fn report_failed(&mut self, diagnostic: Diagnostic) {
-        if diagnostic.code == crate::script::errors::FOLLOW_UP && !self.follow_ups.is_first() {
+        if diagnostic.code == crate::errors::FOLLOW_UP && !self.follow_ups.is_first() {
             return;
         }
         self.report(diagnostic);
@@ -232,7 +232,7 @@ impl Session {
 
     /// The script of this name: in the folder of the calling script, then in the working
     /// directory; with and without the ending; at last with other letter cases.
-    pub(in crate::script) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
+    pub(crate) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
         let folder = self.execution.folders().next().map(Path::to_path_buf).unwrap_or_default();
         let key = (folder, self.world.current_dir(), name.to_owned());
         if let Some(path) = self.parsed.found(&key)
@@ -331,10 +331,7 @@ impl Session {
     }
 
     /// Reads a text file among the sources, under its path relative to the working directory.
-    pub(in crate::script) fn add_file(
-        &mut self,
-        path: &Path,
-    ) -> Result<(SourceId, Arc<str>), Fault> {
+    pub(crate) fn add_file(&mut self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
         self.check_current(path)?;
         let bytes = self.world.read(path).map_err(|error| cannot("read", path, &error))?;
         let (text, warning) = syntax::decode(&bytes);

@@ -1,12 +1,11 @@
 //! Interactive statements, one after another.
 
+use crate::access::policy::Access;
 use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
 use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
-use crate::script::access::policy::Access;
-use crate::script::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
-use crate::script::{Session, builtins};
 use crate::source::{Span, Spanned};
 use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
@@ -14,12 +13,13 @@ use crate::syntax::ast::{
     Statement, StatementKind,
 };
 use crate::value::Value;
+use crate::{Session, builtins};
 use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
     /// Executes one statement of a script and shows its answer as the dialect does.
-    pub(in crate::script) fn top_level(
+    pub(crate) fn top_level(
         &mut self,
         statement: &InteractiveStatement,
         outermost: bool,
@@ -186,14 +186,14 @@ impl Session {
     }
 
     /// Forgets variables, flags, imports and classes.
-    pub(in crate::script) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.workspace.clear();
         self.models.forget_variables();
         self.forget_classes();
     }
 
     /// Changes the working directory and shows it; an empty path only shows it.
-    pub(in crate::script) fn change_directory(&mut self, path: &str) -> Result<(), Fault> {
+    pub(crate) fn change_directory(&mut self, path: &str) -> Result<(), Fault> {
         if !path.is_empty() {
             self.go_to(path)?;
         }
@@ -203,7 +203,7 @@ impl Session {
     }
 
     /// Changes the working directory.
-    pub(in crate::script) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
+    pub(crate) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
         let path = self.expanded(Path::new(path));
         // The answer does not reveal which folders exist elsewhere; those that the run lies in are known.
         let absolute = self.world.absolute(&path);
@@ -211,7 +211,7 @@ impl Session {
             self.may(Access::Read, &absolute)?;
         }
         let changed = self.world.set_current_dir(&path);
-        changed.map_err(|error| crate::script::access::faults::cannot("change to", &path, &error))
+        changed.map_err(|error| crate::access::faults::cannot("change to", &path, &error))
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.
@@ -227,7 +227,7 @@ impl Session {
     }
 
     /// The fault of a dotted name while no model is translated.
-    pub(in crate::script) fn nothing_translated(&self, reference: &ComponentReference) -> Fault {
+    pub(crate) fn nothing_translated(&self, reference: &ComponentReference) -> Fault {
         let shown = reference.name();
         fault!(NO_TRANSLATED_MODEL, "`{shown}` refers to a component of a model, but no model \
                                      has been translated";

@@ -1,12 +1,12 @@
 //! Variables, flags and dotted names of a session.
 
+use crate::Session;
 use crate::bail;
+use crate::builtins::component_names;
 use crate::diag::{Diagnostic, Fault};
+use crate::errors::NO_WINDOW;
 use crate::name::{Ident, Name};
 use crate::registry::BAD_OPTION;
-use crate::script::Session;
-use crate::script::builtins::component_names;
-use crate::script::errors::NO_WINDOW;
 use crate::syntax;
 use crate::value::Value;
 use std::collections::BTreeSet;
@@ -106,7 +106,7 @@ impl Session {
     }
 
     /// Says once that a command has no effect because there is no window.
-    pub(in crate::script) fn no_effect(&mut self, command: &'static str) {
+    pub(crate) fn no_effect(&mut self, command: &'static str) {
         if self.output.is_first_without_window(command) {
             self.note(NO_WINDOW, format!("`{command}` has no effect here"));
         }

@@ -194,11 +194,11 @@ fn sizes(found: &[(Vec<usize>, String)]) -> Option<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::Session;
-    use crate::script::models::simulation::translate;
-    use crate::script::world::MemoryWorld;
+    use crate::Session;
+    use crate::models::simulation::translate;
     use crate::source::SourceId;
     use crate::syntax;
+    use crate::world::MemoryWorld;
 
     const CLASSES: &str = "
 model Cell

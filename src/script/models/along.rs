@@ -1,14 +1,14 @@
 //! Expressions in variables of a simulation, at every point in time.
 
 use super::simulation::placed;
+use crate::Session;
+use crate::builtins::Failure;
 use crate::diag::{At, Fault};
+use crate::errors::BAD_ARGUMENT;
 use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::Ident;
 use crate::results::ResultTable;
-use crate::script::Session;
-use crate::script::builtins::Failure;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::source::SourceId;
 use crate::syntax::ast::{ComponentReference, ExpressionKind, ReferencePart};
 use crate::syntax::visit::Rewrite;
@@ -19,11 +19,7 @@ use indexmap::IndexMap;
 impl Session {
     /// The values of an expression at the points in time of a table; `M[end].x` and `x` are both
     /// the variable `x`.
-    pub(in crate::script) fn along(
-        &mut self,
-        text: &str,
-        table: &ResultTable,
-    ) -> Result<Vec<f64>, Failure> {
+    pub(crate) fn along(&mut self, text: &str, table: &ResultTable) -> Result<Vec<f64>, Failure> {
         let mut expression = syntax::parse_expression(SourceId::NONE, text)?;
         if let ExpressionKind::Call { function, arguments } = &expression.kind
             && function.as_ident().is_some_and(|name| name == "apply")

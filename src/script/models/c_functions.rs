@@ -1,6 +1,7 @@
 //! Functions in C that libraries bring along (MLS §12.9): which are compiled together, where their
 //! files are, and whether the user allows them.
 
+use crate::Session;
 use crate::diag::Fault;
 use crate::eval::c_function::{brings_code, destructor};
 use crate::eval::{Callee, Function, Host, ValueType};
@@ -9,9 +10,8 @@ use crate::external::c::{CCompiler, Declaration, Request, Unit, entry, source};
 use crate::external::errors::EXTERNAL_REFUSED;
 use crate::fault;
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::world::FileReader;
 use crate::syntax::ast::{ClassSpecifier, Section};
+use crate::world::FileReader;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -130,10 +130,7 @@ fn refused(declaration: &Declaration, files: &dyn FileReader, find: Find<'_>) ->
 impl Session {
     /// The functions in C of the package that a function is in, and of the external objects that it
     /// takes: in a script they share the variables of their sources.
-    pub(in crate::script) fn c_functions_near(
-        &mut self,
-        function: &Function,
-    ) -> Vec<Arc<Function>> {
+    pub(crate) fn c_functions_near(&mut self, function: &Function) -> Vec<Arc<Function>> {
         let mut packages = BTreeSet::from([function.name.parent()]);
         for component in function.inputs.iter().chain(&function.outputs) {
             if let ValueType::ExternalObject(class) = &component.value_type {

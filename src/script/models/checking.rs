@@ -1,11 +1,11 @@
 //! Models as `gapi check` and `gapi flatten` show them.
 
 use super::simulation::{self, Translated};
+use crate::Session;
 use crate::causalize;
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
 use crate::name::Name;
-use crate::script::Session;
 use crate::syntax::ast::Restriction;
 
 /// Says whether what the specification forbids but libraries do is an error.

@@ -31,7 +31,7 @@ pub struct Classes {
     /// Types and constants that scripts asked for.
     pub constants: ConstantCache,
     /// Classes that runs build around models.
-    pub(in crate::script) enclosing: Vec<Enclosing>,
+    pub(crate) enclosing: Vec<Enclosing>,
     /// Counts what changes what a name can stand for.
     revision: u64,
     /// Folders whose packages are loaded when somebody names them.
@@ -57,7 +57,7 @@ pub struct Classes {
 /// A class that a run builds around a model of the user, who has written neither its name nor its
 /// text: messages speak of the model, at the place that the class was built for.
 #[derive(Debug, Clone)]
-pub(in crate::script) struct Enclosing {
+pub(crate) struct Enclosing {
     /// Its name.
     pub name: Ident,
     /// The model around which it was built.
@@ -83,7 +83,7 @@ impl Enclosing {
 
 impl Classes {
     /// The diagnostic without names and places of classes that the user has not written.
-    pub(in crate::script) fn in_users_terms(&self, diagnostic: Diagnostic) -> Diagnostic {
+    pub(crate) fn in_users_terms(&self, diagnostic: Diagnostic) -> Diagnostic {
         self.enclosing.iter().fold(diagnostic, |diagnostic, enclosing| {
             let place = |span: Span| match span.source == enclosing.source {
                 true => enclosing.place,
@@ -94,7 +94,7 @@ impl Classes {
     }
 
     /// What messages call the class of this name.
-    pub(in crate::script) fn shown_name(&self, name: &Name) -> Option<&str> {
+    pub(crate) fn shown_name(&self, name: &Name) -> Option<&str> {
         let is_it =
             |enclosing: &&Enclosing| name.is_simple() && name.first() == Some(enclosing.name);
         self.enclosing.iter().find(is_it).map(|enclosing| enclosing.model.as_str())

@@ -1,13 +1,13 @@
 //! Classes whose text an editor shows, saved or not: they stand for those of their files, and what is
 //! wrong with them is an answer, not a message.
 
+use crate::Session;
 use crate::causalize;
 use crate::diag::Diagnostic;
 use crate::flatten::{self, ClassId, Library};
+use crate::models::left_open::LeftOpen;
+use crate::models::uses::names_in;
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::models::left_open::LeftOpen;
-use crate::script::models::uses::names_in;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::StoredDefinition;
 use std::collections::BTreeSet;
@@ -214,7 +214,7 @@ impl Session {
             // The version of a library is behind a blank.
             Ident::new(name.split(' ').next().unwrap_or(name))
         };
-        let shipped = crate::models::list(Path::new(crate::models::FOLDER)).unwrap_or_default();
+        let shipped = crate::packages::list(Path::new(crate::packages::FOLDER)).unwrap_or_default();
         names.chain(shipped).map(class).collect()
     }
 }
@@ -222,7 +222,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::world::MemoryWorld;
+    use crate::world::MemoryWorld;
 
     #[test]
     fn the_libraries_that_a_library_uses_are_there_when_a_model_is_examined() {

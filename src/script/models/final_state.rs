@@ -4,12 +4,12 @@
 use super::translated::Translated;
 use crate::codegen::{Access, VariableInfo};
 use crate::diag::Fault;
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::flatten::Variability;
 use crate::mat;
 use crate::results::ResultTable;
 use crate::runtime::System;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::sim::Trajectory;
 use crate::syntax::ast::CausalityPrefix;
 use indexmap::IndexMap;

@@ -1,7 +1,7 @@
 //! What made a simulation work, in the words of its model.
 
+use crate::Session;
 use crate::runtime::{LoopEffort, System};
-use crate::script::Session;
 use crate::sim::Effort;
 use indexmap::IndexMap;
 use std::cmp::Reverse;

@@ -1,18 +1,18 @@
 //! Libraries: where they are found, and their files as classes are read from them.
 
 use super::library_files::SourceFiles;
+use crate::Session;
+use crate::access::policy::{Access, Refusal, refusal_of};
 use crate::diag::{Diagnostic, Fault};
+use crate::errors::{FILE_ERROR, OTHER_VERSION};
 use crate::flatten::LibraryFiles;
-use crate::models;
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::access::policy::{Access, Refusal, refusal_of};
-use crate::script::errors::{FILE_ERROR, OTHER_VERSION};
-use crate::script::world::normalized;
+use crate::packages;
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
     Section,
 };
+use crate::world::normalized;
 use crate::{fault, flatten::Library};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -46,7 +46,7 @@ impl Session {
 
     /// The answer of the library to a question, or what is wrong with the files that it needed for
     /// it. Tells the warnings about them.
-    pub(in crate::script) fn ask_library<T>(
+    pub(crate) fn ask_library<T>(
         &mut self,
         question: impl FnOnce(&mut Library) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Vec<Diagnostic>> {
@@ -82,7 +82,7 @@ impl Session {
     }
 
     /// Asks for the first of these versions that is there, when the library is loaded.
-    pub(in crate::script) fn want_version(&mut self, name: &Name, versions: Vec<String>) {
+    pub(crate) fn want_version(&mut self, name: &Name, versions: Vec<String>) {
         let Some(library) = name.first() else { return };
         let folders = self.folders();
         let wanted = versions.into_iter().take_while(|version| version != "default");
@@ -96,7 +96,7 @@ impl Session {
     }
 
     /// Folders that were named for libraries.
-    pub(in crate::script) fn library_folders(&self) -> &[PathBuf] {
+    pub(crate) fn library_folders(&self) -> &[PathBuf] {
         self.classes.directories()
     }
 
@@ -104,7 +104,7 @@ impl Session {
         let may_read = |folder: &PathBuf| self.world.permits(folder, Access::Read).is_ok();
         let own = self.classes.directories().iter().cloned().chain([self.world.current_dir()]);
         let models = self.models_folders().into_iter().filter(may_read);
-        let all = own.chain(models).chain([PathBuf::from(models::FOLDER)]);
+        let all = own.chain(models).chain([PathBuf::from(packages::FOLDER)]);
         all.map(|folder| normalized(&folder)).collect()
     }
 
@@ -194,7 +194,7 @@ impl Session {
     }
 
     /// The `version` annotation of a loaded package; empty without.
-    pub(in crate::script) fn class_version(&self, name: &Name) -> Result<String, Fault> {
+    pub(crate) fn class_version(&self, name: &Name) -> Result<String, Fault> {
         let definition = self.classes.library.definition(name);
         let definition = definition.ok_or_else(|| self.classes.unknown_class(name))?;
         Ok(version(&definition).unwrap_or_default())
@@ -206,7 +206,7 @@ impl Session {
         let wanted = self.classes.versions.get(&name.first()?)?;
         let definition = self.classes.library.definition(name)?;
         let loaded = version(&definition)?;
-        let is_shipped = self.classes.file_of(name)?.starts_with(models::FOLDER);
+        let is_shipped = self.classes.file_of(name)?.starts_with(packages::FOLDER);
         let (asked, given) = (numbers(wanted), numbers(&loaded));
         let fits = asked.first() == given.first() && asked <= given;
         let converts = match self.classes.library.converts_from(name, wanted) {
@@ -229,7 +229,7 @@ impl Session {
         if !names.contains(&modelica) || !has("Units") || has("SIunits") {
             return Ok(());
         }
-        let path = Path::new(models::FOLDER).join("Modelica").join("SIunits.mo");
+        let path = Path::new(packages::FOLDER).join("Modelica").join("SIunits.mo");
         let files = self.library_files();
         if files.is_file(&path) {
             self.classes.library.load_lazily(&files, &path, &modelica)?;

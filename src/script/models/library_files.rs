@@ -2,12 +2,12 @@
 //! the session.
 
 use super::stored::{Reads, Watched};
+use crate::access::faults::cannot;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::LibraryFiles;
-use crate::script::access::faults::cannot;
-use crate::script::world::FileReader;
 use crate::source::{SourceId, SourceMap, Span};
 use crate::syntax;
+use crate::world::FileReader;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 

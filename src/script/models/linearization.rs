@@ -11,14 +11,14 @@
 //! depends on it, the model is no system of this form and is refused.
 
 use super::simulation::{self, SimulationOptions, Translated};
+use crate::Session;
 use crate::causalize;
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
 use crate::results::ResultTable;
-use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::sim::{DaeSystem, Failure};
 use crate::source::{SourceId, Span};
 use crate::syntax;
@@ -29,26 +29,26 @@ use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// A model ẋ = A x + B u, y = C x + D u of deviations.
-pub(in crate::script) struct Linear {
+pub(crate) struct Linear {
     /// Names of the states x, the inputs u and the outputs y.
-    pub(in crate::script) names: [Vec<String>; 3],
+    pub(crate) names: [Vec<String>; 3],
     /// States and inputs at the point of linearization.
-    pub(in crate::script) x0: Vec<f64>,
+    pub(crate) x0: Vec<f64>,
     /// Inputs there.
-    pub(in crate::script) u0: Vec<f64>,
-    pub(in crate::script) a: DMatrix<f64>,
-    pub(in crate::script) b: DMatrix<f64>,
-    pub(in crate::script) c: DMatrix<f64>,
-    pub(in crate::script) d: DMatrix<f64>,
+    pub(crate) u0: Vec<f64>,
+    pub(crate) a: DMatrix<f64>,
+    pub(crate) b: DMatrix<f64>,
+    pub(crate) c: DMatrix<f64>,
+    pub(crate) d: DMatrix<f64>,
     /// The simulation before.
-    pub(in crate::script) results: ResultTable,
+    pub(crate) results: ResultTable,
 }
 
 /// Simulates the model translated last and linearizes it where the simulation ends.
 ///
 /// # Errors
 /// A simulation that fails, a singular loop, an output that depends on the slope of an input.
-pub(in crate::script) fn linearized(
+pub(crate) fn linearized(
     session: &mut Session,
     options: &SimulationOptions,
 ) -> Result<Linear, Vec<Diagnostic>> {
@@ -318,7 +318,7 @@ fn slope_element(input: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::world::MemoryWorld;
+    use crate::world::MemoryWorld;
 
     fn linear(model: &str) -> Result<Linear, Vec<Diagnostic>> {
         let mut session = Session::new(Box::new(MemoryWorld::new()));

@@ -2,11 +2,11 @@
 
 use super::classes::Enclosing;
 use super::uses::names_in;
+use crate::Session;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::Function;
 use crate::flatten::Library;
 use crate::name::{Ident, Name};
-use crate::script::Session;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::ClassDefinition;
 use crate::syntax::{self, Outline};
@@ -25,7 +25,7 @@ impl Session {
     }
 
     /// Whether classes of this file or package folder are loaded already.
-    pub(in crate::script) fn has_loaded(&self, path: &Path) -> bool {
+    pub(crate) fn has_loaded(&self, path: &Path) -> bool {
         let Some(mut found) = self.find_file(path) else { return false };
         if found.file_name().is_some_and(|name| name == "package.mo") {
             found.pop();
@@ -214,22 +214,19 @@ impl Session {
     ///
     /// # Errors
     /// What is wrong with the files that were read.
-    pub(in crate::script) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+    pub(crate) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
         self.autoload(name)?;
         self.ask_library(|library| Ok(library.contains(name)))
     }
 
     /// The same, the errors reported.
-    pub(in crate::script) fn class_exists(&mut self, name: &Name) -> bool {
+    pub(crate) fn class_exists(&mut self, name: &Name) -> bool {
         let found = self.find_class(name);
         self.or_report_all(found).unwrap_or(false)
     }
 
     /// A class that a script defines; it replaces one of the same name.
-    pub(in crate::script) fn define_class(
-        &mut self,
-        class: &Arc<ClassDefinition>,
-    ) -> Result<(), Diagnostic> {
+    pub(crate) fn define_class(&mut self, class: &Arc<ClassDefinition>) -> Result<(), Diagnostic> {
         self.classes.invalidate();
         // An edited class still has the place of the text that it was read from.
         let text = syntax::print::class(class);
@@ -239,7 +236,7 @@ impl Session {
     }
 
     /// A class that a run builds around a model; it replaces the one of the same name.
-    pub(in crate::script) fn define_enclosing(
+    pub(crate) fn define_enclosing(
         &mut self,
         class: ClassDefinition,
         enclosing: Enclosing,
@@ -254,12 +251,12 @@ impl Session {
     }
 
     /// Whether a class comes from a folder, so that its parts are read when they are needed.
-    pub(in crate::script) fn is_lazy(&self, name: &Name) -> bool {
+    pub(crate) fn is_lazy(&self, name: &Name) -> bool {
         self.classes.file_of(name).is_some_and(|path| self.world.is_dir(path))
     }
 
     /// Removes a class; whether there was one.
-    pub(in crate::script) fn remove_class(&mut self, name: &Name) -> bool {
+    pub(crate) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.invalidate();
         self.classes.history.note("remove", &name.to_string());
         self.classes.sources.remove(name);
@@ -267,13 +264,13 @@ impl Session {
     }
 
     /// Removes all classes.
-    pub(in crate::script) fn forget_classes(&mut self) {
+    pub(crate) fn forget_classes(&mut self) {
         self.classes.forget();
         self.models.forget();
     }
 
     /// A function of the loaded classes, looked up from the top level.
-    pub(in crate::script) fn loaded_function(
+    pub(crate) fn loaded_function(
         &mut self,
         name: &Name,
     ) -> Result<Option<Arc<Function>>, Diagnostic> {
@@ -285,7 +282,7 @@ impl Session {
         Ok(None)
     }
 
-    pub(in crate::script) fn function_named(
+    pub(crate) fn function_named(
         &mut self,
         name: &Name,
     ) -> Result<Option<Arc<Function>>, Diagnostic> {
@@ -312,7 +309,7 @@ impl Session {
     }
 
     /// The file that a path or a `modelica://Package/…` URI names.
-    pub(in crate::script) fn resource(&mut self, uri: &str) -> Result<PathBuf, Fault> {
+    pub(crate) fn resource(&mut self, uri: &str) -> Result<PathBuf, Fault> {
         if let Some(rest) = uri.strip_prefix("modelica://") {
             let (package, file) = rest.split_once('/').unwrap_or((rest, ""));
             let package = Name::parse(package);

@@ -2,9 +2,9 @@
 //! a script are those of its files; where `Eval`, `Fit` and `Refine` compare them with a variable in
 //! another unit of the same quantity, they convert them as a problem file does, which is noted once.
 
+use crate::Session;
 use crate::identify::errors::UNITS_DIFFER;
 use crate::identify::{Quantity, Simulated, Study};
-use crate::script::Session;
 use crate::units::{Conversion, written};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ struct Output {
 
 impl Session {
     /// Remembers the unit of a column that a script has read.
-    pub(in crate::script) fn column_measured(
+    pub(crate) fn column_measured(
         &mut self,
         (file, name): (&str, &str),
         unit: Option<&str>,
@@ -54,7 +54,7 @@ impl Session {
     }
 
     /// Remembers what a population was simulated of.
-    pub(in crate::script) fn population_simulated(
+    pub(crate) fn population_simulated(
         &mut self,
         study: &Arc<Study>,
         points: usize,
@@ -74,7 +74,7 @@ impl Session {
 
     /// Measured values in the unit of the simulated ones that a script compares them with; `None`
     /// where they are in it, or nothing is known of them.
-    pub(in crate::script) fn fitted(&mut self, row: &[f64], measured: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn fitted(&mut self, row: &[f64], measured: &[f64]) -> Option<Vec<f64>> {
         let simulated = &self.extension::<Units>().simulated;
         let own = simulated.iter().rev().find(|output| same(&output.row, row))?;
         let (study, is_relative) = (own.study.clone(), own.is_relative);
@@ -83,7 +83,7 @@ impl Session {
 
     /// A measured column in the unit of the variable that it is compared with, which is noted; `None`
     /// where it is in it, or where these values are not a column with a unit.
-    pub(in crate::script) fn in_unit_of(
+    pub(crate) fn in_unit_of(
         &mut self,
         values: &[f64],
         model: &str,
@@ -105,12 +105,7 @@ impl Session {
 
     /// Notes it if a script has compared these values by itself, although they are a measured column
     /// in another unit than that of the variable.
-    pub(in crate::script) fn compared(
-        &mut self,
-        values: &[f64],
-        model: &str,
-        variable: (&Quantity, bool),
-    ) {
+    pub(crate) fn compared(&mut self, values: &[f64], model: &str, variable: (&Quantity, bool)) {
         let Some(Mismatch { units, conversion }) = self.mismatch(values, model, variable) else {
             return;
         };
@@ -176,8 +171,8 @@ fn mismatch(
 
 #[cfg(test)]
 mod tests {
-    use crate::script::world::MemoryWorld;
-    use crate::script::{Options, Session};
+    use crate::world::MemoryWorld;
+    use crate::{Options, Session};
 
     const LINE: &str = "model Line
   parameter Real R(unit=\"Ohm.cm2\") = 0.2;

@@ -8,24 +8,24 @@ use super::translated::Translated;
 use super::typed::{number_in, number_of, unquoted};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::fault;
-use crate::flatten::{BaseType, Variability};
-use crate::name::Ident;
-use crate::script::errors::{
+use crate::errors::{
     BAD_PARAMETER_VALUE, NO_WINDOW, SHARED_NAME, START_IS_GUESS, TRANSLATED_AGAIN,
     UNKNOWN_PARAMETER,
 };
-use crate::script::language::workspace::Workspace;
-use crate::script::{Dialect, Session};
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
+use crate::language::workspace::Workspace;
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, ReferencePart};
 use crate::value::{ArrayValue, Value, sizes};
+use crate::{Dialect, Session};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
 impl Session {
     /// Sets a flag, or a parameter of the model translated last.
-    pub(in crate::script) fn assign_dotted(
+    pub(crate) fn assign_dotted(
         &mut self,
         target: &ComponentReference,
         value: &Value,
@@ -187,28 +187,28 @@ impl Session {
     }
 
     /// The model translated last and the values that it has, to be restored.
-    pub(in crate::script) fn current_values(&self) -> Option<Current> {
+    pub(crate) fn current_values(&self) -> Option<Current> {
         self.models.current.clone()
     }
 
     /// Takes back what was set since.
-    pub(in crate::script) fn restore_values(&mut self, before: Option<Current>) {
+    pub(crate) fn restore_values(&mut self, before: Option<Current>) {
         self.models.current = before;
     }
 
     /// There is no simulation whose end others could continue.
-    pub(in crate::script) fn forget_end(&mut self) {
+    pub(crate) fn forget_end(&mut self) {
         self.models.end = None;
     }
 
     /// Where the last simulation ended.
-    pub(in crate::script) fn last_end(&self) -> Option<&FinalState> {
+    pub(crate) fn last_end(&self) -> Option<&FinalState> {
         self.models.end.as_ref()
     }
 
     /// Gives states and discrete variables of the model translated last values at the start of its next simulations,
     /// whatever its initial equations say; none to take them back.
-    pub(in crate::script) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
+    pub(crate) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
         if let Some(current) = &mut self.models.current {
             current.imported = states;
         }
@@ -216,7 +216,7 @@ impl Session {
 
     /// Whether a name that a script assigns to means a parameter of the model translated last: no script
     /// has had a variable of the name before.
-    pub(in crate::script) fn is_of_model(&self, name: Ident) -> bool {
+    pub(crate) fn is_of_model(&self, name: Ident) -> bool {
         if self.models.is_own(name) || self.dialect() != Dialect::Dymola {
             return false;
         }
@@ -226,11 +226,7 @@ impl Session {
 
     /// Gives the parameter of the model translated last that has this name a value; said once for each
     /// name. `false` if it cannot be set: then it is a variable of the script.
-    pub(in crate::script) fn assign_to_model(
-        &mut self,
-        name: Ident,
-        value: &Value,
-    ) -> Result<bool, Fault> {
+    pub(crate) fn assign_to_model(&mut self, name: Ident, value: &Value) -> Result<bool, Fault> {
         let Some(model) = self.models.last().cloned() else { return Ok(false) };
         if let Some(why) = unlike(&model, name) {
             self.models.note_own(name);
@@ -256,7 +252,7 @@ impl Session {
     }
 
     /// An assignment to a parameter of the model translated last fails, or is not reached.
-    pub(in crate::script) fn lose_in_model(&mut self, target: &ComponentReference) {
+    pub(crate) fn lose_in_model(&mut self, target: &ComponentReference) {
         let name = target.parts[0].name;
         let is_model = match target.parts.as_slice() {
             [_] => self.is_of_model(name),
@@ -271,7 +267,7 @@ impl Session {
 
     /// A variable of scripts has got a value that has the name of a parameter; the parameter keeps
     /// its own.
-    pub(in crate::script) fn keep_from_model(&mut self, name: Ident) {
+    pub(crate) fn keep_from_model(&mut self, name: Ident) {
         let declared = self.models.last().and_then(|model| model.declarations.get(name.as_str()));
         let is_parameter =
             declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
@@ -289,7 +285,7 @@ impl Session {
 
     /// A variable that is new in the script has got a number, and the name of a state of the model
     /// translated last.
-    pub(in crate::script) fn note_state(&mut self, name: Ident, value: &Value) {
+    pub(crate) fn note_state(&mut self, name: Ident, value: &Value) {
         let Some(model) = self.models.last().cloned() else { return };
         let is_number = matches!(value, Value::Real(_) | Value::Integer(_));
         if self.dialect() == Dialect::Dymola && is_number && is_state(&model, name.as_str()) {
@@ -423,7 +419,7 @@ fn check_value(model: &Translated, name: &str, value: f64) -> Result<(), Fault> 
 
 fn no_model(name: &str) -> Fault {
     fault!(
-        crate::script::errors::NO_TRANSLATED_MODEL,
+        crate::errors::NO_TRANSLATED_MODEL,
         "`{name}` refers to a component of a model, but no model has been translated";
         help: "call `translateModel(\"Package.Model\")` first"
     )

@@ -4,9 +4,9 @@ use super::addressing::addressed;
 use super::simulation::flat_model_of;
 use super::translated::Translated;
 use super::typed::value_of;
+use crate::Session;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
-use crate::script::Session;
 use crate::syntax::ast::{ComponentReference, ExpressionKind};
 use crate::value::Value;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ impl Session {
     ///
     /// # Errors
     /// What scripts changed cannot be translated.
-    pub(in crate::script) fn model_value(
+    pub(crate) fn model_value(
         &mut self,
         reference: &ComponentReference,
     ) -> Result<Option<Value>, Diagnostic> {

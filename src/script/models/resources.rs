@@ -2,16 +2,16 @@
 
 use super::c_functions;
 use super::stored::{Reads, Watched};
+use crate::Session;
+use crate::access::faults::{cannot, plain};
+use crate::access::permissions::Permissions;
+use crate::access::process::Process;
 use crate::diag::Fault;
+use crate::errors::FILE_ERROR;
 use crate::external::c::{CCompiler, Request};
 use crate::external::{Entry, Provide, Resources};
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::access::faults::{cannot, plain};
-use crate::script::access::permissions::Permissions;
-use crate::script::access::process::Process;
-use crate::script::errors::FILE_ERROR;
-use crate::script::world::{FileReader, normalized};
+use crate::world::{FileReader, normalized};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,7 +37,7 @@ struct ModelFiles {
 impl Session {
     /// Files for a model: relative paths start from the working directory, the folder of the
     /// script, the folder of the file that the model is in.
-    pub(in crate::script) fn resources_for(&self, model: &Name) -> Resources {
+    pub(crate) fn resources_for(&self, model: &Name) -> Resources {
         let packages = self.classes.packages();
         let own = model.first().and_then(|top| packages.get(&top));
         let is_file = |own: &PathBuf| own.extension().is_some_and(|e| e == "mo");

@@ -2,11 +2,11 @@
 
 use super::final_state::FinalState;
 use super::translated::Translated;
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
+use crate::errors::{BAD_ARGUMENT, START_VALUES_MISSING};
 use crate::fault;
 use crate::flatten::Variability;
-use crate::script::Session;
-use crate::script::errors::{BAD_ARGUMENT, START_VALUES_MISSING};
 use indexmap::IndexMap;
 use std::sync::Arc;
 

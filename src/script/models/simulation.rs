@@ -9,17 +9,17 @@ use super::stored::Request;
 pub use super::translated::Translated;
 use super::translated::declarations;
 use super::warnings::warn;
+use crate::Session;
 use crate::codegen::errors::{CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::errors::{
+    BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
+};
 use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{LogMessage, System, Treated, Undetermined};
-use crate::script::Session;
-use crate::script::errors::{
-    BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
-};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
 use crate::{bail, causalize, fault, syntax};
@@ -72,6 +72,42 @@ pub struct Simulated {
 /// changes.
 /// It becomes the model that dotted names of scripts refer to.
 ///
+/// ```
+/// use gapilib_identify::problem::{Experiment, ModelSimulator, Observation, Simulate as _};
+/// use gapilib_identify::{CompiledModel, Model as _};
+/// use gapilib_script::Session;
+/// use gapilib_script::models::simulation::translate;
+/// use gapilib_script::world::MemoryWorld;
+/// use std::sync::Arc;
+///
+/// let mut session = Session::new(Box::new(MemoryWorld::new()));
+/// let classes = "model Decay
+///   parameter Real k = 1;
+///   Real x(start = 1, fixed = true);
+/// equation
+///   der(x) = -k*x;
+/// end Decay;";
+/// session.load_text("Decay.mo", classes).unwrap();
+/// let translated = translate(&mut session, "Decay").unwrap();
+/// let model = CompiledModel::new("Decay", translated.program.clone());
+/// assert_eq!(model.parameters()[0].name, "k");
+///
+/// // Simulated again and again with other values of `k`: x at two points in time.
+/// let experiment = Experiment {
+///     name: String::new(),
+///     settings: model.settings(),
+///     model: Arc::new(model),
+///     second_attempt: true,
+///     x_name: "time".to_owned(),
+///     observations: vec![Observation { y_name: "x".to_owned(), x: vec![0.5, 1.0] }],
+///     parameters: vec![(0, "k".to_owned())],
+/// };
+/// let mut simulator = ModelSimulator::new(&[experiment]).unwrap();
+/// let mut x = [0.0; 2];
+/// simulator.simulate(&[2.0], &mut x).unwrap();
+/// assert!((x[1] - (-2.0f64).exp()).abs() < 1e-3);
+/// ```
+///
 /// # Errors
 /// Everything that is wrong with it.
 pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
@@ -82,7 +118,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
 
 /// Makes a translated model the one that dotted names of scripts refer to. What was set by hand stays
 /// with a model that was translated again because its classes have changed.
-pub(in crate::script) fn look_at(session: &mut Session, model: &Arc<Translated>) {
+pub(crate) fn look_at(session: &mut Session, model: &Arc<Translated>) {
     match session.models.current.take() {
         Some(current) if Arc::ptr_eq(&current.model, model) => {
             session.models.current = Some(current);
@@ -191,7 +227,7 @@ fn found_or_compiled(session: &mut Session, problem: &str) -> Result<Translated,
 ///
 /// # Errors
 /// Its files have changed since, and something is wrong with them.
-pub(in crate::script) fn flat_model_of<'m>(
+pub(crate) fn flat_model_of<'m>(
     session: &mut Session,
     model: &'m Translated,
 ) -> Result<&'m FlatModel, Vec<Diagnostic>> {
@@ -247,7 +283,7 @@ pub fn dump(session: &mut Session, problem: &str, pass: &str) -> Result<String, 
 }
 
 /// As [`flat_model`], with the local balance; warnings are reported.
-pub(in crate::script) fn flattened(
+pub(crate) fn flattened(
     session: &mut Session,
     problem: &str,
 ) -> Result<flatten::Flattened, Vec<Diagnostic>> {
@@ -649,6 +685,6 @@ impl Session {
 }
 
 fn no_model() -> Fault {
-    fault!(crate::script::errors::NO_TRANSLATED_MODEL, "no model has been translated";
+    fault!(crate::errors::NO_TRANSLATED_MODEL, "no model has been translated";
         help: "call `translateModel(\"Package.Model\")` first")
 }

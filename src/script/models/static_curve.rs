@@ -6,13 +6,13 @@
 //! would be sorted as if it always did.
 
 use super::simulation;
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::identify::CompiledModel;
 use crate::name::Ident;
 use crate::registry::BAD_OPTION;
-use crate::script::Session;
 use crate::syntax::ast::CausalityPrefix;
 use std::collections::BTreeSet;
 
@@ -20,14 +20,14 @@ use std::collections::BTreeSet;
 const NAME: &str = "GAPILibStaticCurve";
 
 /// The parameter that stands for X.
-pub(in crate::script) const DRIVER: &str = "gapi_x";
+pub(crate) const DRIVER: &str = "gapi_x";
 
 /// Whether X is an input of the model that nothing drives.
 ///
 /// # Errors
 ///
 /// What is wrong with the model.
-pub(in crate::script) fn is_driven(
+pub(crate) fn is_driven(
     session: &mut Session,
     problem: &str,
     x_name: &str,
@@ -39,7 +39,7 @@ pub(in crate::script) fn is_driven(
 }
 
 /// Whether a variable of a model is a scalar input that nothing drives.
-pub(in crate::script) fn is_open_input(flat: &FlatModel, name: &str) -> bool {
+pub(crate) fn is_open_input(flat: &FlatModel, name: &str) -> bool {
     let input = flat.variables.get(name).filter(|variable| variable.binding.is_none());
     input.is_some_and(|variable| {
         variable.causality == Some(CausalityPrefix::Input) && variable.dims.is_empty()
@@ -48,7 +48,7 @@ pub(in crate::script) fn is_open_input(flat: &FlatModel, name: &str) -> bool {
 
 /// A class around `problem`, `Class` or `Class(modification)`, in which X has the value of
 /// [`DRIVER`], by default `typical`.
-pub(in crate::script) fn around(
+pub(crate) fn around(
     session: &mut Session,
     problem: &str,
     (x_name, typical): (&str, f64),
@@ -67,7 +67,7 @@ pub(in crate::script) fn around(
 
 /// Top-level names on which a model depends, without the class made by [`around`]: it is made again for
 /// every curve.
-pub(in crate::script) fn without_class_around(roots: &BTreeSet<Ident>) -> BTreeSet<Ident> {
+pub(crate) fn without_class_around(roots: &BTreeSet<Ident>) -> BTreeSet<Ident> {
     roots.iter().copied().filter(|root| *root != *NAME).collect()
 }
 
@@ -76,7 +76,7 @@ pub(in crate::script) fn without_class_around(roots: &BTreeSet<Ident>) -> BTreeS
 /// # Errors
 ///
 /// `bad-option` where the model has states, so that Y does not follow from X alone.
-pub(in crate::script) fn model(
+pub(crate) fn model(
     name: &str,
     translated: &simulation::Translated,
     x_name: &str,
@@ -97,6 +97,6 @@ pub(in crate::script) fn model(
 }
 
 /// A value of X that is not zero, if there is one.
-pub(in crate::script) fn typical(x: &[f64]) -> f64 {
+pub(crate) fn typical(x: &[f64]) -> f64 {
     x.iter().copied().rev().find(|x| x.is_finite() && *x != 0.0).unwrap_or(0.0)
 }

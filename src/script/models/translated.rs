@@ -20,7 +20,7 @@ pub struct Translated {
     /// The compiled model.
     pub program: Arc<Program>,
     /// The top-level names on which it depends.
-    pub(in crate::script) roots: BTreeSet<Ident>,
+    pub(crate) roots: BTreeSet<Ident>,
     /// The flat model; a model that was kept, or is large, has none until somebody asks.
     pub(super) flat: OnceLock<FlatModel>,
 }

@@ -2,8 +2,8 @@
 //! of an enumeration its number.
 
 use crate::diag::{Fault, suggest};
+use crate::errors::BAD_PARAMETER_VALUE;
 use crate::flatten::BaseType;
-use crate::script::errors::BAD_PARAMETER_VALUE;
 use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
 use crate::{bail, fault};
 

@@ -2,13 +2,13 @@
 //! the reference; if it is sampled, those of the experiment annotation and others between them.
 
 use super::simulation::{self, SimulationOptions};
+use crate::Session;
 use crate::causalize;
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::{self, Library};
 use crate::name::Name;
 use crate::results::{self, Compared, ResultTable, Series, Values};
-use crate::script::Session;
 use crate::sim::{OutputGrid, Settings, Simulator, Trajectory, same_time};
 use crate::source::Span;
 use std::fmt;

@@ -1,7 +1,7 @@
 //! Warnings about models, each of which is reported once.
 
+use crate::Session;
 use crate::diag::Diagnostic;
-use crate::script::Session;
 
 /// Reports the warnings about a model that were not reported yet, whatever it was asked before.
 pub(super) fn warn(session: &mut Session, warnings: &[Diagnostic]) {

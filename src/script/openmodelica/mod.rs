@@ -1,3 +1,3 @@
 //! What OpenModelica's scripting prints of its own: flat models.
 
-pub(in crate::script) mod flat_model;
+pub(crate) mod flat_model;

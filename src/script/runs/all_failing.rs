@@ -1,15 +1,15 @@
 //! Runs of which no individual can be simulated: the first population is enough to say so.
 
 use super::identification::Identification;
+use crate::Session;
+use crate::builtins::Failure;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::ga::Genomes;
 use crate::ga::errors::BAD_POPULATION;
 use crate::identify::{FailedSimulation, Recorder, Simulated, Study};
-use crate::script::Session;
-use crate::script::builtins::Failure;
-use crate::script::models::simulation::{SimulationOptions, simulate, translated};
-use crate::script::models::static_curve::DRIVER;
+use crate::models::simulation::{SimulationOptions, simulate, translated};
+use crate::models::static_curve::DRIVER;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -119,7 +119,7 @@ fn nothing_simulated(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::world::MemoryWorld;
+    use crate::world::MemoryWorld;
 
     const CURVE: &str = "model Curve
   parameter Real a = 1;

@@ -1,11 +1,11 @@
 //! What if: statements that change a run from one of its generations on.
 
 use super::changing;
+use crate::Session;
+use crate::builtins::Failure;
 use crate::diag::Diagnostic;
+use crate::errors::CANNOT_BRANCH;
 use crate::fault;
-use crate::script::Session;
-use crate::script::builtins::Failure;
-use crate::script::errors::CANNOT_BRANCH;
 use crate::syntax::ast::Script;
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ impl Session {
     }
 
     /// `Eval` has simulated a generation.
-    pub(in crate::script) fn generation_simulated(&mut self) -> Result<(), Failure> {
+    pub(crate) fn generation_simulated(&mut self) -> Result<(), Failure> {
         let branching = self.extension::<Branching>();
         branching.simulated += 1;
         let simulated = branching.simulated;

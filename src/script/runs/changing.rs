@@ -1,12 +1,12 @@
 //! Changes of a run that continues: statements are executed between two generations and checked before
 //! they are accepted. A change that is refused leaves all variables as they were.
 
+use crate::Session;
 use crate::diag::{Diagnostic, Fault, suggest};
+use crate::errors::BAD_CHANGE;
 use crate::fault;
 use crate::ga::{self, Mrg32k3a};
 use crate::name::Ident;
-use crate::script::Session;
-use crate::script::errors::BAD_CHANGE;
 use crate::syntax::{self, ast::Script};
 use crate::value::{Value, sizes};
 

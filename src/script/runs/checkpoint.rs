@@ -1,7 +1,7 @@
 //! A journal being written: records are collected and appended from time to time.
 
+use crate::Session;
 use crate::diag::Fault;
-use crate::script::Session;
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,9 @@
 
 use super::problem::fault_codes;
 use super::tracing;
+use crate::builtins::Failure;
 use crate::diag::{Code, Diagnostic, Fault};
+use crate::errors::INTERRUPTED;
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER, RANKS_IDLE};
 use crate::identify::problem::{
@@ -13,15 +15,13 @@ use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Model as _, Quantity, Question, Recorder,
     Simulated, Study,
 };
+use crate::models::in_use::InUse;
+use crate::models::translated::Translated;
+use crate::models::uses::Uses;
+use crate::models::{simulation, static_curve};
 use crate::registry::BAD_OPTION;
-use crate::script::builtins::Failure;
-use crate::script::errors::INTERRUPTED;
-use crate::script::models::in_use::InUse;
-use crate::script::models::translated::Translated;
-use crate::script::models::uses::Uses;
-use crate::script::models::{simulation, static_curve};
-use crate::script::{Reporting, Session};
 use crate::source::Span;
+use crate::{Reporting, Session};
 use crate::{bail, mat, results};
 use std::path::Path;
 use std::sync::Arc;
@@ -31,9 +31,9 @@ const PREPARED: usize = 40;
 
 /// What a session knows of the identification that its scripts carry out.
 #[derive(Default)]
-pub(in crate::script) struct Identification {
+pub(crate) struct Identification {
     /// What was observed of the run.
-    pub(in crate::script) recorder: Recorder,
+    pub(crate) recorder: Recorder,
     /// The evaluators of the last requests, for the next generation; the latest is the last.
     prepared: Vec<Prepared>,
     /// What was viewed last: model, individuals, and how many generations there will be.
@@ -41,7 +41,7 @@ pub(in crate::script) struct Identification {
     /// When the run began.
     started: Option<f64>,
     /// Whether measured data could not be read.
-    pub(in crate::script) data_missing: bool,
+    pub(crate) data_missing: bool,
     /// Whether it was reported that nothing can be simulated.
     pub(super) is_hopeless: bool,
     /// Runs reported so far.
@@ -67,18 +67,18 @@ struct Prepared {
 
 /// The arguments of `Eval` but for the population.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::script) struct Request {
+pub(crate) struct Request {
     /// Where the model is; empty when it is loaded.
-    pub(in crate::script) path: String,
+    pub(crate) path: String,
     /// Its name, with a modification if wanted.
-    pub(in crate::script) model: String,
+    pub(crate) model: String,
     /// What varies and what is compared.
-    pub(in crate::script) question: Question,
+    pub(crate) question: Question,
 }
 
 impl Session {
     /// The identification of this session; its report is made when the outermost script ends.
-    pub(in crate::script) fn identification(&mut self) -> &mut Identification {
+    pub(crate) fn identification(&mut self) -> &mut Identification {
         let now = self.world.monotonic_seconds();
         self.at_end(report);
         let identification = self.extension::<Identification>();
@@ -87,7 +87,7 @@ impl Session {
     }
 
     /// Reads the matrices `names` of X and Y from a file.
-    pub(in crate::script) fn read_measurement(
+    pub(crate) fn read_measurement(
         &mut self,
         file: &str,
         names: &[String; 2],
@@ -126,7 +126,7 @@ impl Session {
     }
 
     /// Says something about the data that a script compares its models with: now and in the report.
-    pub(in crate::script) fn note_about_data(&mut self, code: Code, sentence: String) {
+    pub(crate) fn note_about_data(&mut self, code: Code, sentence: String) {
         let notes = &mut self.extension::<Identification>().data_notes;
         if !notes.contains(&sentence) {
             notes.push(sentence.clone());
@@ -136,7 +136,7 @@ impl Session {
 
     /// A number for the place in the scripts that a command was called from: the same whenever the
     /// script is read again.
-    pub(in crate::script) fn site_of_call(&self) -> u64 {
+    pub(crate) fn site_of_call(&self) -> u64 {
         let span = self.call_site();
         let mut site = Fingerprint::default();
         if let Some(source) = self.sources.get(span.source) {
@@ -148,7 +148,7 @@ impl Session {
 
     /// Notes measured data. Data read after generations have been evaluated begin another run: the
     /// one before is reported.
-    pub(in crate::script) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
+    pub(crate) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
         if !self.identification().recorder.history.generations.is_empty() {
             let identification = self.identification();
             let own = identification.data_notes.split_off(identification.older_notes);
@@ -162,7 +162,7 @@ impl Session {
     }
 
     /// Simulates a population; the evaluator is kept for the next one.
-    pub(in crate::script) fn evaluate_population(
+    pub(crate) fn evaluate_population(
         &mut self,
         request: Request,
         genomes: &Genomes,

@@ -10,15 +10,15 @@
 use super::checkpoint::{Checkpoint, keep_old};
 use super::identification::Request;
 use crate::bail;
+use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
 use crate::identify::problem::{Fingerprint, Origins, first_frame, frame, listed};
 use crate::identify::{FailedSimulation, Simulated};
+use crate::language::execution::Stop;
 use crate::registry::BAD_OPTION;
-use crate::script::builtins::Failure;
-use crate::script::language::execution::Stop;
-use crate::script::{Journaling, Session};
 use crate::source::SourceId;
+use crate::{Journaling, Session};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 

@@ -2,14 +2,14 @@
 //! problem files.
 
 mod all_failing;
-pub(in crate::script) mod branching;
+pub(crate) mod branching;
 mod changing;
-pub(in crate::script) mod checkpoint;
-pub(in crate::script) mod identification;
+pub(crate) mod checkpoint;
+pub(crate) mod identification;
 pub mod journal;
 pub mod problem;
-pub(in crate::script) mod refinement;
+pub(crate) mod refinement;
 mod reseeding;
-pub(in crate::script) mod tracing;
+pub(crate) mod tracing;
 pub mod view;
-pub(in crate::script) mod watching;
+pub(crate) mod watching;

@@ -2,6 +2,8 @@
 //! optimum by least squares.
 
 use super::identification::Request;
+use crate::Session;
+use crate::builtins::Failure;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_POPULATION;
 use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup, Wants};
@@ -9,23 +11,21 @@ use crate::ga::{Gene, Genomes, Individual, Mrg32k3a, best, has_failed};
 use crate::identify::fitness::sum_of_squares;
 use crate::identify::problem::{Free, NOISE_OF_FORMULAS};
 use crate::identify::{CompiledModel, Model};
+use crate::models::simulation;
 use crate::registry::{self, Options};
-use crate::script::Session;
-use crate::script::builtins::Failure;
-use crate::script::models::simulation;
 use crate::{elementary, fault};
 
 /// Least squares draw no random numbers, but every search has a generator.
 const SEED: [f64; 6] = [12345.0; 6];
 
 /// What is refined.
-pub(in crate::script) struct Refinement {
+pub(crate) struct Refinement {
     /// The model and the points.
-    pub(in crate::script) request: Request,
+    pub(crate) request: Request,
     /// The measured values of the points.
-    pub(in crate::script) measured: Vec<f64>,
+    pub(crate) measured: Vec<f64>,
     /// The ranges, one for each gene; those wider than a decade are followed by their logarithm.
-    pub(in crate::script) ranges: Vec<Free>,
+    pub(crate) ranges: Vec<Free>,
 }
 
 /// Everything simulated so far, as one generation.
@@ -38,7 +38,7 @@ struct Simulations {
 
 impl Session {
     /// The best individual that Levenberg and Marquardt's method finds from each of these.
-    pub(in crate::script) fn refine(
+    pub(crate) fn refine(
         &mut self,
         mut refinement: Refinement,
         starts: &Genomes,

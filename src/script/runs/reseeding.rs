@@ -1,8 +1,8 @@
 //! Repetitions of a run with other random numbers: the seed that its scripts begin with is replaced.
 
+use crate::Session;
 use crate::diag::Fault;
 use crate::ga::Mrg32k3a;
-use crate::script::Session;
 
 /// Which random numbers the scripts get.
 #[derive(Default)]
@@ -25,7 +25,7 @@ impl Session {
     /// # Errors
     ///
     /// It is not a seed.
-    pub(in crate::script) fn generator(&mut self, seed: &[f64]) -> Result<Mrg32k3a, Fault> {
+    pub(crate) fn generator(&mut self, seed: &[f64]) -> Result<Mrg32k3a, Fault> {
         let rng = Mrg32k3a::new(seed)?;
         let reseeding = self.extension::<Reseeding>();
         let is_first = *reseeding.first.get_or_insert(rng.state()) == rng.state();

@@ -1,8 +1,8 @@
 //! A trace of the run for learners, written while scripts run.
 
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::{Quantity, Study};
-use crate::script::Session;
 use crate::source::Span;
 use crate::teach::{Place, Subject, Tracer};
 use std::path::{Path, PathBuf};
@@ -32,16 +32,13 @@ impl Session {
     }
 
     /// Whether there is a tracer that records calls of operators by name.
-    pub(in crate::script) fn traces_operations(&mut self) -> bool {
+    pub(crate) fn traces_operations(&mut self) -> bool {
         let active = &self.extension::<Tracing>().active;
         active.as_ref().is_some_and(|(_, tracer)| tracer.takes_operations())
     }
 
     /// Tells the tracer, if there is one, what the call at hand has done.
-    pub(in crate::script) fn traced(
-        &mut self,
-        record: impl FnOnce(&mut Tracer, Place),
-    ) -> Result<(), Fault> {
+    pub(crate) fn traced(&mut self, record: impl FnOnce(&mut Tracer, Place)) -> Result<(), Fault> {
         let Some((path, mut tracer)) = self.extension::<Tracing>().active.take() else {
             return Ok(());
         };

@@ -3,12 +3,12 @@
 
 use super::changing;
 use super::view::{Fitted, Spread, View, labelled};
+use crate::Session;
+use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
 use crate::identify::{Compared, Quantity, Recorder, Study};
-use crate::script::Session;
-use crate::script::builtins::Failure;
-use crate::script::runs::view::Progress;
+use crate::runs::view::Progress;
 
 const HELP: &str = "\
 Paused. Type script statements, such as F_Mut := 0.3; they take effect from this generation on. \
@@ -43,7 +43,7 @@ impl Session {
 
     /// Executes what the user types where he asks for a pause, among the variables of the script;
     /// in a run that is resumed, what he typed here before.
-    pub(in crate::script) fn pause(&mut self) -> Result<(), Failure> {
+    pub(crate) fn pause(&mut self) -> Result<(), Failure> {
         while let Some(line) = self.typed_before() {
             self.typed(&line).map_err(|wrong| Failure::Elsewhere(vec![wrong]))?;
         }

@@ -1,6 +1,6 @@
 //! Files and folders as scripts see them.
 
-use crate::script::access::policy::{Access, Grant};
+use crate::access::policy::{Access, Grant};
 use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};

@@ -1,8 +1,8 @@
 //! A world in memory: what tests and documentation run scripts in.
 
 use super::{Environment, FileReader, Files, Screen, Stamp};
-use crate::script::access::policy::{Access, Change, Grant, Policy};
-use crate::script::runs::view::{Progress, View};
+use crate::access::policy::{Access, Change, Grant, Policy};
+use crate::runs::view::{Progress, View};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io;

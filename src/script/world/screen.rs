@@ -1,7 +1,7 @@
 //! What a user sees of a run, and types.
 
 use crate::identify::problem::Status;
-use crate::script::runs::view::{Progress, View};
+use crate::runs::view::{Progress, View};
 
 /// Standard output and standard error, progress, the live view, and a prompt.
 pub trait Screen {

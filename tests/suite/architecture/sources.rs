@@ -11,6 +11,11 @@ use syn::{Attribute, ImplItemFn, Item, ItemFn, ItemMod, ItemUse, TraitItemFn, Us
 /// A path of names, `crate` left out.
 pub(super) type Names = Vec<String>;
 
+/// Crates whose root is a module of their name, each with the modules in it that are not parts of
+/// that one. The other crates are nothing but their modules.
+const ROOTS: &[(&str, &[&str])] =
+    &[("identify", &[]), ("script", &["lessons", "packages", "teach"]), ("cli", &["lsp"])];
+
 /// A source file.
 pub(super) struct Source {
     /// Below `src`.
@@ -39,9 +44,33 @@ pub(super) fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut paths = Vec::new();
     collect(&root, &mut paths);
+    paths.retain(|path| !path.ends_with("build.rs"));
     paths.sort();
     assert!(paths.len() > 20, "the sources were not found");
-    paths.iter().map(|path| read(&root, path)).collect()
+    let paths = paths.iter().map(|path| path.strip_prefix(&root).expect("below the root"));
+    let inner = paths
+        .clone()
+        .filter_map(within_crate)
+        .filter_map(|(owner, inner)| Some((owner.to_owned(), inner.first()?.clone())));
+    let modules = inner.collect();
+    paths.map(|path| read(&root, path, &modules)).collect()
+}
+
+/// The crate of a file, and the path of its module there; `None` for the facade and the program.
+fn within_crate(path: &Path) -> Option<(&str, Names)> {
+    let mut names: Names =
+        path.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    names.pop_if(|last| last == "mod" || last == "lib");
+    let owner = path.iter().next()?.to_str()?;
+    path.parent()?.parent().map(|_| (owner, names.split_off(1)))
+}
+
+/// The module that a path in a crate stands for.
+fn module_of(owner: &str, inner: &[String]) -> Names {
+    let root = ROOTS.iter().find(|(name, others)| {
+        *name == owner && !inner.first().is_some_and(|first| others.contains(&first.as_str()))
+    });
+    root.map(|(name, _)| (*name).to_owned()).into_iter().chain(inner.iter().cloned()).collect()
 }
 
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -55,20 +84,23 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-fn read(root: &Path, path: &Path) -> Source {
-    let text = fs::read_to_string(path).expect("a readable source");
+fn read(root: &Path, path: &Path, modules: &BTreeSet<(String, String)>) -> Source {
+    let text = fs::read_to_string(root.join(path)).expect("a readable source");
     let file = syn::parse_file(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let path = path.strip_prefix(root).expect("below the root").to_owned();
-    let mut module: Names =
-        path.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
-    let is_mod = module.last().is_some_and(|last| last == "mod");
-    if is_mod || module == ["lib"] {
-        module.pop();
-    }
+    let path = path.to_owned();
+    let (owner, module) = match within_crate(&path) {
+        Some((owner, inner)) => (owner.to_owned(), module_of(owner, &inner)),
+        None if path.ends_with("lib.rs") => (String::new(), Vec::new()),
+        None => (String::new(), vec!["main".to_owned()]),
+    };
     // `library.rs` is the face of the folder `library`.
-    let is_door = is_mod || root.join(path.with_extension("")).is_dir();
+    let is_door = path.ends_with("mod.rs")
+        || path.ends_with("lib.rs")
+        || root.join(path.with_extension("")).is_dir();
     let mut reader = Reader {
         here: module.clone(),
+        owner,
+        modules,
         source: Source {
             path,
             text,
@@ -87,9 +119,13 @@ fn read(root: &Path, path: &Path) -> Source {
 }
 
 /// Reads one file; items of tests are passed over.
-struct Reader {
+struct Reader<'a> {
     /// The module at hand, inline modules included.
     here: Names,
+    /// The crate.
+    owner: String,
+    /// Crates with the modules that lie in them.
+    modules: &'a BTreeSet<(String, String)>,
     source: Source,
 }
 
@@ -117,13 +153,16 @@ fn attributes(item: &Item) -> &[Attribute] {
     }
 }
 
-impl Reader {
+impl Reader<'_> {
     /// The absolute path of a written one; `None` for those of other crates and of locals.
     fn absolute(&self, written: &[String]) -> Option<Names> {
         let mut base = self.here.clone();
         let mut rest = written;
         match written.first()?.as_str() {
-            "crate" => return Some(written[1..].to_vec()),
+            "crate" => return Some(self.in_crate(&written[1..])),
+            other if other.starts_with("gapilib_") => {
+                return Some(module_of(&other["gapilib_".len()..], &written[1..]));
+            }
             "self" => rest = &written[1..],
             "super" => {
                 while rest.first().is_some_and(|name| name == "super") {
@@ -135,6 +174,21 @@ impl Reader {
         }
         base.extend(rest.iter().cloned());
         Some(base)
+    }
+
+    /// What a path from the root of the crate stands for: the roots name modules of lower crates.
+    fn in_crate(&self, inner: &[String]) -> Names {
+        // The macros of `diag`.
+        if matches!(inner, [name] if ["bail", "codes", "fault"].contains(&name.as_str())) {
+            return inner.to_vec();
+        }
+        let first = inner.first().cloned().unwrap_or_default();
+        let is_own = self.modules.contains(&(self.owner.clone(), first.clone()));
+        let is_lower = ROOTS.iter().any(|(root, _)| *root == first)
+            || self.modules.iter().any(|(owner, module)| {
+                *module == first && module_of(owner, std::slice::from_ref(module)).len() == 1
+            });
+        if is_own || !is_lower { module_of(&self.owner, inner) } else { inner.to_vec() }
     }
 
     fn name(&mut self, line: usize, written: &[String]) {
@@ -185,7 +239,7 @@ fn leaves(tree: &UseTree, before: &[String], found: &mut Vec<(Names, String)>) {
     }
 }
 
-impl<'ast> Visit<'ast> for Reader {
+impl<'ast> Visit<'ast> for Reader<'_> {
     fn visit_item(&mut self, item: &'ast Item) {
         if !is_test(attributes(item)) {
             visit::visit_item(self, item);

@@ -8,8 +8,8 @@ mod sobol;
 use super::{Evaluation, Problem};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::identify::table::{quoted, significant};
 use crate::registry::{Entry, Options};
+use crate::table::{quoted, significant};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 

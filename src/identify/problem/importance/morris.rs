@@ -2,12 +2,12 @@
 //! the mean size of what that changes says how much a parameter matters, its deviation how much
 //! that depends on the others.
 //!
-//! Reference: [Morris 1991](crate::bibliography#morris-1991).
+//! Reference: [Morris 1991](gapilib_base::bibliography#morris-1991).
 
 use super::{Analysis, Importance, ParameterImportance, mean, values};
 use crate::diag::Fault;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::{Evaluation, Problem};
+use crate::problem::{Evaluation, Problem};
 use crate::registry::Entry;
 
 /// The table entry.

@@ -8,16 +8,16 @@
 //! first order = (V − ½ E (f(B) − f(Aᵢ))²) / V        total = ½ E (f(A) − f(Aᵢ))² / V
 //! ```
 //!
-//! References: [Sobol 1967](crate::bibliography#sobol-1967),
-//! [Jansen 1999](crate::bibliography#jansen-1999) (estimators),
-//! [Lamboni et al. 2011](crate::bibliography#lamboni-2011) (several points).
+//! References: [Sobol 1967](gapilib_base::bibliography#sobol-1967),
+//! [Jansen 1999](gapilib_base::bibliography#jansen-1999) (estimators),
+//! [Lamboni et al. 2011](gapilib_base::bibliography#lamboni-2011) (several points).
 
 use super::{Analysis, Importance, ParameterImportance, mean, values};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::sampling::sobol;
 use crate::ga::{Genomes, Mrg32k3a};
-use crate::identify::problem::{Evaluation, Failed, Problem};
+use crate::problem::{Evaluation, Failed, Problem};
 use crate::registry::Entry;
 
 /// The table entry.

@@ -1,8 +1,8 @@
 //! Against functions whose effects and shares are known exactly.
 
 use super::*;
-use crate::identify::fitness::FITNESSES;
-use crate::identify::problem::{Failed, FailureKind, Free, Series, Simulate, Stop};
+use crate::fitness::FITNESSES;
+use crate::problem::{Failed, FailureKind, Free, Series, Simulate, Stop};
 
 struct Formula<F>(F);
 
@@ -40,7 +40,7 @@ fn analysed(
             x: vec![0.0, 1.0],
             y: vec![0.0, 0.0],
             weight: 2.0,
-            sigma: crate::identify::problem::Sigma::Unknown,
+            sigma: crate::problem::Sigma::Unknown,
             column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
@@ -52,7 +52,7 @@ fn analysed(
         seed: [12345.0; 6],
         stop: Stop::default(),
         noise: 1e-15,
-        inference: crate::identify::problem::Inference::default(),
+        inference: crate::problem::Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(formula)))),
     };
     let evaluation = Evaluation::new(&problem, 2).unwrap();

@@ -7,9 +7,7 @@
 
 use super::{Constraint, PortableConstraint};
 use crate::diag::Fault;
-use crate::identify::problem::{
-    ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate,
-};
+use crate::problem::{ErrorModel, Failed, FailureKind, Portable, Problem, Series, Sigma, Simulate};
 use crate::registry::BAD_OPTION;
 use crate::{bail, elementary, fault};
 use serde::{Deserialize, Serialize};

@@ -5,13 +5,13 @@
 //! estimates, and a new measurement of standard deviation σ the variance v + σ². Half-widths are
 //! Student's quantile times the roots. Both are pointwise, and linear in the parameters.
 //!
-//! Reference: [Seber & Wild 1989](crate::bibliography#seber-wild-1989), section 5.1.
+//! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 5.1.
 
 use super::predictions::linear;
 use super::{Local, Predict, Reach, Wanted};
 use crate::diag::Fault;
-use crate::identify::problem::Problem;
-use crate::identify::table::significant;
+use crate::problem::Problem;
+use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
 /// Points of a curve: as many as a plot of usual width shows.

@@ -7,17 +7,17 @@
 //! acceleration of the infinitesimal jackknife. Every replicate has a substream of random numbers
 //! of its own, so that threads do not matter. A resumed run computes it anew, with the same result.
 //!
-//! References: [Efron & Tibshirani 1993](crate::bibliography#efron-tibshirani-1993), chapters 9,
-//! 13 and 14; [Davison & Hinkley 1997](crate::bibliography#davison-hinkley-1997), chapter 6.
+//! References: [Efron & Tibshirani 1993](gapilib_base::bibliography#efron-tibshirani-1993), chapters 9,
+//! 13 and 14; [Davison & Hinkley 1997](gapilib_base::bibliography#davison-hinkley-1997), chapter 6.
 
 use super::least_squares::Data;
 use super::{Local, PRIOR};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::distributions::{normal_below, normal_quantile};
-use crate::identify::problem::{Problem, Run, Simulate, other_shards};
-use crate::identify::table::significant;
+use crate::problem::distributions::{normal_below, normal_quantile};
+use crate::problem::{Problem, Run, Simulate, other_shards};
+use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
 /// The stream of random numbers, far from those of the search.
@@ -299,10 +299,7 @@ impl Bootstrap {
 
     /// `bootstrap.csv`: the estimates of all replicates.
     pub fn csv(&self) -> String {
-        crate::identify::table::table_csv(
-            self.parameters.iter().map(|p| p.name.as_str()),
-            &self.estimates,
-        )
+        crate::table::table_csv(self.parameters.iter().map(|p| p.name.as_str()), &self.estimates)
     }
 }
 

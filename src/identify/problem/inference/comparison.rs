@@ -5,14 +5,14 @@
 //! counts as a parameter. AICc = 2k − 2 ln L + 2k(k+1)/(n−k−1), BIC = k ln n − 2 ln L, and twice the
 //! difference of ln L of nested models is distributed as χ² with the difference of k.
 //!
-//! Reference: [Burnham & Anderson 2002](crate::bibliography#burnham-anderson-2002).
+//! Reference: [Burnham & Anderson 2002](gapilib_base::bibliography#burnham-anderson-2002).
 
 use super::Likelihood;
 use crate::diag::Fault;
-use crate::identify::problem::distributions::chi_square_tails;
-use crate::identify::problem::{EndingKind, Solution};
-use crate::identify::table::significant;
+use crate::problem::distributions::chi_square_tails;
+use crate::problem::{EndingKind, Solution};
 use crate::registry::BAD_OPTION;
+use crate::table::significant;
 use crate::{bail, elementary, fault};
 use serde::Serialize;
 use std::fmt::Write;
@@ -121,7 +121,7 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
 
 fn same_data(a: &Solution, b: &Solution) -> bool {
     let data = |solution: &Solution| -> Vec<(String, String, Vec<[f64; 2]>)> {
-        let one = |s: &crate::identify::problem::SolvedSeries| {
+        let one = |s: &crate::problem::SolvedSeries| {
             // Log-normal data are shown by their logarithms.
             let name = s.y[0].strip_prefix("ln(").and_then(|name| name.strip_suffix(')'));
             let measured = |y: f64| if name.is_some() { elementary::exp(y) } else { y };

@@ -77,7 +77,7 @@ impl Constraint {
     }
 
     /// What is left up to the limit, as a fraction of its sides; negative where it is violated.
-    pub(in crate::identify::problem) fn margin(&self, parameters: &[f64]) -> f64 {
+    pub(in crate::problem) fn margin(&self, parameters: &[f64]) -> f64 {
         let [smaller, larger] = match &self.compared {
             Compared::Terms(terms) => terms.each_ref().map(|term| term.value(parameters)),
             Compared::Function(sides) => sides(parameters),

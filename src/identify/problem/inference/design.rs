@@ -9,16 +9,16 @@
 //! Fedorov's exchange. What is announced holds for the curvature at the best values and the noise
 //! of the present data.
 //!
-//! References: [Fedorov 1972](crate::bibliography#fedorov-1972);
-//! [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 6.
+//! References: [Fedorov 1972](gapilib_base::bibliography#fedorov-1972);
+//! [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 6.
 
 use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
 use super::{Curve, Local, PRIOR, Reach, Wanted};
 use crate::diag::Fault;
-use crate::identify::problem::Problem;
-use crate::identify::table::significant;
+use crate::problem::Problem;
 use crate::registry::BAD_OPTION;
+use crate::table::significant;
 use crate::{elementary, fault};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! What inference has found, and its tables and sentences.
 
 use super::{Band, BandPoint, Bootstrap, Likelihood, NextMeasurement, Posterior};
-use crate::identify::problem::Finding;
-use crate::identify::table::quoted;
+use crate::problem::Finding;
+use crate::table::quoted;
 use serde::{Deserialize, Serialize};
 
 /// What inference has found.

@@ -1,10 +1,10 @@
 //! Least squares from a near minimum: Levenberg-Marquardt with bounds, in the scaled parameters of
 //! the search, for fits that are made many times (bootstrap).
 //!
-//! Reference: [Nielsen 1999](crate::bibliography#nielsen-1999); the end is that of
-//! [Bates & Watts 1981](crate::bibliography#bates-watts-1981), the relative offset.
+//! Reference: [Nielsen 1999](gapilib_base::bibliography#nielsen-1999); the end is that of
+//! [Bates & Watts 1981](gapilib_base::bibliography#bates-watts-1981), the relative offset.
 
-use crate::identify::problem::{Free, Simulate};
+use crate::problem::{Free, Simulate};
 use nalgebra::{DMatrix, DVector};
 
 /// The fit ends when the Gauss-Newton step would move the simulation by less than this many

@@ -2,7 +2,7 @@
 
 use super::PRIOR;
 use crate::elementary;
-use crate::identify::problem::{ErrorModel, Problem, Run};
+use crate::problem::{ErrorModel, Problem, Run};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -5,7 +5,7 @@
 //! information is F = JᵀJ/s² and a quantity of gradient g has the variance gᵀF⁻¹g. Parameters are
 //! scaled by the lengths of their columns, so that their units do not matter.
 //!
-//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapters 5 and 6.
+//! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
 use super::super::statistics::distributions::{normal_quantile, student_quantile};
 use super::super::{Evaluation, Problem, Statistics, limits};

@@ -2,8 +2,8 @@
 
 use super::Local;
 use crate::elementary;
-use crate::identify::problem::{Finding, FindingKind, Problem};
-use crate::identify::table::significant;
+use crate::problem::{Finding, FindingKind, Problem};
+use crate::table::significant;
 
 /// A posterior standard deviation above this fraction of the prior one comes from the prior: the
 /// data hold less than a quarter of what the prior does.

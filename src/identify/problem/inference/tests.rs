@@ -1,9 +1,9 @@
 //! Against linear regression in closed form, and against fits to data that hold what was planned.
 
 use super::*;
+use crate::fitness::FITNESSES;
 use crate::ga::optimizer::METHODS;
-use crate::identify::fitness::FITNESSES;
-use crate::identify::problem::{
+use crate::problem::{
     Failed, Free, Problem, Series, Sigma, Simulate, Statistics, Stop, distributions,
 };
 use crate::registry::{self, Options};
@@ -338,7 +338,7 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     assert!(begins(0, "The data contradict the prior of p0: the estimate lies 3."), "{remarks:?}");
     assert!(begins(1, "The estimate of p1 comes mainly from its prior"), "{remarks:?}");
     assert_eq!(remarks.len(), 2);
-    let solution = crate::identify::problem::Solution::of(&run, "", Vec::new()).unwrap();
+    let solution = crate::problem::Solution::of(&run, "", Vec::new()).unwrap();
     assert_eq!(solution.series.len(), 1, "a prior is not data");
 }
 

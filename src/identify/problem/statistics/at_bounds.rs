@@ -7,13 +7,13 @@
 //! Parameters that no end holds are eliminated; what remains is a small quadratic problem with signs,
 //! solved by projected Gauss-Seidel sweeps.
 //!
-//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5.
+//! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 5.
 
-use crate::identify::{Uncertainty, uncertainty_given};
+use crate::{Uncertainty, uncertainty_given};
 use nalgebra::{DMatrix, DVector};
 
 /// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
-pub(in crate::identify::problem) const BEYOND: f64 = 2.0;
+pub(in crate::problem) const BEYOND: f64 = 2.0;
 /// Sweeps over the parameters at ends; they converge linearly, and there are few.
 const SWEEPS: usize = 400;
 /// Doublings that bracket the end of an interval, and halvings that locate it.
@@ -22,7 +22,7 @@ const HALVINGS: usize = 60;
 
 /// A parameter that stands at an end of its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::identify::problem) struct AtEnd {
+pub(in crate::problem) struct AtEnd {
     /// Which one.
     pub parameter: usize,
     /// 1 where the range lies above the end, −1 where below.
@@ -33,7 +33,7 @@ pub(in crate::identify::problem) struct AtEnd {
 
 /// What holds where some parameters stand at ends of their ranges.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::identify::problem) struct AtBounds {
+pub(in crate::problem) struct AtBounds {
     /// Those parameters.
     pub ends: Vec<AtEnd>,
     /// Standard errors and correlations of the others with those held.

@@ -14,11 +14,11 @@
 //! 1 + 4 Σ fᵢ (1 − fᵢ) / νᵢ
 //! ```
 //!
-//! References: [Satterthwaite 1946](crate::bibliography#satterthwaite-1946);
-//! [Meier 1953](crate::bibliography#meier-1953).
+//! References: [Satterthwaite 1946](gapilib_base::bibliography#satterthwaite-1946);
+//! [Meier 1953](gapilib_base::bibliography#meier-1953).
 
 use crate::elementary;
-use crate::identify::problem::Problem;
+use crate::problem::Problem;
 use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 

@@ -8,7 +8,7 @@
 //!
 //! Series that hold the same numbers count once: each of m has its weights divided by √m.
 //!
-//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5.
+//! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 5.
 
 pub(super) mod at_bounds;
 pub mod distributions;
@@ -26,7 +26,7 @@ use super::non_identifiable::{self, Form, NonIdentifiable};
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;
 use super::{ErrorModel, Evaluation, Problem, Series};
-use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
+use crate::{Uncertainty, error_of_combination, uncertainty_given};
 pub(super) use at_bounds::BEYOND;
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;

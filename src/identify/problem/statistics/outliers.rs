@@ -8,7 +8,7 @@
 //! With independent normal noise tᵢ follows Student's distribution with one degree of freedom less
 //! than the residuals have; the largest of n is compared at 1/n of the level (Bonferroni).
 //!
-//! Reference: [Cook & Weisberg 1982](crate::bibliography#cook-weisberg-1982), chapter 2.
+//! Reference: [Cook & Weisberg 1982](gapilib_base::bibliography#cook-weisberg-1982), chapter 2.
 
 use super::distributions::student_two_sided;
 use nalgebra::{DMatrix, DVector};
@@ -145,7 +145,7 @@ mod tests {
         let mut dummy = vec![0.0; 40];
         dummy[39] = 1.0;
         jacobian.push(dummy);
-        let uncertainty = crate::identify::uncertainty;
+        let uncertainty = crate::uncertainty;
         let all: Vec<usize> = (0..40).collect();
         let basis = basis(&jacobian, &all);
         let own = DVector::from_vec(r.clone());

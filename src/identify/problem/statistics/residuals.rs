@@ -1,8 +1,8 @@
 //! Tests of residuals that need no distribution of their own: serial correlation, mean, spread,
 //! normality.
 //!
-//! References: [Wald & Wolfowitz 1940](crate::bibliography#wald-wolfowitz-1940) (runs);
-//! [Anderson & Darling 1952](crate::bibliography#anderson-darling-1952), p-values of D'Agostino and
+//! References: [Wald & Wolfowitz 1940](gapilib_base::bibliography#wald-wolfowitz-1940) (runs);
+//! [Anderson & Darling 1952](gapilib_base::bibliography#anderson-darling-1952), p-values of D'Agostino and
 //! Stephens 1986, table 4.9, for mean and variance estimated (normality).
 
 use super::distributions::{normal_below, normal_two_sided, runs_two_sided, student_two_sided};

@@ -1,11 +1,11 @@
 //! A model as it is kept.
 
 use super::reads::{Answer, Digest, Question, Watched, ask};
+use crate::Session;
 use crate::codegen::{Program, bytes_of};
 use crate::diag::Diagnostic;
+use crate::models::translated::{Declarations, Translated};
 use crate::name::Ident;
-use crate::script::Session;
-use crate::script::models::translated::{Declarations, Translated};
 use crate::source::{SourceId, noting_sources, with_sources};
 use crate::syntax;
 use serde::{Deserialize, Serialize};

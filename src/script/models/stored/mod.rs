@@ -16,9 +16,9 @@ pub use reads::{Reads, Watched};
 
 use super::translated::Translated;
 use super::warnings::warn;
+use crate::Session;
 use crate::diag::Diagnostic;
-use crate::script::Session;
-use crate::script::world::Store;
+use crate::world::Store;
 use entry::Entry;
 use std::sync::Arc;
 

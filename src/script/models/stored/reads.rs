@@ -1,7 +1,7 @@
 //! What was asked of the disk, and what it answered.
 
-use crate::script::world::FileReader;
 use crate::source::SourceId;
+use crate::world::FileReader;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, HashMap};
@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// SHA-256.
-pub(in crate::script::models) type Digest = [u8; 32];
+pub(in crate::models) type Digest = [u8; 32];
 
 /// The digest of bytes.
-pub(in crate::script::models) fn digest(bytes: &[u8]) -> Digest {
+pub(in crate::models) fn digest(bytes: &[u8]) -> Digest {
     Sha256::digest(bytes).into()
 }
 
@@ -56,7 +56,7 @@ impl Reads {
         self.notes().files.insert(source, path.to_owned());
     }
 
-    pub(in crate::script::models) fn file_of(&self, source: SourceId) -> Option<PathBuf> {
+    pub(in crate::models) fn file_of(&self, source: SourceId) -> Option<PathBuf> {
         self.notes().files.get(&source).cloned()
     }
 

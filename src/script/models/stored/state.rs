@@ -1,7 +1,7 @@
 //! What a translation depends on beside the files that it reads.
 
 use super::reads::digest;
-use crate::script::Session;
+use crate::Session;
 use std::fmt::Write;
 
 /// The name under which a model is kept.

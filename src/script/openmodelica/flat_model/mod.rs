@@ -7,7 +7,7 @@ mod operations;
 mod parts;
 mod trivial;
 
-pub(in crate::script) use trivial::trivial_equations;
+pub(crate) use trivial::trivial_equations;
 
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
 use crate::name::Ident;
@@ -26,7 +26,7 @@ const ATTRIBUTES: &[&str] =
     &["quantity", "unit", "displayUnit", "min", "max", "start", "fixed", "nominal", "stateSelect"];
 
 /// A flat model as text.
-pub(in crate::script) fn flat_text(model: &FlatModel) -> String {
+pub(crate) fn flat_text(model: &FlatModel) -> String {
     let writer = Writer { apart: Apart(model), numbers: Numbers(model) };
     let functions = model.functions.values().filter(|function| !is_of_language(function));
     let mut text: String = functions.map(|function| function_text(function)).collect();
@@ -223,9 +223,9 @@ fn positions(dims: &[usize]) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use crate::script::Session;
-    use crate::script::world::MemoryWorld;
+    use crate::Session;
     use crate::value::Value;
+    use crate::world::MemoryWorld;
 
     fn instantiated(model: &str) -> String {
         let mut session = Session::new(Box::new(MemoryWorld::new()));

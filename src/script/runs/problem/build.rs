@@ -11,6 +11,7 @@ use super::inputs::Undecided;
 use super::operators::{self, Named};
 use super::segments::Segment;
 use super::{experiment, own_fitness};
+use crate::Session;
 use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::ga::optimizer::METHODS;
@@ -22,7 +23,6 @@ use crate::identify::problem::{
 };
 use crate::mat::MatFile;
 use crate::registry::{self, BAD_OPTION, Options};
-use crate::script::Session;
 use crate::source::Span;
 use crate::{bail, fault, results};
 use indexmap::IndexMap;

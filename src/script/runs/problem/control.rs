@@ -4,9 +4,9 @@
 //! Names are those of the method (`mutation`, `elites`, …), `generations`, `evaluations` and
 //! `seconds` of the stop conditions, and `"min NAME"` and `"max NAME"` of the search ranges.
 
+use crate::Session;
 use crate::identify::problem::Run;
-use crate::script::Session;
-use crate::script::world::Stamp;
+use crate::world::Stamp;
 use indexmap::IndexMap;
 use std::path::PathBuf;
 

@@ -2,16 +2,16 @@
 //! ranges are guessed from the model.
 
 use super::{build, file};
+use crate::Session;
 use crate::bail;
 use crate::codegen::ParameterInfo;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
 use crate::mat::{self, Kind, MatFile, Matrix};
+use crate::models::simulation;
+use crate::models::simulation::Translated;
 use crate::registry::BAD_OPTION;
 use crate::results;
-use crate::script::Session;
-use crate::script::models::simulation;
-use crate::script::models::simulation::Translated;
 use crate::source::Span;
 use crate::syntax::ast::CausalityPrefix;
 use crate::units::written;

@@ -4,10 +4,10 @@
 //! there.
 
 use super::file::ValueEntry;
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
+use crate::models::classes::Enclosing;
 use crate::name::{Ident, Name};
-use crate::script::Session;
-use crate::script::models::classes::Enclosing;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::{
     Argument, Binding, ClassDefinition, ClassSpecifier, ComponentReference, Element,

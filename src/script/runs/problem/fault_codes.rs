@@ -22,7 +22,7 @@ const CONSECUTIVE: usize = 3;
 const ABRUPT: f64 = 0.5;
 
 /// Sentences about codes that are used as numbers, in the rows of a column.
-pub(in crate::script::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
+pub(in crate::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
     // One code must not hide another: 9999 for a short circuit beside -9999 for an open one.
     let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| CODES.contains(v));
     let sentence = |code: f64| {
@@ -42,7 +42,7 @@ pub(in crate::script::runs) fn codes(name: &str, column: &Column) -> Vec<String>
 }
 
 /// A sentence about each end of the values at which a measured signal may have been cut off.
-pub(in crate::script::runs) fn cut_off(name: &str, column: &Column) -> Vec<String> {
+pub(in crate::runs) fn cut_off(name: &str, column: &Column) -> Vec<String> {
     let known: Vec<(usize, f64)> = column.known().collect();
     let Some(ends) = ends(&known) else { return Vec::new() };
     let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();

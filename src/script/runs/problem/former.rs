@@ -1,9 +1,9 @@
 //! Results of a problem that has changed since: its new results do not replace them.
 
+use crate::Session;
 use crate::diag::Fault;
 use crate::identify::problem::{Origins, listed};
-use crate::script::Session;
-use crate::script::runs::checkpoint::numbered;
+use crate::runs::checkpoint::numbered;
 use std::path::Path;
 
 /// What the results in a folder depend on.

@@ -4,10 +4,10 @@
 use super::file::{Column, ProblemFile};
 use super::inputs::{Between, Undecided};
 use super::searches::{Again, Change};
+use crate::Session;
 use crate::diag::Fault;
 use crate::identify::problem::{EndingKind, Finding, FindingKind, Run, Severity, Solution};
 use crate::identify::significant;
-use crate::script::Session;
 
 /// Objectives that differ by less than this part are equal: these data do not show the difference.
 const EQUAL: f64 = 1e-3;

@@ -5,7 +5,7 @@
 //! invariants are the left null vectors of the matrix of these factors, which for a reaction
 //! network is the stoichiometric matrix.
 //!
-//! Reference: [Heinrich & Schuster 1996](crate::bibliography#heinrich-schuster-1996), §3.1.
+//! Reference: [Heinrich & Schuster 1996](gapilib_base::bibliography#heinrich-schuster-1996), §3.1.
 
 use crate::causalize::{Block, CausalizedDae};
 use crate::lower::Kind;

@@ -1,8 +1,8 @@
 //! What the user sees of a run while it goes on, and what he may change then.
 
+use crate::Session;
 use crate::identify::problem::Run;
-use crate::script::Session;
-use crate::script::runs::view::{Fitted, Progress, Spread, View, labelled};
+use crate::runs::view::{Fitted, Progress, Spread, View, labelled};
 
 /// What a pause explains.
 const HELP: &str = "\

@@ -27,9 +27,9 @@ mod inputs;
 mod interpolation;
 mod invariants;
 mod live;
-pub(in crate::script) mod operators;
+pub(crate) mod operators;
 mod own_fitness;
-pub(in crate::script) mod own_function;
+pub(crate) mod own_function;
 mod parameters;
 mod places;
 mod record;
@@ -43,6 +43,7 @@ mod sigma;
 mod time_axis;
 
 use super::checkpoint::{self, Checkpoint, keep_old};
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::problem::{
     self as solving, EndingKind, Importance, ModelSimulator, Origins, Run, Simulate, Solution,
@@ -50,7 +51,6 @@ use crate::identify::problem::{
 };
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
-use crate::script::Session;
 use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
@@ -134,7 +134,7 @@ pub fn solve(
 /// # Errors
 ///
 /// As [`solve`].
-pub(in crate::script) fn solve_record(
+pub(crate) fn solve_record(
     session: &mut Session,
     record: &RecordValue,
     options: &RunOptions,

@@ -3,6 +3,7 @@
 
 use super::file::{OperatorEntry, ProblemFile};
 use super::own_function::{Around, OwnFunction, function};
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
 use crate::fault;
@@ -10,7 +11,6 @@ use crate::ga::errors::BAD_OPERATOR;
 use crate::ga::operators::{self, Kind, Size};
 use crate::ga::optimizer::{METHODS, Method};
 use crate::registry::{self, BAD_OPTION, Choice, Entry, Options};
-use crate::script::Session;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -98,7 +98,7 @@ fn without(entry: &Entry<dyn Method>, kind: &str) -> Fault {
 /// # Errors
 ///
 /// `bad-operator`, with the declaration that is wanted.
-pub(in crate::script) fn check(kind: &Kind, name: &str, function: &Function) -> Result<(), Fault> {
+pub(crate) fn check(kind: &Kind, name: &str, function: &Function) -> Result<(), Fault> {
     let found = [function.inputs.len(), function.outputs.len()];
     let wanted = [kind.signature.inputs.len(), kind.signature.outputs.len()];
     if found == wanted {

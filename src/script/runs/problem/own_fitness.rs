@@ -2,12 +2,12 @@
 //! points, and of their weights if it wants them.
 
 use super::own_function::{Around, OwnFunction, function};
+use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::FAILED_FITNESS;
 use crate::identify::fitness::Fitness;
 use crate::identify::problem::Series;
 use crate::registry::{BAD_OPTION, UserFunction};
-use crate::script::Session;
 use crate::source::Span;
 
 /// The output of the model around the function.

@@ -3,14 +3,14 @@
 //! A function is compiled as part of a model whose parameters are its inputs, so that it may use
 //! whatever functions of models may use, and runs on every thread.
 
+use crate::Session;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function};
 use crate::identify::{CompiledModel, Instance, Model};
+use crate::models::simulation;
 use crate::name::Name;
 use crate::registry::{BAD_OPTION, UserFunction};
-use crate::script::Session;
-use crate::script::models::simulation;
 use crate::sim::{Settings, Simulator, Trajectory};
 use crate::source::Span;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -46,7 +46,7 @@ struct Worker {
 }
 
 /// The function of this name, if one is loaded.
-pub(in crate::script) fn function(
+pub(crate) fn function(
     session: &mut Session,
     name: &str,
 ) -> Result<Option<Arc<Function>>, Diagnostic> {

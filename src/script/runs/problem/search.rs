@@ -3,10 +3,10 @@
 
 use super::control::Watched;
 use super::live::{self, Live};
+use crate::Session;
 use crate::diag::Fault;
 use crate::identify::problem::{self as solving, Run};
-use crate::script::Session;
-use crate::script::runs::checkpoint::Checkpoint;
+use crate::runs::checkpoint::Checkpoint;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

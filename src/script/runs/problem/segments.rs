@@ -6,8 +6,8 @@ use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, SegmentsEn
 use super::time_axis::{self, Origin};
 use crate::diag::{At as _, Diagnostic, Fault};
 use crate::mat::{Column, MatFile};
+use crate::models::translated::Translated;
 use crate::registry::BAD_OPTION;
-use crate::script::models::translated::Translated;
 use crate::{bail, fault};
 use std::ops::Range;
 

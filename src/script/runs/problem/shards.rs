@@ -2,13 +2,13 @@
 //! the merged run takes them from there.
 
 use super::RunOptions;
+use crate::Session;
+use crate::access::policy::Grant;
 use crate::diag::Fault;
 use crate::identify::problem::{
     Origins, Parts, Run, Shard, ShardFile, decode, listed, missing_shards, without_times,
 };
 use crate::registry::BAD_OPTION;
-use crate::script::Session;
-use crate::script::access::policy::Grant;
 use crate::{bail, fault};
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! Problems in files: what experiments can set, and runs that are interrupted.
 
 use super::*;
-use crate::script::world::{Files as _, MemoryWorld};
 use crate::value::FromValue as _;
+use crate::world::{Files as _, MemoryWorld};
 
 mod inference;
 mod values;
@@ -37,11 +37,11 @@ fn world(files: &[(&str, String)]) -> MemoryWorld {
 
 /// A world with the libraries of the program, which have the tables that inputs follow.
 fn shipped(world: MemoryWorld, path: &Path) -> MemoryWorld {
-    let inside = Path::new(crate::models::FOLDER).join(path);
-    if let Some(bytes) = crate::models::read(&inside) {
+    let inside = Path::new(crate::packages::FOLDER).join(path);
+    if let Some(bytes) = crate::packages::read(&inside) {
         return world.with_file(path, bytes);
     }
-    let names = crate::models::list(&inside).unwrap_or_default();
+    let names = crate::packages::list(&inside).unwrap_or_default();
     names.iter().fold(world, |world, name| shipped(world, &path.join(name)))
 }
 
@@ -253,7 +253,7 @@ fn a_result_file_of_dymola_gives_its_parameters_back() {
 fn with_records(world: MemoryWorld) -> MemoryWorld {
     ["package.mo", "Problem.mo", "Free.mo", "Experiment.mo"].iter().fold(world, |world, name| {
         let path = Path::new("GAPILib").join(name);
-        let bytes = crate::models::read(&Path::new(crate::models::FOLDER).join(&path)).unwrap();
+        let bytes = crate::packages::read(&Path::new(crate::packages::FOLDER).join(&path)).unwrap();
         world.with_file(path, bytes)
     })
 }

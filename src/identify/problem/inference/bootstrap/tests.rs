@@ -15,7 +15,7 @@ fn bootstrapped(resampling: Resampling, interval: IntervalKind, threads: usize) 
     problem.inference.bootstrap = Some(BootstrapSettings { samples: 1000, resampling, interval });
     let mut run = finished(problem);
     if threads > 1 {
-        run.evaluation = crate::identify::problem::Evaluation::new(&run.problem, threads).unwrap();
+        run.evaluation = crate::problem::Evaluation::new(&run.problem, threads).unwrap();
     }
     let best = run.best.as_ref().unwrap().values.clone();
     let square: f64 = x.iter().zip(&y).map(|(x, y)| (y - line(&best, *x)).powi(2)).sum();

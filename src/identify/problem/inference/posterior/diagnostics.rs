@@ -1,10 +1,10 @@
 //! Whether Markov chains have converged: rank-normalized split R-hat and effective sample sizes.
 //!
-//! Reference: [Vehtari et al. 2021](crate::bibliography#vehtari-2021); the sums of correlations end
+//! Reference: [Vehtari et al. 2021](gapilib_base::bibliography#vehtari-2021); the sums of correlations end
 //! by Geyer's initial monotone sequence.
 
 use crate::elementary;
-use crate::identify::problem::distributions::normal_quantile;
+use crate::problem::distributions::normal_quantile;
 
 /// The larger of rank-normalized split R-hat and that of the folded draws; 1 where the chains
 /// cannot be distinguished. NaN for chains that never moved or of fewer than 4 draws.

@@ -8,7 +8,7 @@
 //! reached. Each chain has random numbers and a simulator of its own: threads do not matter, and a
 //! resumed run draws the same chains anew.
 //!
-//! Reference: [Gelman et al. 2013](crate::bibliography#gelman-2013), chapters 3, 11 and 12.
+//! Reference: [Gelman et al. 2013](gapilib_base::bibliography#gelman-2013), chapters 3, 11 and 12.
 
 pub mod diagnostics;
 mod sampler;
@@ -17,10 +17,8 @@ use super::{Distribution, Local};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::{
-    ErrorModel, Evaluation, Free, Problem, Run, Simulate, other_shards,
-};
-use crate::identify::table::significant;
+use crate::problem::{ErrorModel, Evaluation, Free, Problem, Run, Simulate, other_shards};
+use crate::table::significant;
 use nalgebra::DMatrix;
 use sampler::{Chain, Drawn};
 use serde::{Deserialize, Serialize};
@@ -394,10 +392,7 @@ impl Posterior {
 
     /// `posterior.csv`: draws of all chains, evenly thinned.
     pub fn csv(&self) -> String {
-        crate::identify::table::table_csv(
-            self.parameters.iter().map(|p| p.name.as_str()),
-            &self.rows,
-        )
+        crate::table::table_csv(self.parameters.iter().map(|p| p.name.as_str()), &self.rows)
     }
 }
 

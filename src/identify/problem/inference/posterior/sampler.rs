@@ -5,8 +5,8 @@
 //! stays. The covariance adapts during warm-up alone, so that the draws kept are those of a Markov
 //! chain with the right limit.
 //!
-//! References: [Haario et al. 2006](crate::bibliography#haario-2006);
-//! [Gelman, Roberts & Gilks 1996](crate::bibliography#gelman-1996) (the scale).
+//! References: [Haario et al. 2006](gapilib_base::bibliography#haario-2006);
+//! [Gelman, Roberts & Gilks 1996](gapilib_base::bibliography#gelman-1996) (the scale).
 
 use crate::elementary;
 use crate::ga::Mrg32k3a;

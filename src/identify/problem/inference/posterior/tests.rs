@@ -3,7 +3,7 @@
 use super::super::infer;
 use super::super::tests::{finished, noise, problem, student_quantile};
 use super::*;
-use crate::identify::problem::{Evaluation, Sigma};
+use crate::problem::{Evaluation, Sigma};
 
 fn chains(
     target: fn(&[f64]) -> f64,

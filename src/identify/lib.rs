@@ -1,0 +1,47 @@
+//! Identification: simulates whole populations, compares them with measured data, and says at the
+//! end what was found and what the data cannot tell.
+
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
+
+// Modules and macros of lower crates, under the names that they have there.
+pub(crate) use gapilib_base::{
+    bail, codes, diag, elementary, fault, page, plot, registry, singular_values, source,
+};
+pub(crate) use gapilib_modelica::{codegen, runtime};
+pub(crate) use gapilib_numerics::{ga, results, sim};
+
+pub mod errors;
+pub mod fitness;
+pub mod problem;
+pub mod ranks;
+
+mod evaluation;
+#[cfg(test)]
+mod evaluation_tests;
+mod generation;
+mod model;
+mod objective;
+mod plan;
+mod points;
+mod pointwise;
+mod probe;
+#[cfg(test)]
+mod problems;
+mod program;
+mod recorder;
+mod report;
+mod seeds;
+mod study;
+mod table;
+mod uncertainty;
+
+pub use evaluation::{Evaluator, FailedSimulation, Question, Simulated};
+pub use model::{Instance, Model, Parameter, PortableModel};
+pub use objective::Objective;
+pub use points::{Path, time_of};
+pub use probe::{Ending, Probe};
+pub use program::CompiledModel;
+pub use recorder::{Best, Recorder};
+pub use study::{Compared, Measurement, Quantity, Study};
+pub use table::significant;
+pub use uncertainty::{Uncertainty, error_of_combination, uncertainty, uncertainty_given};

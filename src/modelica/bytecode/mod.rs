@@ -1,0 +1,33 @@
+//! Functions as instructions on registers, and the [`Machine`] that runs them.
+//!
+//! A [`Code`] is a function for arguments of known sizes: every scalar of its inputs, outputs and
+//! variables is a register of its frame. Booleans are 0 and 1, Integers and ordinals whole numbers.
+//! One loop runs the instructions on any [`Number`]: on `f64` for values, on [`Dual`] numbers for
+//! derivatives (forward accumulation, [Griewank & Walther 2008](gapilib_base::bibliography#griewank-2008)),
+//! on dual numbers of dual numbers for second derivatives.
+//!
+//! ```text
+//! frame   inputs | outputs, variables, temporaries and constants in any order
+//! stack   frame of the caller | frame of the callee | …
+//! ```
+//!
+//! A register that nothing was assigned to holds NaN; whoever decides by it, or returns it, fails.
+
+mod code;
+mod elementary;
+mod external;
+mod failure;
+mod machine;
+mod memo;
+mod number;
+mod run_time_texts;
+mod validation;
+
+pub use crate::external::Journal;
+pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};
+pub use elementary::Elementary;
+pub use external::{Externals, RunExternal};
+pub use failure::{Failure, Reason};
+pub use machine::Machine;
+pub use number::{Dual, Number};
+pub use run_time_texts::Texts;

@@ -1,0 +1,251 @@
+//! Descents of least squares from several starts: how each ended, which of them reached the same
+//! minimum, and whether further starts are worth their cost.
+//!
+//! Reference: [Boender & Rinnooy Kan 1987](gapilib_base::bibliography#boender-rinnooy-kan-1987): where n
+//! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
+
+use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
+use super::{Answers, DescentEnd, DescentReport, Wants};
+use crate::elementary;
+use crate::ga::Genomes;
+
+/// Descents from different starts that must agree before a search ends early.
+const AGREEING: usize = 3;
+/// So many where the best minimum stands at a bound, and where it fits badly. All descents may end beside
+/// a good minimum with a small basin: oscillations that none has found are fitted best by a slow drift at
+/// the bounds.
+const AGREEING_AT_BOUND: usize = 8;
+const AGREEING_IF_BAD: usize = 15;
+/// So many where none of them ended at a minimum by its gradient: at a kink, on a flat part, within the
+/// errors of the simulation.
+const UNTESTED: usize = 8;
+/// A minimum that leaves more than this part of the squares of the measured values fits badly.
+const BAD: f64 = 0.1;
+/// Minima not found yet, expected, above which a search goes on.
+const MISSING: f64 = 1.0;
+/// Where the best of so many descents has ended at no minimum, and the last ones have not improved on
+/// it by this part, further ones will not come to one either: derivatives vanish or jump there, or a
+/// constraint is in the way.
+const STUCK: usize = 30;
+const LAST: usize = 15;
+const IMPROVED: f64 = 1e-3;
+/// Steps of a descent in one round; most of the problems of NIST need fewer.
+const STEPS: usize = 40;
+/// Steps to make the best minimum finer.
+const FINE_STEPS: usize = 100;
+
+/// All descents of a search; those of a round are asked together, trials first, then Jacobians.
+pub struct Pool {
+    descents: Vec<Descent>,
+    /// Whether each began at a point that owes nothing to other descents.
+    independent: Vec<bool>,
+    active: Vec<usize>,
+    /// Individuals that each of the active ones asked in the last question.
+    shares: Vec<usize>,
+    wants: Wants,
+    accuracy: Accuracy,
+    /// Descents and the smallest sum of squares at the begin of each round.
+    rounds: Vec<(usize, f64)>,
+}
+
+impl Pool {
+    pub fn new(accuracy: Accuracy) -> Pool {
+        Pool {
+            descents: Vec::new(),
+            independent: Vec::new(),
+            active: Vec::new(),
+            shares: Vec::new(),
+            wants: Wants::Jacobians,
+            accuracy,
+            rounds: Vec::new(),
+        }
+    }
+
+    /// Begins a round: descends from these starts, goes on with the best of the descents whose steps
+    /// were used up, and makes the best minimum finer. The first `independent` starts owe nothing
+    /// to earlier descents.
+    pub fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
+        self.active.clear();
+        self.rounds.push((self.descents.len(), self.smallest()));
+        let open = |k: &usize| !self.descents[*k].has_ended();
+        if let Some(open) = self.smallest_of(open) {
+            self.descents[open].grant(STEPS, COARSE);
+            self.active.push(open);
+        }
+        self.refine();
+        for (number, start) in starts.into_iter().enumerate() {
+            self.active.push(self.descents.len());
+            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            self.independent.push(number < independent);
+        }
+        self.shares = vec![0; self.active.len()];
+    }
+
+    /// Goes on with the best descent where it can come nearer to its minimum.
+    fn refine(&mut self) {
+        if let Some(best) = self.best().filter(|best| self.descents[*best].can_be_refined()) {
+            self.descents[best].grant(FINE_STEPS, FINE);
+            self.active.push(best);
+        }
+    }
+
+    /// Goes on with the best minimum alone; whether there is anything to do.
+    pub fn finish(&mut self) -> bool {
+        self.active.clear();
+        self.refine();
+        self.shares = vec![0; self.active.len()];
+        !self.active.is_empty()
+    }
+
+    /// Asks for the next individuals; without any the round is over.
+    pub fn ask(&mut self, batch: &mut Genomes) {
+        for wants in [Wants::Residuals, Wants::Jacobians] {
+            self.wants = wants;
+            for (&k, share) in self.active.iter().zip(&mut self.shares) {
+                let before = batch.len();
+                if self.descents[k].wants_now() == wants {
+                    self.descents[k].ask_next(batch);
+                }
+                *share = batch.len() - before;
+            }
+            if !batch.is_empty() {
+                return;
+            }
+        }
+        self.active.clear();
+    }
+
+    pub fn wants(&self) -> Wants {
+        self.wants
+    }
+
+    pub fn tell(&mut self, count: usize, answers: &Answers<'_>) {
+        let mut first = 0;
+        for (&k, &share) in self.active.iter().zip(&self.shares) {
+            if share > 0 {
+                self.descents[k].take(&answers.part(first, first + share, count));
+                first += share;
+            }
+        }
+    }
+
+    /// Forgets everything, as the ranges have changed.
+    pub fn clear(&mut self) {
+        *self = Pool::new(self.accuracy);
+    }
+
+    /// The descent with the smallest sum of squares.
+    fn best(&self) -> Option<usize> {
+        self.smallest_of(|_| true)
+    }
+
+    fn smallest_of(&self, is_meant: impl Fn(&usize) -> bool) -> Option<usize> {
+        let sum = |k: &usize| self.descents[*k].sum();
+        (0..self.descents.len())
+            .filter(|k| sum(k).is_finite() && is_meant(k))
+            .min_by(|a, b| sum(a).total_cmp(&sum(b)))
+    }
+
+    /// Where the best descent stands.
+    pub fn best_place(&self) -> Option<&[f64]> {
+        self.best().map(|best| self.descents[best].places()[1])
+    }
+
+    /// The smallest sum of squares.
+    pub fn smallest(&self) -> f64 {
+        self.best().map_or(f64::INFINITY, |best| self.descents[best].sum())
+    }
+
+    /// Where descents have started and ended.
+    pub fn visited(&self) -> impl Iterator<Item = &[f64]> {
+        self.descents.iter().flat_map(Descent::places)
+    }
+
+    /// The number of the end of each descent, in the order of the sums of squares.
+    fn groups(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.descents.len()).collect();
+        order.sort_by(|a, b| self.descents[*a].sum().total_cmp(&self.descents[*b].sum()));
+        let mut groups = vec![0; order.len()];
+        let mut first: Vec<usize> = Vec::new();
+        for k in order {
+            let known = first.iter().position(|&one| self.descents[one].agrees(&self.descents[k]));
+            groups[k] = known.unwrap_or(first.len());
+            if known.is_none() {
+                first.push(k);
+            }
+        }
+        groups
+    }
+
+    /// Whether further descents are not worth their cost: the best minimum was reached often enough,
+    /// and few others can be expected; or none comes to a minimum.
+    pub fn is_enough(&self) -> bool {
+        self.is_reached_often() || self.is_stuck()
+    }
+
+    fn is_stuck(&self) -> bool {
+        let Some(best) = self.best().map(|best| &self.descents[best]) else { return false };
+        let count = self.descents.len();
+        let before = self.rounds.iter().rfind(|(begun, _)| begun + LAST <= count);
+        let is_better = |sum: f64| best.sum() < (1.0 - IMPROVED) * sum;
+        let has_ended = best.has_ended() && best.report().ending != DescentEnd::Minimum;
+        has_ended && count >= STUCK && before.is_some_and(|(_, sum)| !is_better(*sum))
+    }
+
+    fn is_reached_often(&self) -> bool {
+        // Descents from beside others are no evidence.
+        let all = self.reports().into_iter().zip(&self.independent);
+        let reports: Vec<DescentReport> =
+            all.filter(|(_, independent)| **independent).map(|(report, _)| report).collect();
+        let reached = reached(&reports);
+        // Where the gradient does not show the minimum, the steps of a descent end there, too.
+        let is_there = |report: &&DescentReport| reached == 0 && report.group == 0;
+        let ended = reports.iter().filter(|report| match report.ending {
+            DescentEnd::Failed => false,
+            DescentEnd::StepLimit => is_there(report),
+            _ => true,
+        });
+        let n = ended.clone().count();
+        let mut different: Vec<usize> = ended.map(|report| report.group).collect();
+        different.sort_unstable();
+        different.dedup();
+        let (n, w) = (n as f64, different.len() as f64);
+        let expected = w * (n - 1.0) / (n - w - 2.0);
+        let agreeing = self.agreeing();
+        let agree = match reached {
+            0 => {
+                let has_ended = self.best().is_some_and(|best| self.descents[best].has_ended());
+                has_ended && reports.iter().filter(is_there).count() >= agreeing.max(UNTESTED)
+            }
+            count => count >= agreeing,
+        };
+        agree && n > w + 2.0 && expected <= w + MISSING
+    }
+
+    /// How many descents must agree on the best minimum.
+    fn agreeing(&self) -> usize {
+        let Some(best) = self.best().map(|best| &self.descents[best]) else { return AGREEING };
+        if best.sum() > BAD * elementary::powi(self.accuracy.size, 2) {
+            AGREEING_IF_BAD
+        } else if best.is_held() {
+            AGREEING_AT_BOUND
+        } else {
+            AGREEING
+        }
+    }
+
+    pub fn reports(&self) -> Vec<DescentReport> {
+        let groups = self.groups();
+        let report =
+            |(descent, group): (&Descent, usize)| DescentReport { group, ..descent.report() };
+        self.descents.iter().zip(groups).map(report).collect()
+    }
+}
+
+/// Descents that ended at the best minimum; 0 where the best is none.
+pub fn reached(reports: &[DescentReport]) -> usize {
+    reports
+        .iter()
+        .filter(|report| report.group == 0 && report.ending == DescentEnd::Minimum)
+        .count()
+}

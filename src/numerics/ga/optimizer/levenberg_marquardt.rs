@@ -1,0 +1,443 @@
+//! Levenberg-Marquardt as a trust-region method with bounds: steps of Gauss and Newton within a
+//! region that grows and shrinks by how well the linear model predicts, Moré's scaling, genes held at
+//! a bound while the gradient points outwards, and geodesic acceleration where the residuals are
+//! strongly curved. A descent goes on until it ends by itself or its steps are used up; then it can
+//! be continued.
+//!
+//! References: [Moré 1978](gapilib_base::bibliography#more-1978);
+//! [Transtrum & Sethna 2012](gapilib_base::bibliography#transtrum-sethna-2012) (acceleration);
+//! [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §10.3.
+
+use super::linear_model::{LinearModel, Offset, Step};
+use super::{Answers, DescentEnd, DescentReport, Method, Optimizer, Setup, Wants};
+use crate::diag::Fault;
+use crate::elementary;
+use crate::ga::Genomes;
+use crate::registry::Entry;
+use nalgebra::DVector;
+
+/// The table entry.
+pub const ENTRY: Entry<dyn Method> = Entry {
+    name: "levenberg_marquardt",
+    aliases: &["lm", "levenberg-marquardt"],
+    summary: "nonlinear least squares from one point: the start values if given, otherwise the \
+              middle of the ranges",
+    reference: "more-1978",
+    make: |options| {
+        Ok(Box::new(LevenbergMarquardt { steps: options.take_whole("steps", 1.0..=1e6, 2000.0)? }))
+    },
+};
+
+/// Relative offset below which a point is a minimum; Bates and Watts' choice: the parameters lie
+/// within a thousandth of their standard errors.
+pub const MINIMUM: f64 = 1e-3;
+/// Relative offset at which the best descent stops: parameters to 1e-7 of their standard errors.
+pub const FINE: f64 = 1e-7;
+/// Relative offset at which the others stop. Problems with large residuals converge slowly from here
+/// (ENSO takes as many steps again).
+pub const COARSE: f64 = 3e-4;
+/// A minimum whose residuals come near to the errors of the simulation can be told to this offset at
+/// best (Lanczos1: residuals of 1e-13).
+const COARSEST: f64 = 0.02;
+/// A scale falls at most by this factor in a step; with scales that never fall, MGH10 and Eckerle4
+/// stop far from the minimum.
+const FORGET: f64 = 0.3;
+/// Without degrees of freedom, and where the residuals are those of rounding, a minimum is where the
+/// step of Gauss and Newton is below this part of the ranges.
+const SMALL_STEP: f64 = 1e-8;
+/// Changes of the sum of squares below this, relative, are those of rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// The first region reaches this part of the ranges.
+const FIRST: f64 = 0.3;
+/// Length of the probe of the curvature, as a part of the step; Transtrum and Sethna's choice.
+const PROBE: f64 = 0.1;
+/// Accelerations beyond this part of the step are not trusted; their choice.
+const TRUSTED: f64 = 0.75;
+/// Steps that fell short of the prediction before curvature is probed.
+const CURVED: u32 = 2;
+
+struct LevenbergMarquardt {
+    steps: usize,
+}
+
+impl Method for LevenbergMarquardt {
+    fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
+        let start = setup.start.clone().unwrap_or_else(|| vec![0.5; setup.genes.len()]);
+        Ok(Box::new(Descent::new(start, Accuracy::of(&setup), self.steps, FINE)))
+    }
+
+    fn needs_residuals(&self) -> bool {
+        true
+    }
+
+    fn can_be_polished(&self) -> bool {
+        false
+    }
+}
+
+/// How exact the answers are.
+#[derive(Debug, Clone, Copy)]
+pub struct Accuracy {
+    /// Relative error of the simulated values.
+    pub(super) noise: f64,
+    /// Root of the sum of squares of the measured values, weighted as the residuals are.
+    pub(super) size: f64,
+}
+
+impl Accuracy {
+    pub fn of(setup: &Setup) -> Accuracy {
+        Accuracy { noise: setup.noise, size: setup.size }
+    }
+
+    /// Below this the residuals are those of rounding, or of the simulator's tolerance.
+    fn floor(self) -> f64 {
+        self.size * (self.noise * 1e-3).max(1e-16)
+    }
+
+    /// Singular values below this are those of errors of the derivatives.
+    pub fn rank_tolerance(self) -> f64 {
+        elementary::powf(self.noise, 2.0 / 3.0).clamp(1e-9, 1e-4)
+    }
+}
+
+/// What was asked last.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    Start,
+    Jacobian,
+    Probe,
+    Trial,
+}
+
+/// One descent.
+pub struct Descent {
+    start: Vec<f64>,
+    x: Vec<f64>,
+    sum: f64,
+    residuals: Vec<f64>,
+    jacobian: Vec<f64>,
+    model: Option<LinearModel>,
+    scales: Vec<f64>,
+    accuracy: Accuracy,
+    radius: f64,
+    step: Option<Step>,
+    trial: Vec<f64>,
+    /// Steps left, and taken.
+    left: usize,
+    taken: u64,
+    /// Steps in a row that fell short of the prediction.
+    curved: u32,
+    asked: Asked,
+    offset: Option<Offset>,
+    /// The relative offset at which it stops.
+    goal: f64,
+    end: Option<DescentEnd>,
+}
+
+impl Descent {
+    pub fn new(start: Vec<f64>, accuracy: Accuracy, steps: usize, goal: f64) -> Descent {
+        Descent {
+            x: start.clone(),
+            trial: start.clone(),
+            scales: vec![0.0; start.len()],
+            start,
+            sum: f64::INFINITY,
+            residuals: Vec::new(),
+            jacobian: Vec::new(),
+            model: None,
+            accuracy,
+            radius: 0.0,
+            step: None,
+            left: steps,
+            taken: 0,
+            curved: 0,
+            asked: Asked::Start,
+            offset: None,
+            goal,
+            end: None,
+        }
+    }
+
+    /// Whether it has ended by itself.
+    pub fn has_ended(&self) -> bool {
+        self.end.is_some()
+    }
+
+    /// Allows further steps, up to a relative offset; one that has ended at a minimum goes on where
+    /// it has not been as near.
+    pub fn grant(&mut self, steps: usize, goal: f64) {
+        self.left = steps;
+        if goal < self.goal && self.end == Some(DescentEnd::Minimum) {
+            self.goal = goal;
+            self.end = None;
+            self.judge();
+        }
+        self.goal = self.goal.min(goal);
+    }
+
+    /// Whether a finer goal is open to it.
+    pub fn can_be_refined(&self) -> bool {
+        self.end == Some(DescentEnd::Minimum) && self.goal > FINE
+    }
+
+    /// Whether a bound holds a gene where it stands.
+    pub fn is_held(&self) -> bool {
+        self.offset.is_some_and(|offset| offset.held > 0)
+    }
+
+    /// The sum of squares where it stands.
+    pub fn sum(&self) -> f64 {
+        self.sum
+    }
+
+    /// Where it started, where it stands and how it ended.
+    pub fn report(&self) -> DescentReport {
+        DescentReport {
+            start: self.start.clone(),
+            end: self.x.clone(),
+            objective: self.sum,
+            ending: self.end.unwrap_or(DescentEnd::StepLimit),
+            offset: self.offset.and_then(|offset| offset.relative),
+            steps: self.taken,
+            group: 0,
+        }
+    }
+
+    /// Whether another descent has ended at the same minimum: the sums of squares agree, and so do
+    /// the places, by their effect on the residuals, or the residuals themselves where the data do
+    /// not determine the place.
+    pub fn agrees(&self, other: &Descent) -> bool {
+        let (Some(model), Some(offset)) = (&self.model, self.offset) else { return false };
+        let floor = self.accuracy.floor().max(self.accuracy.noise * self.accuracy.size);
+        let freedom = self.residuals.len().saturating_sub(offset.rank).max(1);
+        let error = (self.sum / freedom as f64).sqrt();
+        let near = AGREED * error + floor;
+        if (self.sum - other.sum).abs() > AGREED * AGREED * self.sum + floor * floor {
+            return false;
+        }
+        let is_deficient = offset.rank + offset.held < self.x.len();
+        if is_deficient {
+            let square = |(a, b): (&f64, &f64)| (a - b) * (a - b);
+            let apart: f64 = self.residuals.iter().zip(&other.residuals).map(square).sum();
+            return apart.sqrt() <= near * (freedom as f64).sqrt();
+        }
+        let apart = self.x.iter().zip(&other.x).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        apart <= SAME_PLACE || model.distance(&self.x, &other.x) <= near
+    }
+
+    fn finish(&mut self, otherwise: DescentEnd) {
+        let is_minimum = self.offset.is_some_and(|offset| self.is_minimum(offset, MINIMUM));
+        self.end = Some(if is_minimum { DescentEnd::Minimum } else { otherwise });
+    }
+
+    fn is_minimum(&self, offset: Offset, limit: f64) -> bool {
+        is_minimum(&offset, self.sum.sqrt(), self.accuracy, limit)
+    }
+
+    fn take_jacobian(&mut self, answers: &Answers<'_>) {
+        self.jacobian = answers.jacobians.to_vec();
+        let tolerance = self.accuracy.rank_tolerance();
+        let model = LinearModel::new(&self.residuals, &self.jacobian, self.x.len(), tolerance);
+        let largest = model.norms.iter().copied().fold(0.0, f64::max);
+        let is_first = self.model.is_none();
+        for (scale, norm) in self.scales.iter_mut().zip(&model.norms) {
+            *scale = norm.max(FORGET * *scale).max(1e-12 * largest);
+        }
+        if is_first {
+            self.radius = FIRST * self.scales.iter().map(|d| d * d).sum::<f64>().sqrt();
+        }
+        let offset = model.offset(&self.x);
+        self.offset = Some(offset);
+        self.model = Some(model);
+        if largest == 0.0 && self.sum > 0.0 {
+            self.end = Some(DescentEnd::Flat);
+        } else {
+            self.judge();
+        }
+    }
+
+    /// Ends where the goal is reached; else the next step.
+    fn judge(&mut self) {
+        let is_reached = self.offset.is_some_and(|offset| self.is_minimum(offset, self.goal));
+        if is_reached {
+            self.end = Some(DescentEnd::Minimum);
+        } else {
+            self.propose();
+        }
+    }
+
+    /// The next step; ends where there is none that can be told from rounding.
+    fn propose(&mut self) {
+        let step = self.model.as_ref().and_then(|m| m.step(&self.x, &self.scales, self.radius));
+        let Some(step) = step else { return self.finish(DescentEnd::NoDescent) };
+        let moves = step.by.iter().zip(&self.x).any(|(by, x)| by.abs() > 1e-15 * x.max(1e-3));
+        if !moves || step.reduction <= ROUNDING * ROUNDING * self.sum {
+            return self.finish(DescentEnd::NoDescent);
+        }
+        self.set_trial(&step.by, 1.0);
+        self.asked = Asked::Trial;
+        if self.curved >= CURVED && step.damping > 0.0 {
+            self.set_trial(&step.by, PROBE);
+            self.asked = Asked::Probe;
+        }
+        self.step = Some(step);
+    }
+
+    fn set_trial(&mut self, by: &[f64], part: f64) {
+        for ((trial, x), by) in self.trial.iter_mut().zip(&self.x).zip(by) {
+            *trial = (x + part * by).clamp(0.0, 1.0);
+        }
+    }
+
+    /// Bends the step by its acceleration, found from the residuals a part of it away.
+    fn take_probe(&mut self, answers: &Answers<'_>) {
+        self.asked = Asked::Trial;
+        let Some(step) = self.step.take() else { return };
+        let by = self.bent(&step, answers.residuals).unwrap_or_else(|| step.by.clone());
+        self.set_trial(&by, 1.0);
+        self.step = Some(step);
+    }
+
+    fn bent(&self, step: &Step, probe: &[f64]) -> Option<Vec<f64>> {
+        let n = self.x.len();
+        let mut gradient = DVector::zeros(n);
+        for ((row, probe), r) in self.jacobian.chunks_exact(n).zip(probe).zip(&self.residuals) {
+            let linear: f64 = row
+                .iter()
+                .zip(&step.by)
+                .map(|(j, p)| if j.is_finite() { j * p } else { 0.0 })
+                .sum();
+            let second = 2.0 / PROBE * ((probe - r) / PROBE - linear);
+            for (g, j) in gradient.iter_mut().zip(row) {
+                *g += second * if j.is_finite() { *j } else { 0.0 };
+            }
+        }
+        let a = self.model.as_ref()?.acceleration(step, &self.scales, &gradient)?;
+        let length =
+            a.iter().zip(&self.scales).map(|(a, d)| elementary::powi(a * d, 2)).sum::<f64>().sqrt();
+        // Not finite where the probe failed.
+        let trusted = 2.0 * length <= TRUSTED * step.length;
+        trusted.then(|| step.by.iter().zip(&a).map(|(p, a)| p + 0.5 * a).collect())
+    }
+
+    fn take_trial(&mut self, answers: &Answers<'_>) {
+        self.left = self.left.saturating_sub(1);
+        self.taken += 1;
+        let Some(step) = self.step.take() else { return };
+        let sum: f64 = answers.residuals.iter().map(|r| r * r).sum();
+        let sum = if sum.is_finite() { sum } else { f64::INFINITY };
+        let gain = self.sum - sum;
+        let ratio = gain / step.reduction;
+        self.curved = if ratio < 0.25 { self.curved + 1 } else { self.curved };
+        if ratio <= 0.25 {
+            // Where the parabola through both values and the slope has its minimum, within limits.
+            let part = if sum.is_finite() { 0.5 / (1.0 - 0.5 * ratio) } else { 0.25 };
+            self.radius = part.clamp(0.1, 0.5) * step.length.min(self.radius);
+        } else if ratio >= 0.75 || step.damping == 0.0 {
+            self.radius = self.radius.max(2.0 * step.length);
+        }
+        if ratio > 1e-4 {
+            self.x.copy_from_slice(&self.trial);
+            self.residuals = answers.residuals.to_vec();
+            self.sum = sum;
+            self.asked = Asked::Jacobian;
+            return;
+        }
+        let error = self.accuracy.noise * self.accuracy.size * 1e-3 * self.sum.sqrt();
+        if step.reduction <= (ROUNDING * self.sum).max(error) {
+            return self.finish(DescentEnd::NoDescent);
+        }
+        self.propose();
+    }
+}
+
+/// Genes nearer than this are the same.
+const SAME_PLACE: f64 = 1e-5;
+/// Minima that differ by less than this part of a standard error are the same.
+const AGREED: f64 = 0.03;
+
+/// Whether a point with such an offset and residuals of such a length is a minimum.
+pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) -> bool {
+    if offset.blind || offset.rank == 0 && offset.held == 0 {
+        return false;
+    }
+    if length <= accuracy.floor() {
+        return true;
+    }
+    if offset.rank == 0 {
+        // Every gene stands at a bound and is held there.
+        return offset.flat == 0;
+    }
+    let error = accuracy.noise * accuracy.size / length;
+    match offset.relative {
+        Some(relative) if error < 1.0 => relative <= limit.max(error.min(COARSEST)),
+        _ => offset.step <= SMALL_STEP,
+    }
+}
+
+impl Descent {
+    /// What the next question wants to know.
+    pub fn wants_now(&self) -> Wants {
+        match self.asked {
+            Asked::Start | Asked::Jacobian => Wants::Jacobians,
+            Asked::Probe | Asked::Trial => Wants::Residuals,
+        }
+    }
+
+    /// Asks for one individual; for none when it has ended or its steps are used up.
+    pub fn ask_next(&self, batch: &mut Genomes) {
+        if self.end.is_some() || self.left == 0 && self.asked != Asked::Jacobian {
+            return;
+        }
+        match self.asked {
+            Asked::Start | Asked::Jacobian => batch.push(&self.x),
+            Asked::Probe | Asked::Trial => batch.push(&self.trial),
+        }
+    }
+
+    /// Takes the answers about it.
+    pub fn take(&mut self, answers: &Answers<'_>) {
+        match self.asked {
+            Asked::Start => {
+                self.sum = answers.residuals.iter().map(|r| r * r).sum();
+                self.residuals = answers.residuals.to_vec();
+                if self.sum.is_finite() {
+                    self.take_jacobian(answers);
+                } else {
+                    self.sum = f64::INFINITY;
+                    self.end = Some(DescentEnd::Failed);
+                }
+            }
+            Asked::Jacobian => self.take_jacobian(answers),
+            Asked::Probe => self.take_probe(answers),
+            Asked::Trial => self.take_trial(answers),
+        }
+    }
+
+    /// Where it started and where it stands.
+    pub fn places(&self) -> [&[f64]; 2] {
+        [&self.start, &self.x]
+    }
+}
+
+impl Optimizer for Descent {
+    fn ask(&mut self, batch: &mut Genomes) {
+        self.ask_next(batch);
+    }
+
+    fn tell(&mut self, _: &Genomes, answers: &Answers<'_>) {
+        self.take(answers);
+    }
+
+    fn wants(&self) -> Wants {
+        self.wants_now()
+    }
+
+    fn phase(&self) -> &'static str {
+        "least squares"
+    }
+
+    fn descents(&self) -> Vec<DescentReport> {
+        vec![self.report()]
+    }
+}

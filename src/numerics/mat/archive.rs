@@ -1,0 +1,75 @@
+//! How much a ZIP archive holds, without trusting what it says of itself: a spreadsheet of 1 MB may
+//! inflate to gigabytes.
+//!
+//! Every place with the signature of a local header is inflated into nothing, whatever the directory
+//! of the archive says of sizes and places: readers find no other entries than those.
+
+use flate2::read::DeflateDecoder;
+use std::io::{self, Read};
+
+/// With what the header of an entry begins.
+const LOCAL: &[u8] = b"PK\x03\x04";
+/// Bytes of a header before the name.
+const HEADER: usize = 30;
+
+/// The bytes that all entries have when they are inflated; `None` if they have more than `limit`.
+pub fn inflated(bytes: &[u8], limit: u64) -> Option<u64> {
+    let mut total = 0;
+    let mut rest = bytes;
+    while let Some(at) = rest.windows(LOCAL.len()).position(|window| window == LOCAL) {
+        total += size_of_entry(&rest[at..], limit - total + 1);
+        if total > limit {
+            return None;
+        }
+        rest = &rest[at + LOCAL.len()..];
+    }
+    Some(total)
+}
+
+/// The bytes that the entry with this header has when it is inflated, at most `most`.
+fn size_of_entry(header: &[u8], most: u64) -> u64 {
+    let length = |place: usize| match header.get(place..place + 2) {
+        Some(bytes) => usize::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        None => 0,
+    };
+    let Some(data) = header.get(HEADER + length(26) + length(28)..) else { return 0 };
+    let mut counted = Counted(0);
+    // What is not compressed or damaged is no longer than the file; its reader finds out.
+    let _ = io::copy(&mut DeflateDecoder::new(data).take(most), &mut counted);
+    counted.0
+}
+
+/// Counts what is written.
+struct Counted(u64);
+
+impl io::Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_archive_holds_is_counted() {
+        let file = include_bytes!("../../../tests/data/spreadsheet/table.xlsx");
+        let size = inflated(file, 1 << 20).expect("a small file");
+        assert!(size > 1000, "{size}");
+        assert_eq!(inflated(file, size), Some(size));
+        assert_eq!(inflated(file, size - 1), None);
+        for end in 0..file.len() {
+            assert!(inflated(&file[..end], 1 << 20).is_some(), "cut at {end}");
+        }
+        assert_eq!(inflated(b"", 0), Some(0));
+        // Another place than the one that a directory would name.
+        let moved = [b"MZ", &file[..]].concat();
+        assert_eq!(inflated(&moved, size - 1), None);
+    }
+}
