@@ -68,7 +68,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
-pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
+pub use importance::{Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use journal::{Journal, Record, decode, encode, header, without_times};
 pub use linearization::Linearization;

@@ -36,7 +36,7 @@ mod tests;
 
 pub use call::Arguments;
 pub use declaration::{Given, declare};
-pub use depth::{MAX_CALLS, with_stack};
+pub use depth::with_stack;
 pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, RunCompiled};

@@ -225,19 +225,8 @@ impl Pool {
         self.intern(Node::Call { function, output, arguments })
     }
 
-    /// A partial derivative of a scalar output of a user function; `inputs` in any order.
-    pub fn call_derivative(
-        &mut self,
-        function: u32,
-        output: u32,
-        inputs: &[u32],
-        arguments: &[Expr],
-    ) -> Expr {
-        let arguments = self.list(arguments);
-        self.derivative_of_call(function, output, inputs, arguments)
-    }
-
-    /// [`Pool::call_derivative`] with the list of the arguments.
+    /// A partial derivative of a scalar output of a user function; `inputs` in any order, `arguments`
+    /// is their list.
     pub(super) fn derivative_of_call(
         &mut self,
         function: u32,

@@ -15,18 +15,6 @@ pub trait FromValue: Sized {
     fn from_value(value: Value) -> Result<Self, Fault>;
 }
 
-/// What can be turned into a value.
-pub trait IntoValue {
-    /// The value.
-    fn into_value(self) -> Value;
-}
-
-impl<T: Into<Value>> IntoValue for T {
-    fn into_value(self) -> Value {
-        self.into()
-    }
-}
-
 /// A matrix of Reals, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RealMatrix {

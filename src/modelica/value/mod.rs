@@ -17,7 +17,7 @@ pub mod show;
 mod tests;
 
 pub use array::{ArrayValue, Elements, MAX_ELEMENTS, check_length, element_count, sizes};
-pub use cast::{FromValue, IntoValue, RealMatrix};
+pub use cast::{FromValue, RealMatrix};
 pub use external_object::ExternalObject;
 pub use index::Index;
 pub use path::Step;

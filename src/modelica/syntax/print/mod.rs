@@ -52,11 +52,6 @@ pub fn equation(equation: &ast::Equation) -> String {
     printed(|printer| printer.equation(equation))
 }
 
-/// A component clause without its semicolon.
-pub fn component_clause(clause: &ast::ComponentClause) -> String {
-    printed(|printer| printer.component_clause(clause))
-}
-
 /// A modification, with a blank before `=`.
 pub fn modification(modification: &ast::Modification) -> String {
     printed(|printer| printer.modification(modification))

@@ -16,7 +16,6 @@ pub use elementwise::{
 pub use relation::{
     and, equal, greater, greater_equal, less, less_equal, not, not_equal, or, order,
 };
-pub use scalar::{real_divide, real_power};
 
 use super::Value;
 use super::errors::TYPE_MISMATCH;

@@ -99,12 +99,6 @@ impl Answers<'_> {
         self.objectives[k * self.n_objectives]
     }
 
-    /// The residuals of individual `k` out of `count`.
-    pub fn residuals_of(&self, k: usize, count: usize) -> &[f64] {
-        let n = self.residuals.len() / count.max(1);
-        &self.residuals[k * n..(k + 1) * n]
-    }
-
     /// The answers about the individuals `first..end` out of `count`.
     fn part(&self, first: usize, end: usize, count: usize) -> Answers<'_> {
         let cut = |all: &'_ [f64]| {

@@ -8,8 +8,7 @@ mod uniform;
 
 pub use latin_hypercube::latin_hypercube;
 pub use own::{Own, SIGNATURE, sample_by};
-pub use sobol::{SOBOL_GENES, sobol};
-pub use uniform::sample_uniform;
+pub use sobol::sobol;
 
 use super::{Gene, Genomes, Mrg32k3a};
 use crate::diag::Fault;
