@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Most instructions of one call from outside, unless [`limit_instructions`] says otherwise: some
 /// tenths of a second.
-pub const DEFAULT_INSTRUCTIONS: u64 = 20_000_000;
+pub(crate) const DEFAULT_INSTRUCTIONS: u64 = 20_000_000;
 
 /// The same for whoever simulates models of others on the command line: the multipoles of a borehole
 /// with four pipes (IBPSA) take 400 million, half a second.
-pub const LONG_CALL_INSTRUCTIONS: u64 = 1_000_000_000;
+pub(crate) const LONG_CALL_INSTRUCTIONS: u64 = 1_000_000_000;
 /// Statements of the interpreter in place of so many instructions.
 const INSTRUCTIONS_A_STATEMENT: u64 = 5;
 

@@ -35,7 +35,7 @@ pub(super) struct CheckArgs {
     pub strict: bool,
     /// Show from where each library was loaded
     #[arg(long, short)]
-    pub verbose: bool,
+    pub(crate) verbose: bool,
     /// Limits
     #[command(flatten)]
     pub limits: Limits,

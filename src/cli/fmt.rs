@@ -31,7 +31,7 @@ pub(super) struct FmtArgs {
     pub diff: bool,
     /// The name of what standard input contains: `.mo` or `.mos` at its end is the language
     #[arg(long, value_name = "NAME")]
-    pub stdin_name: Option<String>,
+    pub(crate) stdin_name: Option<String>,
 }
 
 /// What became of a file.

@@ -17,7 +17,7 @@ pub(super) struct Global {
     /// the folder `gapi` of the user's cache]
     #[arg(long, global = true, env = "GAPI_NO_CACHE", hide_env = true)]
     #[arg(value_parser = clap::builder::FalseyValueParser::new())]
-    pub no_cache: bool,
+    pub(crate) no_cache: bool,
     /// Allow scripts and models to read files in this folder; without DIR, everywhere (repeatable)
     #[arg(long, global = true, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = EVERYWHERE, value_hint = ValueHint::DirPath, help_heading = ALLOWED)]
@@ -30,11 +30,11 @@ pub(super) struct Global {
     /// (repeatable)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     #[arg(help_heading = ALLOWED)]
-    pub deny_read: Vec<PathBuf>,
+    pub(crate) deny_read: Vec<PathBuf>,
     /// Allow scripts and models to read this environment variable, besides those that hold no
     /// secrets (repeatable)
     #[arg(long, global = true, value_name = "NAME", help_heading = ALLOWED)]
-    pub allow_env: Vec<String>,
+    pub(crate) allow_env: Vec<String>,
     /// Allow this library to bring functions in C; without LIBRARY, all (repeatable): they are
     /// compiled with the system's C compiler and can do whatever you can do
     #[arg(long, global = true, value_name = "LIBRARY", num_args = 0..=1, require_equals = true)]
@@ -42,7 +42,7 @@ pub(super) struct Global {
     pub allow_external: Vec<String>,
     /// List the permissions of scripts and models, and do nothing else
     #[arg(long, global = true, help_heading = ALLOWED)]
-    pub show_permissions: bool,
+    pub(crate) show_permissions: bool,
 }
 
 /// `--allow-read` without a folder.
@@ -86,11 +86,11 @@ pub(super) struct Freedom {
 pub(super) struct Limits {
     /// Stop after this number of seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    pub time_limit: Option<f64>,
+    pub(crate) time_limit: Option<f64>,
     /// Stop when the program uses more memory (MiB); Linux only [default: three quarters of the
     /// memory of the machine or its control group]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
-    pub memory_limit: Option<u32>,
+    pub(crate) memory_limit: Option<u32>,
     /// Evaluate models without machine code: slower, with identical results
     #[arg(long)]
     pub interpret: bool,

@@ -57,7 +57,7 @@ pub(super) struct RunArgs {
     pub trace: Option<PathBuf>,
     /// Skip the final least-squares fit that starts from the best individual
     #[arg(long)]
-    pub no_probe: bool,
+    pub(crate) no_probe: bool,
     /// Compute profile likelihoods from there: intervals that are also valid for strongly nonlinear models
     #[arg(long, conflicts_with = "no_probe")]
     pub profile: bool,
@@ -75,7 +75,7 @@ pub(super) struct RunArgs {
     pub lenient: bool,
     /// Only parse the scripts in these files and folders
     #[arg(long, value_name = "PATH", num_args = 1.., conflicts_with = "script")]
-    pub parse_only: Vec<PathBuf>,
+    pub(crate) parse_only: Vec<PathBuf>,
     /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,

@@ -79,7 +79,7 @@ pub(super) struct SimulateArgs {
     pub output: Option<PathBuf>,
     /// Store only the variables whose complete names match this regular expression
     #[arg(long, value_name = "REGEX")]
-    pub variable_filter: Option<String>,
+    pub(crate) variable_filter: Option<String>,
     /// Print the system after a compiler pass instead of simulating it
     #[arg(long, value_name = "PASS", value_parser = pass_names())]
     pub dump: Option<String>,
@@ -89,7 +89,7 @@ pub(super) struct SimulateArgs {
     pub stats: bool,
     /// Stop at chattering and Zeno behaviour, instead of sliding or resting there
     #[arg(long)]
-    pub no_sliding: bool,
+    pub(crate) no_sliding: bool,
     /// Plot a variable over time, in the terminal or to --figure (repeatable)
     #[arg(long, value_name = "VARIABLE")]
     pub plot: Vec<String>,

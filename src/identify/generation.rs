@@ -113,12 +113,12 @@ impl Generation {
     }
 
     /// Whether `Fit` got any of them.
-    pub fn has_ratings(&self) -> bool {
+    pub(crate) fn has_ratings(&self) -> bool {
         self.experiments.iter().any(|simulations| !simulations.ratings.is_empty())
     }
 
     /// Whether this experiment has been simulated, and all its individuals compared.
-    pub fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
+    pub(crate) fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
         self.experiments.iter().any(|own| own.is_of(study, x) && own.is_rated())
     }
 
@@ -143,7 +143,7 @@ impl Generation {
 
     /// The experiments that simulated the most of these individuals: one that simulated few of them
     /// had another purpose, such as the check of a result with other data.
-    pub fn covering(&self, individuals: &[Vec<f64>]) -> Vec<usize> {
+    pub(crate) fn covering(&self, individuals: &[Vec<f64>]) -> Vec<usize> {
         let covered = |own: &Simulations| {
             let places = own.places();
             individuals.iter().filter(|genome| places.contains_key(&key(genome))).count()

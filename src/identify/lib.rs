@@ -44,4 +44,5 @@ pub use program::CompiledModel;
 pub use recorder::{Best, Recorder};
 pub use study::{Compared, Measurement, Quantity, Study};
 pub use table::significant;
-pub use uncertainty::{Uncertainty, error_of_combination, uncertainty, uncertainty_given};
+pub use uncertainty::{Uncertainty, uncertainty};
+pub(crate) use uncertainty::{error_of_combination, uncertainty_given};

@@ -21,7 +21,7 @@ pub enum Plan {
 }
 
 /// The varied parameters, and behind them that which stands for X where it is an input.
-pub fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
+pub(crate) fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
     let driver = model.driven().map(|(_, parameter)| parameter.to_owned());
     varied.iter().cloned().chain(driver).collect()
 }

@@ -19,7 +19,7 @@ impl Path<'_> {
     /// # Errors
     ///
     /// `points-outside` when X never takes it, `not-monotone` when it does so at several times.
-    pub fn slice_of(&self, name: &str, target: f64) -> Result<usize, Fault> {
+    pub(crate) fn slice_of(&self, name: &str, target: f64) -> Result<usize, Fault> {
         let mut found: Option<usize> = None;
         for k in 0..self.x.len().saturating_sub(1) {
             let (a, b) = (self.x[k], self.x[k + 1]);
@@ -65,7 +65,7 @@ impl Path<'_> {
     }
 
     /// All targets that lie outside the range of X.
-    pub fn targets_outside(&self, targets: &[f64]) -> Vec<f64> {
+    pub(crate) fn targets_outside(&self, targets: &[f64]) -> Vec<f64> {
         let low = self.x.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         targets.iter().copied().filter(|target| !(low..=high).contains(target)).collect()

@@ -6,7 +6,7 @@ use crate::sim::{Failure, SimError, SimErrorKind};
 
 /// Evaluates points one by one; keeps its memory.
 #[derive(Debug, Default)]
-pub struct Pointwise {
+pub(crate) struct Pointwise {
     /// Values of the varied parameters, that which stands for X at the end.
     values: Vec<f64>,
     unknowns: Vec<f64>,

@@ -63,7 +63,7 @@ impl Seeds {
     }
 
     /// The seeds of the run that begins now.
-    pub fn of_next_run(&self) -> Seeds {
+    pub(crate) fn of_next_run(&self) -> Seeds {
         let chain = self
             .chain
             .map(|chain| Chain { first: self.next_first.unwrap_or(chain.first), next: chain.next });

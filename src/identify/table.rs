@@ -23,7 +23,7 @@ pub fn ends([low, high]: [f64; 2], value: f64) -> String {
 
 /// So many digits of a number of this size show two of an error; four at least, and what a number has
 /// at most.
-pub fn digits_of(error: f64, size: f64) -> usize {
+pub(crate) fn digits_of(error: f64, size: f64) -> usize {
     let ratio = OF_WIDTH * size / error;
     if ratio.is_finite() && ratio > 0.0 {
         (elementary::log10(ratio).ceil() as usize).clamp(4, 17)
@@ -46,7 +46,7 @@ pub fn quoted(text: &str) -> String {
 }
 
 /// A table of numbers below names.
-pub fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
+pub(crate) fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
     let names: Vec<String> = names.map(quoted).collect();
     let mut text = names.join(",") + "\n";
     for row in rows {

@@ -20,7 +20,7 @@ const RANK_TOLERANCE: f64 = 1e-10;
 pub struct Uncertainty {
     /// One standard deviation for each parameter, in its unit; infinite where the simulation does
     /// not depend on the parameter, or only together with others.
-    pub standard_deviations: Vec<f64>,
+    pub(crate) standard_deviations: Vec<f64>,
     /// Correlation matrix, row by row; NaN in rows of infinite deviation.
     pub correlations: Vec<f64>,
 }
@@ -38,7 +38,7 @@ pub fn uncertainty(jacobian: &[Vec<f64>], residuals: &[f64]) -> Option<Uncertain
 
 /// From the sensitivities and the variance of the residuals, known or estimated elsewhere; `None`
 /// when there are fewer points than parameters or a number is not finite.
-pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncertainty> {
+pub(crate) fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncertainty> {
     let (points, parameters) = (jacobian.first().map_or(0, Vec::len), jacobian.len());
     let finite = jacobian.iter().flatten().all(|value| value.is_finite()) && variance.is_finite();
     if points < parameters || parameters == 0 || !finite {
@@ -94,7 +94,7 @@ fn scaled_covariance(scaled: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 /// The standard error of Σ wₖ pₖ from the sensitivities and the variance of the residuals, in the
 /// directions whose singular values are above `tolerance` times the largest; `None` when a number is
 /// not finite.
-pub fn error_of_combination(
+pub(crate) fn error_of_combination(
     jacobian: &[Vec<f64>],
     weights: &[f64],
     variance: f64,

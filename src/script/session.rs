@@ -46,7 +46,7 @@ pub struct Session {
     pub(super) classes: Classes,
     pub(super) models: CompiledModels,
     /// The dialect that the outermost script shows, where none was asked for.
-    pub recognized: Dialect,
+    pub(crate) recognized: Dialect,
     extensions: Extensions,
     at_end: Vec<AtEnd>,
 }
@@ -113,12 +113,12 @@ impl Session {
     }
 
     /// The iteration of the outermost loop that is being run: what a progress bar shows.
-    pub fn loop_iteration(&self) -> Option<Iteration> {
+    pub(crate) fn loop_iteration(&self) -> Option<Iteration> {
         self.execution.iteration()
     }
 
     /// Where the command that is being run was called.
-    pub fn call_site(&self) -> Span {
+    pub(crate) fn call_site(&self) -> Span {
         self.execution.call()
     }
 
@@ -151,7 +151,7 @@ impl Session {
     }
 
     /// As [`Session::print`], for a report; `brief` is what a brief transcript has of it.
-    pub fn print_report(&mut self, whole: &str, brief: &str) {
+    pub(crate) fn print_report(&mut self, whole: &str, brief: &str) {
         self.world.print(whole);
         self.output.record_report(whole, brief);
     }
@@ -168,7 +168,7 @@ impl Session {
     }
 
     /// Reports the negative answer of a command: an error with the place of the call.
-    pub fn report_fault(&mut self, fault: Fault) {
+    pub(crate) fn report_fault(&mut self, fault: Fault) {
         let diagnostic = fault.at(self.call_site());
         self.report(diagnostic);
     }

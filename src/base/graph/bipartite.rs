@@ -30,7 +30,7 @@ impl Bipartite {
     }
 
     /// Number of unknowns.
-    pub fn n_unknowns(&self) -> usize {
+    pub(crate) fn n_unknowns(&self) -> usize {
         self.n_unknowns
     }
 

@@ -16,7 +16,7 @@ pub struct DulmageMendelsohn {
     /// Unknowns of the under-determined part.
     pub under_unknowns: Vec<usize>,
     /// Equations of the well-determined part, which are matched to the unknowns not in the others.
-    pub well_equations: Vec<usize>,
+    pub(crate) well_equations: Vec<usize>,
 }
 
 /// Takes a system apart, given a maximum matching: the over-determined part is what alternating

@@ -40,11 +40,11 @@ pub static FILE: Look = Look {
 };
 
 /// The same for PNG and PDF.
-pub static SOLID: Look = Look { solid: true, ..FILE };
+pub(crate) static SOLID: Look = Look { solid: true, ..FILE };
 
 /// A figure in a page, whose style sheet knows whether it is dark. On a phone of 390 pixels its 12
 /// pixel letters are still 9 high.
-pub static PAGE: Look = page(480.0);
+pub(crate) static PAGE: Look = page(480.0);
 
 /// A figure of which three stand side by side on a screen of 1280 pixels.
 pub static SMALL: Look = page(380.0);
@@ -74,7 +74,7 @@ const fn page(width: f64) -> Look {
 
 impl Look {
     /// The colour of a series and the attribute `opacity` that makes it faint, if any.
-    pub fn faint(
+    pub(crate) fn faint(
         &self,
         colour: usize,
         attribute: &str,

@@ -86,7 +86,7 @@ impl Svg {
     }
 
     /// The area within points; `style` are further attributes.
-    pub fn polygon(&mut self, points: &[(f64, f64)], style: &str) {
+    pub(crate) fn polygon(&mut self, points: &[(f64, f64)], style: &str) {
         self.put(format_args!("<polygon points=\"{}\" {style}/>", places(points)));
     }
 
@@ -188,7 +188,7 @@ pub fn raised(text: &str) -> String {
     out
 }
 
-pub fn raised_letter(letter: char) -> char {
+pub(crate) fn raised_letter(letter: char) -> char {
     match letter {
         '0' => '⁰',
         '1' => '¹',
@@ -202,7 +202,7 @@ pub fn raised_letter(letter: char) -> char {
 }
 
 /// About how wide text is, in pixels, in the widest of the faces asked for.
-pub fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
         '(' | ')' | '[' | ']' | '/' | '-' | 'r' => 0.34,

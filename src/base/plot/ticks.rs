@@ -134,7 +134,7 @@ fn linear_within(low: f64, high: f64, count: usize) -> Ticks {
 }
 
 /// `10^{−3}`, in the form that [`super::svg::Svg::text`] raises.
-pub fn power_of_ten(exponent: i32) -> String {
+pub(crate) fn power_of_ten(exponent: i32) -> String {
     signed(&format!("10^{{{exponent}}}"))
 }
 

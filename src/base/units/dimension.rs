@@ -14,7 +14,7 @@ pub struct Dimension([i32; 7]);
 
 impl Dimension {
     /// That of a pure number.
-    pub const ONE: Dimension = Dimension([0; 7]);
+    pub(crate) const ONE: Dimension = Dimension([0; 7]);
 
     /// The dimension with whole exponents.
     pub const fn new(exponents: [i32; 7]) -> Dimension {

@@ -32,7 +32,7 @@ pub struct Conversion {
 
 impl Unit {
     /// That of a pure number.
-    pub const ONE: Unit = Unit { dimension: Dimension::ONE, factor: 1.0, offset: 0.0 };
+    pub(crate) const ONE: Unit = Unit { dimension: Dimension::ONE, factor: 1.0, offset: 0.0 };
 
     /// The second.
     pub const SECOND: Unit =

@@ -43,7 +43,7 @@ impl Place {
     }
 
     /// The same where a link is written over as if there were none.
-    pub fn replace_link(mut self) -> Place {
+    pub(crate) fn replace_link(mut self) -> Place {
         self.kind.take_if(|kind| kind.is_symlink());
         self
     }
@@ -86,7 +86,7 @@ impl Place {
     }
 
     /// Removes the temporary files beside this one that killed processes have left.
-    pub fn remove_abandoned(&self) -> io::Result<()> {
+    pub(crate) fn remove_abandoned(&self) -> io::Result<()> {
         for entry in fs::read_dir(self.real.parent().unwrap_or(&self.real))?.flatten() {
             if !is_temporary(&entry.file_name()) {
                 continue;
@@ -128,7 +128,7 @@ impl Place {
         written
     }
 
-    pub fn open_to_append(&self, _shared: bool) -> io::Result<File> {
+    pub(crate) fn open_to_append(&self, _shared: bool) -> io::Result<File> {
         if self.is_device() {
             return Err(Refusal::System.into());
         }
@@ -139,7 +139,7 @@ impl Place {
         if self.is_folder() { fs::remove_dir(&self.real) } else { fs::remove_file(&self.real) }
     }
 
-    pub fn create_folders(self) -> io::Result<Vec<PathBuf>> {
+    pub(crate) fn create_folders(self) -> io::Result<Vec<PathBuf>> {
         let missing = self.real.ancestors().take_while(|folder| !folder.exists());
         let new = missing.map(Path::to_owned).collect();
         fs::create_dir_all(&self.real)?;

@@ -24,7 +24,7 @@ pub struct Client {
     /// Changes may name versions of documents.
     versioned_changes: bool,
     /// Outlines may be trees.
-    pub nested_outline: bool,
+    pub(crate) nested_outline: bool,
 }
 
 impl Client {

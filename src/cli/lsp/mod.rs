@@ -35,5 +35,5 @@ pub use client::Client;
 pub use document::Document;
 pub use refusal::Refusal;
 pub use requests::{answer, capabilities};
-pub use script_checks::check_script;
+pub(crate) use script_checks::check_script;
 pub use workspace::{Documents, Examination, Workspace};

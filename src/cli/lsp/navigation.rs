@@ -84,7 +84,7 @@ pub fn definition(workspace: &mut Workspace, found: &Found) -> Option<Location> 
 }
 
 /// The places of the same name in its document.
-pub fn highlights(found: &Found) -> Vec<DocumentHighlight> {
+pub(crate) fn highlights(found: &Found) -> Vec<DocumentHighlight> {
     let same = found.names.iter().filter(|one| one.entity == found.one.entity);
     let highlight = |one: &Occurrence| DocumentHighlight {
         range: found.parsed.document.range(one.range.clone()),

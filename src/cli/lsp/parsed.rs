@@ -32,7 +32,7 @@ impl Parsed {
     }
 
     /// All classes of the document with their full names, outer before inner.
-    pub fn all_classes(&self) -> Vec<(Name, Arc<ClassDefinition>)> {
+    pub(crate) fn all_classes(&self) -> Vec<(Name, Arc<ClassDefinition>)> {
         let mut found = Vec::new();
         for (name, class) in self.names.iter().zip(self.classes()) {
             collect(name.clone(), class, &mut found);
@@ -41,7 +41,7 @@ impl Parsed {
     }
 
     /// The innermost class around a byte.
-    pub fn class_at(&self, offset: usize) -> Option<(Name, Arc<ClassDefinition>)> {
+    pub(crate) fn class_at(&self, offset: usize) -> Option<(Name, Arc<ClassDefinition>)> {
         let around = |class: &ClassDefinition| {
             class.span.start as usize <= offset && offset <= class.span.end as usize
         };
@@ -50,7 +50,7 @@ impl Parsed {
 }
 
 /// The classes at the top of a tree.
-pub fn classes_of(tree: &Tree) -> Vec<&Arc<ClassDefinition>> {
+pub(crate) fn classes_of(tree: &Tree) -> Vec<&Arc<ClassDefinition>> {
     match tree {
         Tree::Classes(file) => file.classes.iter().collect(),
         Tree::Script(script) => script

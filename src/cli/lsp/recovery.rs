@@ -53,7 +53,12 @@ pub fn read(source: SourceId, text: &str, is_script: bool) -> Read {
 }
 
 /// Reads a text without one of its lines, which someone is typing; else as [`read`].
-pub fn read_without_line(source: SourceId, text: &str, is_script: bool, line: usize) -> Read {
+pub(crate) fn read_without_line(
+    source: SourceId,
+    text: &str,
+    is_script: bool,
+    line: usize,
+) -> Read {
     let content = Lines::of(text).content(text, line);
     match Tree::of(source, &without(text, content), is_script) {
         Ok(tree) => Read { tree: Some(tree), errors: Vec::new() },

@@ -32,7 +32,7 @@ pub fn check(session: &mut Session, parsed: &Parsed) -> Vec<Diagnostic> {
 }
 
 /// What is wrong with the calls of a script that lies in a folder.
-pub fn check_script(
+pub(crate) fn check_script(
     session: &mut Session,
     script: &Script,
     folder: Option<&Path>,

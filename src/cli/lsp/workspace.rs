@@ -221,7 +221,7 @@ impl Workspace {
     }
 
     /// Begins to look for what is wrong with a document: with its text and the names in it.
-    pub fn examine(&mut self, document: &Arc<Document>, all: &Documents) -> Examination {
+    pub(crate) fn examine(&mut self, document: &Arc<Document>, all: &Documents) -> Examination {
         let parsed = self.open(document, all);
         let mut found = parsed.errors.clone();
         found.retain(|error| error.code != NOT_A_SCRIPT);
@@ -253,19 +253,19 @@ impl Workspace {
     }
 
     /// How many models of a document are left.
-    pub fn models_left(examination: &Examination) -> usize {
+    pub(crate) fn models_left(examination: &Examination) -> usize {
         examination.models.len()
     }
 
     /// The work on one more model of a document, for any thread; `None` if none is left.
-    pub fn next_model(&mut self, examination: &mut Examination) -> Option<ModelCheck> {
+    pub(crate) fn next_model(&mut self, examination: &mut Examination) -> Option<ModelCheck> {
         let model = examination.models.pop_front()?;
         Some(self.session.model_check(&model))
     }
 
     /// What was found out about a model. If it lacked a library that can be loaded, the model is left
     /// again.
-    pub fn add_model(&mut self, examination: &mut Examination, checked: CheckedModel) {
+    pub(crate) fn add_model(&mut self, examination: &mut Examination, checked: CheckedModel) {
         if self.session.load_missing(&checked.missing) {
             examination.models.push_front(checked.model);
         } else {

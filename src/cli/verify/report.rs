@@ -15,9 +15,9 @@ pub(super) struct Row {
     #[serde(flatten)]
     pub outcome: Outcome,
     /// Seconds from the class to the program, if it got there.
-    pub compile_seconds: Option<f64>,
+    pub(crate) compile_seconds: Option<f64>,
     /// Seconds of the simulation, if it got to its end.
-    pub simulate_seconds: Option<f64>,
+    pub(crate) simulate_seconds: Option<f64>,
 }
 
 /// What became of a case.

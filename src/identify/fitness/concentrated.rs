@@ -21,7 +21,7 @@ use crate::elementary;
 const GIVEN: usize = usize::MAX;
 
 /// The concentrated likelihood of some groups of points.
-pub struct Concentrated {
+pub(crate) struct Concentrated {
     /// The group of each point.
     group: Vec<usize>,
     /// Points of each group.

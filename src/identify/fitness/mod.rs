@@ -8,7 +8,7 @@ mod robust;
 mod root_mean_square;
 mod sum_of_squares;
 
-pub use concentrated::Concentrated;
+pub(crate) use concentrated::Concentrated;
 pub use sum_of_squares::sum_of_squares;
 
 use crate::ga::FAILED_FITNESS;
@@ -78,7 +78,7 @@ pub struct Robustness {
 }
 
 /// Standard deviation of normal errors from the median of their absolute values (MAD).
-pub fn median_deviation(residuals: &[f64]) -> f64 {
+pub(crate) fn median_deviation(residuals: &[f64]) -> f64 {
     let mut size: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
     size.sort_by(f64::total_cmp);
     let n = size.len();

@@ -34,7 +34,7 @@ const MAD_EFFICIENCY: f64 = 0.37;
 const STEPS: usize = 60;
 
 /// Huber's function.
-pub const HUBER_ENTRY: Entry<dyn Fitness> = Entry {
+pub(crate) const HUBER_ENTRY: Entry<dyn Fitness> = Entry {
     name: "huber",
     aliases: &[],
     summary: "Huber loss: quadratic for small and linear for large differences; settings \
@@ -48,7 +48,7 @@ pub const HUBER_ENTRY: Entry<dyn Fitness> = Entry {
 };
 
 /// Tukey's biweight.
-pub const TUKEY_ENTRY: Entry<dyn Fitness> = Entry {
+pub(crate) const TUKEY_ENTRY: Entry<dyn Fitness> = Entry {
     name: "tukey",
     aliases: &["biweight"],
     summary: "Tukey's biweight loss: quadratic for small differences, constant for large ones; \
@@ -62,7 +62,7 @@ pub const TUKEY_ENTRY: Entry<dyn Fitness> = Entry {
 };
 
 /// Mean absolute difference.
-pub const ABSOLUTE_ENTRY: Entry<dyn Fitness> = Entry {
+pub(crate) const ABSOLUTE_ENTRY: Entry<dyn Fitness> = Entry {
     name: "mae",
     aliases: &["mean_absolute"],
     summary: "mean absolute difference",

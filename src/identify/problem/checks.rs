@@ -61,7 +61,7 @@ impl Own<'_> {
 
 /// What the residuals say about the data and the model. `simulated`: at the best values.
 /// `resolved`: whether the errors of the solver are known to be small against them.
-pub fn residual_findings(
+pub(crate) fn residual_findings(
     problem: &Problem,
     statistics: &Statistics,
     simulated: &[f64],
@@ -120,7 +120,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
     problem.series.iter().map(one).collect()
 }
 
-pub fn rms(values: &[f64]) -> f64 {
+pub(crate) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
 

@@ -4,7 +4,7 @@ use super::Finding;
 
 /// What was done after the search.
 #[derive(Debug, Clone, Default)]
-pub struct Conclusion {
+pub(crate) struct Conclusion {
     /// In words.
     pub findings: Vec<Finding>,
     /// Simulations that it took.
@@ -14,7 +14,7 @@ pub struct Conclusion {
     pub resolved: bool,
     /// Where the best point was found a minimum by second derivatives: the reach of the differences
     /// that they come from, as a fraction of the ranges.
-    pub by_curvature: Option<f64>,
+    pub(crate) by_curvature: Option<f64>,
     /// Parameters that are held at the best point by a kink of the objective, or that can change to
     /// the end of their range without any effect on it.
     pub held: Vec<usize>,

@@ -37,7 +37,7 @@ pub enum Effect {
 
 /// The effect of finite changes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finite {
+pub(crate) struct Finite {
     /// The ends of the values whose sum of squares is within the 95 % limit, the others fitted anew;
     /// `None` where the range ends before.
     pub ends: [Option<f64>; 2],

@@ -347,12 +347,12 @@ impl Evaluation {
     }
 
     /// The simulated points of several individuals given by their values, at once.
-    pub fn simulate_all(&self, values: &[Vec<f64>]) -> Vec<Result<Vec<f64>, Failed>> {
+    pub(crate) fn simulate_all(&self, values: &[Vec<f64>]) -> Vec<Result<Vec<f64>, Failed>> {
         self.simulate_scaled(values, 1.0)
     }
 
     /// The same with the tolerance of the solver times `factor`.
-    pub fn simulate_scaled(
+    pub(crate) fn simulate_scaled(
         &self,
         values: &[Vec<f64>],
         factor: f64,

@@ -18,7 +18,7 @@ enum Side {
 
 /// A point that is a limit at an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
+pub(crate) struct Limit {
     side: Side,
     /// The neighboring time stamps: between them the simulated event is looked for.
     neighbors: [f64; 2],

@@ -188,7 +188,7 @@ impl Finding {
     }
 
     /// With the statistic and what it was compared with.
-    pub fn statistic(mut self, value: f64, threshold: f64) -> Finding {
+    pub(crate) fn statistic(mut self, value: f64, threshold: f64) -> Finding {
         self.value = Some(value).filter(|value| value.is_finite());
         self.threshold = Some(threshold).filter(|threshold| threshold.is_finite());
         self

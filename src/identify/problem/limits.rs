@@ -52,7 +52,7 @@ pub fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
 }
 
 /// The constraints at whose limits the values stand, as they are written.
-pub fn active_constraints(problem: &Problem, values: &[f64]) -> Vec<String> {
+pub(crate) fn active_constraints(problem: &Problem, values: &[f64]) -> Vec<String> {
     active(problem, values, ON).into_iter().map(|own| own.text.clone()).collect()
 }
 
@@ -106,7 +106,7 @@ impl Along {
 }
 
 /// What is known of a point at limits.
-pub struct AtLimits {
+pub(crate) struct AtLimits {
     /// The relative offset along the limits.
     pub offset: Option<Offset>,
     /// Whether it is a minimum there: stationary along them, and held by each.

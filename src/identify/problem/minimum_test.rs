@@ -7,7 +7,7 @@ use crate::ga::optimizer::{Offset, test_minimum};
 
 /// Whether the best point of a run is a minimum, and the simulations of the test; `None` where that
 /// cannot be tested.
-pub fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
+pub(crate) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return None;
     }

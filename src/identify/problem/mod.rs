@@ -57,37 +57,44 @@ mod verdict_notes;
 mod verdicts;
 
 pub use conclude::conclude;
-pub use conclusion::Conclusion;
+pub(crate) use conclusion::Conclusion;
 pub use curve::draw_curves;
-pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
-pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
+pub use ending::OtherMinimum;
+pub use ending::{Ending, EndingKind, SolvedDescent};
+pub use error_model::ErrorModel;
+pub use error_model::{Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::{Evaluation, Status};
 pub use experiment::{Experiment, ModelSimulator, Observation, diagnosed};
 pub use failure::{Failed, FailureKind};
-pub use failure_region::{FailureRegion, failure_region};
+pub use failure_region::FailureRegion;
+pub use failure_region::failure_region;
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{Analysis, Importance, ParameterImportance, analysis};
-pub use inference::{Band, BandPoint, Inference, Inferred, infer};
+pub use inference::{Band, BandPoint, Inference, Inferred};
 pub use journal::{Journal, Record, decode, encode, header, without_times};
 pub use linearization::Linearization;
-pub use non_identifiable::{Form, NonIdentifiable};
+pub use non_identifiable::Form;
+pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
-pub use portable::{Portable, PortableExperiment, PortableSettings};
+pub(crate) use portable::PortableSettings;
+pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;
 pub use run::{Best, Run};
 pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
+pub use solution::ChiSquare;
 pub use solution::{
-    CalibratedModel, ChiSquare, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict,
+    CalibratedModel, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict,
 };
 pub use space::Free;
-pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
+pub use statistics::Statistics;
+pub(crate) use statistics::{ResidualTest, distributions, residual_test};
 pub use text::modelica_number;
-pub use unpacked::unpacked;
+pub(crate) use unpacked::unpacked;
 
 use super::fitness::Fitness;
 use crate::ga::optimizer::Method;
@@ -242,7 +249,7 @@ pub struct Problem {
 
 impl Problem {
     /// Number of points of all series.
-    pub fn n_points(&self) -> usize {
+    pub(crate) fn n_points(&self) -> usize {
         self.series.iter().map(|series| series.x.len()).sum()
     }
 

@@ -31,7 +31,7 @@ pub enum Form {
 
 /// Parameters that cannot be determined separately.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NonIdentifiable {
+pub(crate) struct NonIdentifiable {
     /// Their places.
     pub parameters: Vec<usize>,
     /// How many of them must be fixed.
@@ -52,9 +52,9 @@ pub struct NonIdentifiable {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rank {
     /// Groups without full rank.
-    pub non_identifiable: Vec<NonIdentifiable>,
+    pub(crate) non_identifiable: Vec<NonIdentifiable>,
     /// Parameters without any effect.
-    pub without_effect: Vec<usize>,
+    pub(crate) without_effect: Vec<usize>,
     /// Condition number, columns of unit length; `None` where there is none.
     pub condition: Option<f64>,
 }

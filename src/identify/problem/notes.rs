@@ -499,7 +499,7 @@ fn about_failures(region: &FailureRegion) -> Finding {
 }
 
 /// A finding for each other minimum.
-pub fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+pub(crate) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
     let one = |other: &OtherMinimum| {
         let pairs = solution.parameters.iter().zip(&other.values);
         let values: Vec<String> =

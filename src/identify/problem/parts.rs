@@ -106,7 +106,7 @@ impl Parts {
     }
 
     /// Whether other processes compute parts.
-    pub fn are_divided(&self) -> bool {
+    pub(crate) fn are_divided(&self) -> bool {
         self.shard.is_some() || !self.known().is_empty()
     }
 

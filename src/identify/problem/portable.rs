@@ -36,7 +36,7 @@ pub struct PortableExperiment {
 
 /// The [`Settings`] of a simulation: the method by its name, the budget of time without its clock.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct PortableSettings {
+pub(crate) struct PortableSettings {
     start: f64,
     stop: f64,
     output: OutputGrid,

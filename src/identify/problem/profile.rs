@@ -99,7 +99,7 @@ pub struct Known<'a> {
     /// Simulations that all profiles together may take.
     pub budget: u64,
     /// Whether shards share the parameters among them.
-    pub is_shared: bool,
+    pub(crate) is_shared: bool,
 }
 
 /// The profile of one parameter with what it took.

@@ -11,7 +11,7 @@ use crate::registry::{self, Options};
 const BUDGET: u64 = 400;
 
 /// Fits again and again about the same problem.
-pub struct Refit<'a> {
+pub(crate) struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
     n_points: usize,
@@ -95,7 +95,7 @@ impl<'a> Refit<'a> {
     }
 
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
-    pub fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
         let simulated = self.evaluation.simulate(values).ok()?;
         let weights = self.evaluation.error_weights(self.problem, &simulated);
         let measured = self.problem.series.iter().flat_map(|series| &series.y);

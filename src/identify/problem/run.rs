@@ -86,7 +86,7 @@ pub struct Run {
     pub changed: Vec<(u64, String, f64)>,
     cause: Cause,
     /// What [`conclude`](super::conclude) did after the last question.
-    pub conclusion: super::Conclusion,
+    pub(crate) conclusion: super::Conclusion,
 }
 
 impl Run {

@@ -18,7 +18,7 @@ pub struct ScriptResult {
     /// What least squares made of it, in a sentence.
     pub probe: String,
     /// Simulations of least squares.
-    pub probe_simulations: u64,
+    pub(crate) probe_simulations: u64,
     /// Whether the run was interrupted.
     pub interrupted: bool,
     /// The first error of the script that it did not handle.

@@ -41,7 +41,7 @@ pub struct Term {
 
 /// A sum of terms.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Combination {
+pub(crate) struct Combination {
     terms: Vec<Term>,
 }
 

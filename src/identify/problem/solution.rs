@@ -149,7 +149,7 @@ pub struct SolvedSearch {
     /// Individuals evaluated.
     pub evaluations: u64,
     /// Whether its objective counts as equal to the best of all.
-    pub as_good: bool,
+    pub(crate) as_good: bool,
 }
 
 /// An identified parameter.
@@ -246,16 +246,16 @@ pub struct SolvedSeries {
     #[serde(deserialize_with = "number")]
     pub rmse: f64,
     /// Coefficient of determination.
-    pub r_squared: Option<f64>,
+    pub(crate) r_squared: Option<f64>,
     /// Standard deviation of the measurements, root mean square; `None` where it is not known.
     #[serde(default)]
     pub sigma: Option<f64>,
     /// Whether that was estimated with the parameters.
     #[serde(default)]
-    pub sigma_estimated: bool,
+    pub(crate) sigma_estimated: bool,
     /// Runs of equal sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
-    pub residual_test: Option<[f64; 4]>,
+    pub(crate) residual_test: Option<[f64; 4]>,
     /// The simulated curve between the points, by ascending X, where it was simulated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve: Vec<[f64; 2]>,
@@ -321,7 +321,7 @@ impl Solution {
     }
 
     /// Pairs of parameters that the data can hardly tell apart.
-    pub fn strongly_correlated(&self) -> Vec<(usize, usize, f64)> {
+    pub(crate) fn strongly_correlated(&self) -> Vec<(usize, usize, f64)> {
         let Some(rows) = &self.correlations else { return Vec::new() };
         let n = self.parameters.len();
         let pairs = (0..n).flat_map(|k| (k + 1..n).map(move |l| (k, l)));

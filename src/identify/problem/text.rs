@@ -148,7 +148,7 @@ impl Solution {
     }
 
     /// The error that the script did not handle: what is said first.
-    pub fn script_error(&self) -> Option<&ScriptError> {
+    pub(crate) fn script_error(&self) -> Option<&ScriptError> {
         self.script.as_ref()?.error.as_ref()
     }
 
@@ -376,7 +376,7 @@ impl SolvedParameter {
     }
 
     /// The standard error: as a part of the value, where it is not larger than that.
-    pub fn deviation_text(&self) -> String {
+    pub(crate) fn deviation_text(&self) -> String {
         match self.deviation {
             Some(own) if own <= self.value.abs() => {
                 format!("{} %", significant(100.0 * own / self.value.abs(), 2))
@@ -388,7 +388,7 @@ impl SolvedParameter {
     }
 
     /// The 95 % interval, as far as the data end it.
-    pub fn interval_text(&self) -> String {
+    pub(crate) fn interval_text(&self) -> String {
         let Some(interval) = self.interval else { return "-".to_owned() };
         let [low, high] = interval.map(|end| significant(end, 4));
         match self.open {

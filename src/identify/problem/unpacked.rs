@@ -16,7 +16,7 @@ use std::sync::Arc;
 ///
 /// `bad-option` where the bytes are not those of a program of this version; what
 /// [`ModelSimulator::new`] refuses.
-pub fn unpacked(portable: Portable, clock: fn() -> f64) -> Result<Box<dyn Simulate>, Fault> {
+pub(crate) fn unpacked(portable: Portable, clock: fn() -> f64) -> Result<Box<dyn Simulate>, Fault> {
     match portable {
         Portable::Adjusted { inner, adjustments } => {
             adjusted_from(unpacked(*inner, clock)?, &adjustments)

@@ -6,7 +6,7 @@ use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter,
 use crate::table::{ends, significant};
 
 /// What must be known about a parameter.
-pub fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {
+pub(crate) fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {
     let name = &parameter.name;
     let missing = |sentence: String| {
         let finding = Finding::new(FindingKind::Missing, sentence);
@@ -126,7 +126,7 @@ fn nonlinear(parameter: &SolvedParameter, linear: [f64; 2]) -> Finding {
 }
 
 /// A better fit that the profiles have come upon.
-pub fn profile_findings(solution: &Solution, found: &Profiles) -> Option<Finding> {
+pub(crate) fn profile_findings(solution: &Solution, found: &Profiles) -> Option<Finding> {
     let (values, sum) = found.better.as_ref()?;
     let pairs = solution.parameters.iter().zip(values);
     let values: Vec<String> =

@@ -68,7 +68,7 @@ pub enum Judged {
 
 /// What a profile has shown.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ByProfile {
+pub(crate) struct ByProfile {
     /// The linear interval that does not hold; `None` where there is none, or it does.
     pub linear: Option<[f64; 2]>,
     /// How far the optimum lies beyond the end at which the parameter stands, in standard errors,

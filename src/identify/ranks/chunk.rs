@@ -66,7 +66,7 @@ fn individuals(seconds: f64, simulation: f64) -> usize {
 }
 
 /// Whether a population of this size gains from other ranks.
-pub fn is_worth_distributing(times: &Times, individuals: usize, threads: usize) -> bool {
+pub(crate) fn is_worth_distributing(times: &Times, individuals: usize, threads: usize) -> bool {
     let Some(simulation) = times.simulation else { return individuals > 1 };
     let alone = individuals as f64 * simulation / threads.max(1) as f64;
     individuals > 1 && alone > WORTH_DISTRIBUTING * times.message

@@ -71,7 +71,7 @@ impl Lane {
 /// A chunk under way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sent {
-    pub ticket: u64,
+    pub(crate) ticket: u64,
     /// The first individual, and how many there are.
     pub first: usize,
     pub count: usize,
@@ -126,7 +126,7 @@ impl Patience {
     }
 
     /// The same, where a processor has nothing left to do after these seconds.
-    pub fn busy_until(seconds: f64) -> Duration {
+    pub(crate) fn busy_until(seconds: f64) -> Duration {
         Duration::from_secs_f64((0.5 * seconds).clamp(SHORT, PAUSES[1]))
     }
 

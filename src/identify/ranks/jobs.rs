@@ -38,7 +38,7 @@ impl<T: Send> Jobs<'_, T> {
 impl Prepared {
     /// Runs `count` jobs with the simulators of this process and those of free lanes; `None` where
     /// the ranks are of no use, and then nothing was run.
-    pub fn run_jobs<T: Send>(
+    pub(crate) fn run_jobs<T: Send>(
         &self,
         count: usize,
         own: &[Mutex<Box<dyn Simulate>>],

@@ -34,7 +34,7 @@ pub(super) enum Order {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Work {
     /// Tells the chunk from all others.
-    pub ticket: u64,
+    pub(crate) ticket: u64,
     /// The simulators to use.
     pub number: u64,
     /// As in [`Batch`].

@@ -43,7 +43,7 @@ pub struct Simulation {
     /// Why it failed.
     pub failed: Option<Failed>,
     /// When it failed, in simulated time.
-    pub failed_at: Option<f64>,
+    pub(crate) failed_at: Option<f64>,
 }
 
 impl Batch<'_> {

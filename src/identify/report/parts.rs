@@ -17,7 +17,7 @@ pub fn figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
 }
 
 /// The same for figures that stand side by side.
-pub fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
+pub(crate) fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
     html! {
         figure {
             (PreEscaped(figure.small(label)))
@@ -27,7 +27,7 @@ pub fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
 }
 
 /// A table, or anything else that may be wider than the screen; `label` names it.
-pub fn scrolling(label: &str, content: &Markup) -> Markup {
+pub(crate) fn scrolling(label: &str, content: &Markup) -> Markup {
     html! { div.scroll tabindex="0" role="region" aria-label=(label) { (content) } }
 }
 
@@ -74,7 +74,7 @@ pub fn series(name: &str, points: &[(f64, f64)], mark: Mark, colour: usize) -> S
 }
 
 /// A figure of one panel without a title: headings are those of the page.
-pub fn one_panel(x: Axis, y: Axis, height: f64, series: Vec<Series>) -> Figure {
+pub(crate) fn one_panel(x: Axis, y: Axis, height: f64, series: Vec<Series>) -> Figure {
     let panel = Panel { x, y, height, zero_line: false, series };
     Figure { title: String::new(), panels: vec![panel] }
 }

@@ -54,7 +54,7 @@ pub struct Note<'a> {
 
 /// A point of a simulated curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CurvePoint {
+pub(crate) struct CurvePoint {
     pub(super) x: f64,
     pub(super) y: f64,
     /// Half-width of the 95 % confidence band of the curve.
@@ -113,7 +113,7 @@ impl View<'_> {
     /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors: the
     /// quantile of the chi-square distribution where the standard deviations of the data are known;
     /// else twice that of F(2, ν), which has the closed form ν (0.05^(−2/ν) − 1).
-    pub fn ellipse_radius_squared(&self) -> f64 {
+    pub(crate) fn ellipse_radius_squared(&self) -> f64 {
         match self.freedom() {
             0 => CHI_SQUARE,
             _ if self.solution.chi_square.is_some() => CHI_SQUARE,
@@ -196,7 +196,7 @@ fn pairs(solution: &Solution) -> Vec<Pair> {
 }
 
 /// Whether the axis of a parameter between two of its values is better drawn logarithmic.
-pub fn is_logarithmic(parameter: &SolvedParameter, low: f64, high: f64) -> bool {
+pub(crate) fn is_logarithmic(parameter: &SolvedParameter, low: f64, high: f64) -> bool {
     parameter.logarithmic && low > 0.0 && high > 3.0 * low
 }
 

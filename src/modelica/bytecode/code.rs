@@ -12,7 +12,7 @@ use std::sync::Arc;
 const UNKNOWN: &str = "…";
 
 /// A register of a frame.
-pub type Register = u32;
+pub(crate) type Register = u32;
 
 /// One instruction; `d` is the register written, `a` and `b` are read.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
@@ -85,23 +85,23 @@ pub struct Code {
     /// What it does; it ends behind the last instruction.
     pub instructions: Vec<Instruction>,
     /// Number of scalars of the inputs, which stand first in the frame.
-    pub n_inputs: u32,
+    pub(crate) n_inputs: u32,
     /// The first register of the outputs, which stand in a row.
     pub outputs: Register,
     /// Number of scalars of the outputs.
-    pub n_outputs: u32,
+    pub(crate) n_outputs: u32,
     /// Number of registers.
     pub frame: u32,
     /// Registers with their numbers.
     pub constants: Vec<(Register, f64)>,
     /// Whether numbers of Strings are among its outputs.
-    pub gives_texts: bool,
+    pub(crate) gives_texts: bool,
     /// Texts of assertions.
     pub messages: Vec<Arc<str>>,
     /// Texts that external functions take.
     pub texts: Vec<Arc<str>>,
     /// External functions.
-    pub externals: Vec<ExternalCall>,
+    pub(crate) externals: Vec<ExternalCall>,
     /// First instruction of every place, ascending.
     pub places: Vec<(u32, Span)>,
     /// Whether equal arguments may give different results: it has a hidden state. Calls have one
@@ -110,7 +110,7 @@ pub struct Code {
     /// Whether calls write files or print, so that they are made for that and not for their values.
     pub writes: bool,
     /// Whether outputs may be NaN: components of records that have no value.
-    pub may_lack: bool,
+    pub(crate) may_lack: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
     /// Inputs, and how equations are solved for them, `annotation(inverse(…))` (MLS §12.8).
@@ -119,7 +119,7 @@ pub struct Code {
 
 impl Code {
     /// Whether the interpreter carries it out.
-    pub fn is_interpreted(&self) -> bool {
+    pub(crate) fn is_interpreted(&self) -> bool {
         self.externals.iter().any(|call| call.in_modelica.is_some())
     }
 
@@ -131,7 +131,7 @@ impl Code {
 
 /// A call of an external function; slots are registers of the frame.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
-pub struct ExternalCall {
+pub(crate) struct ExternalCall {
     /// The function.
     #[serde(with = "crate::external::by_name")]
     pub entry: &'static Entry,
@@ -141,7 +141,7 @@ pub struct ExternalCall {
     pub result: Option<Slot>,
     /// What is called in the place of the function, if it is written in Modelica.
     #[serde(with = "crate::external::none")]
-    pub in_modelica: Option<Arc<dyn Callable>>,
+    pub(crate) in_modelica: Option<Arc<dyn Callable>>,
 }
 
 impl ExternalCall {
@@ -173,7 +173,7 @@ pub struct Derivative {
     /// Its code: inputs are those of the function, followed by derivatives of inputs.
     pub function: u32,
     /// The inputs of the function whose derivatives follow.
-    pub tangents: Vec<u32>,
+    pub(crate) tangents: Vec<u32>,
     /// Inputs whose derivatives must be zero (`zeroDerivative`).
     pub zero: Vec<u32>,
     /// The output of `function` that is the derivative of each output; `None` for outputs that
@@ -192,7 +192,7 @@ pub struct Functions {
     /// The Strings of the model that stand for numbers, in this order.
     pub texts: Texts,
     /// Whether zero is taken for variables that are used before they are assigned.
-    pub takes_defaults: bool,
+    pub(crate) takes_defaults: bool,
     /// Files that external functions read.
     pub files: Contents,
     /// External objects made so far.
@@ -203,7 +203,7 @@ pub struct Functions {
 impl Functions {
     /// Whether all that a function does besides giving results, itself or by what it calls, is to draw
     /// random numbers.
-    pub fn draws_alone(&self, function: u32) -> bool {
+    pub(crate) fn draws_alone(&self, function: u32) -> bool {
         let mut seen = vec![false; self.codes.len()];
         let mut stack = vec![function as usize];
         while let Some(at) = stack.pop() {
@@ -226,7 +226,7 @@ impl Functions {
     }
 
     /// Number of scalars that a call of a function returns.
-    pub fn n_outputs(&self, function: u32) -> usize {
+    pub(crate) fn n_outputs(&self, function: u32) -> usize {
         self.codes[function as usize].n_outputs as usize
     }
 
@@ -252,7 +252,7 @@ impl Functions {
 
     /// That a function which was called used or returned a variable before it was assigned and zero was
     /// taken, in words, with the place where it was noticed.
-    pub fn default_taken(&self, (called, failure): &(u32, Failure)) -> (String, Span) {
+    pub(crate) fn default_taken(&self, (called, failure): &(u32, Failure)) -> (String, Span) {
         let name = |function: u32| self.codes.get(function as usize).map_or("", |code| &code.name);
         let noticed = match failure.function == *called {
             true => String::new(),

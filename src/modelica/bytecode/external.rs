@@ -10,7 +10,7 @@ use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random, Sl
 use std::sync::Arc;
 
 /// Runs an external function on numbers with derivatives, or without.
-pub trait RunExternal: Number {
+pub(crate) trait RunExternal: Number {
     /// Reads and writes the frame `r` of `code`, one of `functions`.
     fn run_external(
         functions: &Functions,
@@ -23,7 +23,7 @@ pub trait RunExternal: Number {
 
 /// What external functions need besides their arguments.
 #[derive(Clone, Default)]
-pub struct Externals {
+pub(crate) struct Externals {
     /// Objects by handle.
     pub(super) objects: Vec<Object>,
     /// The hidden state.

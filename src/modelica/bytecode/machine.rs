@@ -31,6 +31,7 @@ pub struct Machine {
     /// For each function whether its calls are kept; found when the first is called.
     kept: Option<Box<[bool]>>,
     /// How many calls had the results of the one before.
+    #[cfg(test)]
     recalled: u64,
     /// Whether variables that nothing was assigned to are zero.
     has_defaults: bool,
@@ -53,7 +54,7 @@ struct Caller {
 
 impl Machine {
     /// A machine that always runs the same functions: it keeps results of calls between them.
-    pub fn of_fixed_functions() -> Machine {
+    pub(crate) fn of_fixed_functions() -> Machine {
         Machine { memos: Some(Box::default()), ..Machine::default() }
     }
 
@@ -69,7 +70,8 @@ impl Machine {
     }
 
     /// How many calls between functions had the results of the call before.
-    pub fn recalled(&self) -> u64 {
+    #[cfg(test)]
+    pub(crate) fn recalled(&self) -> u64 {
         self.recalled
     }
 
@@ -365,7 +367,10 @@ impl Machine {
         let Some((known, cost)) = found else { return false };
         let Some(left) = self.budget.checked_sub(cost) else { return false };
         self.budget = left;
-        self.recalled += 1;
+        #[cfg(test)]
+        {
+            self.recalled += 1;
+        }
         stack[results..results + known.len()].copy_from_slice(known);
         true
     }

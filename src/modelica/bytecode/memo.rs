@@ -12,7 +12,7 @@ const FEWEST: usize = 48;
 
 /// The last call of each function, for each kind of number.
 #[derive(Debug, Clone, Default)]
-pub struct Memos {
+pub(crate) struct Memos {
     pub(super) values: Memo<f64>,
     pub(super) first: Memo<Dual<f64>>,
     pub(super) second: Memo<Dual<Dual<f64>>>,
@@ -20,7 +20,7 @@ pub struct Memos {
 
 /// The last call of each function.
 #[derive(Debug, Clone)]
-pub struct Memo<T> {
+pub(crate) struct Memo<T> {
     known: Vec<Option<Known<T>>>,
 }
 

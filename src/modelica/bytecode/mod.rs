@@ -24,9 +24,9 @@ mod run_time_texts;
 mod validation;
 
 pub use crate::external::Journal;
-pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};
+pub use code::{Code, Derivative, Functions, Instruction};
+pub(crate) use code::{ExternalCall, Register};
 pub use elementary::Elementary;
-pub use external::{Externals, RunExternal};
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
 pub use number::{Dual, Number};

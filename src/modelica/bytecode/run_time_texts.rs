@@ -19,7 +19,7 @@ pub type Texts = IndexSet<Arc<str>>;
 
 /// The Strings of a simulation.
 #[derive(Clone, Default)]
-pub struct RunTimeTexts {
+pub(crate) struct RunTimeTexts {
     made: Texts,
     bytes: usize,
 }

@@ -13,18 +13,18 @@ pub struct CausalizedDae {
     /// The states, in order of declaration.
     pub states: Vec<VarId>,
     /// States that are chosen at run time.
-    pub selections: Vec<Selection>,
+    pub(crate) selections: Vec<Selection>,
     /// Solves for derivatives and algebraic variables, the states given.
     pub blocks: Vec<Block>,
     /// Solves for discrete variables as well, at events; empty if there are none.
-    pub event_blocks: Vec<Block>,
+    pub(crate) event_blocks: Vec<Block>,
     /// Solves for everything at the start.
-    pub initial_blocks: Vec<Block>,
+    pub(crate) initial_blocks: Vec<Block>,
     /// Discrete variables of loops: blocks read them before they write them, so the blocks are
     /// solved until these do not change.
     pub iterated: Vec<VarId>,
     /// What the solution of these must fulfil besides.
-    pub initial_checks: Vec<Equation>,
+    pub(crate) initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.
     pub parameters: Vec<VarId>,
 }

@@ -45,7 +45,7 @@ pub struct VariableInfo {
     /// A difference, whose unit converts without an offset.
     pub is_relative: bool,
     /// Unit for people, empty if none.
-    pub display_unit: Arc<str>,
+    pub(crate) display_unit: Arc<str>,
     /// The string behind its declaration.
     pub description: Arc<str>,
     /// Predefined type.

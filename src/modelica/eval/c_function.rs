@@ -16,13 +16,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The external name of a function.
-pub fn external_name(function: &Function, clause: &External) -> Ident {
+pub(crate) fn external_name(function: &Function, clause: &External) -> Ident {
     let own = || function.name.last().unwrap_or_else(|| Ident::new(""));
     clause.function.as_ref().map_or_else(own, |name| name.node)
 }
 
 /// The function in Rust that a clause means, if there is one.
-pub fn in_rust(function: &Function, clause: &External) -> Option<&'static Entry> {
+pub(crate) fn in_rust(function: &Function, clause: &External) -> Option<&'static Entry> {
     let include = string(clause, "Include").unwrap_or_default();
     let entry = external::find_declared(external_name(function, clause).as_str(), &include)?;
     // A function of another library may have the same name.
@@ -51,7 +51,7 @@ pub fn brings_code(clause: &External) -> bool {
 ///
 /// # Errors
 /// The declaration has no equivalent in C, or whoever is asked refuses.
-pub fn in_c<'a>(
+pub(crate) fn in_c<'a>(
     function: &Function,
     clause: &External,
     others: impl Iterator<Item = &'a Arc<Function>>,
@@ -72,7 +72,7 @@ pub fn in_c<'a>(
 }
 
 /// The call of a clause: as it is written, or that of the declaration (MLS §12.9.1).
-pub fn call_of<'c>(function: &Function, clause: &'c External) -> Cow<'c, External> {
+pub(crate) fn call_of<'c>(function: &Function, clause: &'c External) -> Cow<'c, External> {
     if clause.function.is_some() {
         return Cow::Borrowed(clause);
     }

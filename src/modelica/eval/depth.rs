@@ -7,7 +7,7 @@ use crate::fault;
 use std::cell::Cell;
 
 /// The most calls of functions inside each other.
-pub const MAX_CALLS: usize = 1000;
+pub(crate) const MAX_CALLS: usize = 1000;
 
 /// What evaluation may use of the stack unless [`with_stack`] says otherwise: the stacks of
 /// secondary threads have 2 MiB.

@@ -42,7 +42,7 @@ impl Function {
     /// Outputs and protected variables, each after those that its declaration names (MLS §12.4.4): a
     /// protected constant may stand in the default of an output. Those that need each other keep their
     /// order.
-    pub fn variables_in_order(&self) -> Vec<&FunctionComponent> {
+    pub(crate) fn variables_in_order(&self) -> Vec<&FunctionComponent> {
         let mut waiting: Vec<_> = self.outputs.iter().chain(&self.locals).collect();
         let mut ordered = Vec::with_capacity(waiting.len());
         while !waiting.is_empty() {
@@ -119,7 +119,7 @@ impl FunctionComponent {
     ///
     /// # Errors
     /// Those of `known`.
-    pub fn sized_fields<E>(
+    pub(crate) fn sized_fields<E>(
         &self,
         fields: &Arc<IndexMap<Ident, FunctionComponent>>,
         mut known: impl FnMut(&ast::Expression) -> Result<usize, E>,

@@ -12,7 +12,7 @@ const MAX_LINES: usize = 20;
 
 /// Files that may be read, and what was printed so far.
 #[derive(Debug, Default)]
-pub struct AtTranslation {
+pub(crate) struct AtTranslation {
     resources: Resources,
     lines: Vec<String>,
     dropped: usize,

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// A similar matrix, and how it came about.
 #[derive(Debug, Clone)]
-pub struct Balanced {
+pub(crate) struct Balanced {
     /// B = D⁻¹ Pᵀ A P D.
     pub(super) matrix: DMatrix<f64>,
     /// Rows and columns that are scaled; upper triangular before and behind.
@@ -40,7 +40,7 @@ impl Balanced {
     }
 
     /// Rows without elements beside the diagonal go down, then columns without them to the left.
-    pub fn permute(&mut self) {
+    pub(crate) fn permute(&mut self) {
         while let Some(row) = self.active.clone().rev().find(|row| self.is_isolated(*row, false)) {
             self.active.end -= 1;
             self.interchange(row, self.active.end);

@@ -143,7 +143,7 @@ fn refused(what: &str) -> Fault {
 }
 
 /// A function that is called as external ones are, though it is written in Modelica.
-pub trait Callable: Send + Sync {
+pub(crate) trait Callable: Send + Sync {
     /// Carries out a call.
     ///
     /// # Errors

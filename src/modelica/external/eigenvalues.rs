@@ -17,7 +17,7 @@ use crate::diag::Fault;
 use crate::elementary;
 use nalgebra::{Complex, DMatrix};
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("dgeev", "ttnAnAAAnAnAnN", dgeev),
     Entry::pure("dgeevx", "ttttnAnAAAnAnNNANAAAnAN", dgeevx),
     Entry::pure("dgees", "ttanAnNAAAnAnAN", dgees),

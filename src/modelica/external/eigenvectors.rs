@@ -9,7 +9,7 @@ type C = Complex<f64>;
 
 /// The right eigenvectors of all eigenvalues, as columns: one for a real eigenvalue, real and
 /// imaginary parts of that with positive imaginary part for a pair.
-pub fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
     let n = t.nrows();
     // The vectors are those of any multiple; products must not overflow.
     let t = &(t / power_of_two(t.amax()));
@@ -28,7 +28,7 @@ pub fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The left eigenvectors y, yᴴ T = λ yᴴ, as columns like the right ones.
-pub fn left_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn left_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
     // They are right ones of Tᵀ, which is upper triangular with its coordinates in reverse, for
     // the conjugate eigenvalues.
     let n = t.nrows();

@@ -11,7 +11,8 @@ use crate::elementary;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-pub const ENTRIES: &[Entry] = &[Entry::pure("ModelicaFFT_kiss_fftr", "anAnAA->n", real_transform)];
+pub(crate) const ENTRIES: &[Entry] =
+    &[Entry::pure("ModelicaFFT_kiss_fftr", "anAnAA->n", real_transform)];
 
 /// `(u, n, work, nWork, amplitudes, phases)`; the amplitudes are |Xₖ|/(n/2 + 1), as in the standard
 /// library. Results: 0 done, 1 the number of values is odd, 2 the workspace has another size.

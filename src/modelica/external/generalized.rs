@@ -14,7 +14,7 @@ use super::schur::{RealSchur, modulus};
 use crate::diag::Fault;
 use nalgebra::{Complex, DMatrix};
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("dggev", "ttnAnAnAAAAnAnAnN", dggev),
     Entry::pure("dggevx", "ttttnAnAnAAAAnAnNNAANNAAAnAAN", dggevx),
     Entry::pure("dhgeqz", "tttnnnAnAnAAAAnAnAnN", dhgeqz),

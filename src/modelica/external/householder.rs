@@ -14,7 +14,7 @@ use crate::elementary;
 use nalgebra::DMatrix;
 use std::ops::Range;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("dgeqp3", "nnAnAAAnN", dgeqp3),
     Entry::pure("dgeqrf", "nnAnAAnN", dgeqrf),
     Entry::pure("dorgqr", "nnnAnaAnN", dorgqr),
@@ -100,7 +100,7 @@ fn qr(a: &mut DMatrix<f64>, mut pivots: Option<&mut [usize]>) -> Vec<f64> {
 }
 
 /// All of Q and R.
-pub fn full_qr(mut a: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+pub(crate) fn full_qr(mut a: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     let taus = qr(&mut a, None);
     (product(&a, &taus, 0, a.nrows()), a.upper_triangle())
 }

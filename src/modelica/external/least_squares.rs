@@ -16,7 +16,7 @@ use crate::diag::Fault;
 use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("dgels", "tnnnAnAnAnN", dgels),
     Entry::pure("dgelsy", "nnnAnAnAnNAnN", dgelsy),
     Entry::pure("dgglse", "nnnAnAnAAAAnN", dgglse),

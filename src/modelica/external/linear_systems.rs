@@ -14,7 +14,7 @@ use super::matrices::{column, is_transposed, matrix, norm, square, write};
 use crate::diag::Fault;
 use nalgebra::{DMatrix, DVector};
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("dgesv", "nnAnAAnN", dgesv),
     Entry::pure("dgesvx", "ttnnAnAnAtAAAnAnNAAAAN", dgesvx),
     Entry::pure("dgetrf", "nnAnAN", dgetrf),

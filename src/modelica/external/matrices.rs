@@ -40,7 +40,7 @@ pub fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
 
 /// The power of two at or below a size: division by it rounds nothing. 1 for nothing and for what is
 /// below normal numbers.
-pub fn power_of_two(size: f64) -> f64 {
+pub(crate) fn power_of_two(size: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
 }

@@ -9,7 +9,7 @@ use super::call::Call;
 use crate::diag::Fault;
 use crate::mat::Matrix;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaError", "t", error),
     Entry::writing("ModelicaMessage", "t", message),
     Entry::writing("ModelicaWarning", "t", message),

@@ -45,14 +45,15 @@ mod sylvester;
 mod tables;
 mod xorshift;
 
-pub use at_translation::AtTranslation;
-pub use call::{Call, Callable, Kind, Object, Outside, Slot};
+pub(crate) use at_translation::AtTranslation;
+pub(crate) use call::Callable;
+pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub use messages::date_and_time;
 pub use objects::Objects;
 pub(crate) use parts::{COMPOSE, FAIL, PRINT};
 pub use resources::{Contents, Provide, Resources};
-pub use tables::names_a_file;
+pub(crate) use tables::names_a_file;
 pub use xorshift::Random;
 
 use crate::diag::Fault;
@@ -60,7 +61,7 @@ use errors::EXTERNAL_CALL;
 use std::sync::{Mutex, PoisonError};
 
 /// What an external function is implemented by.
-pub type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
+pub(crate) type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
 
 /// A function that is external in Modelica.
 pub struct Entry {
@@ -76,10 +77,10 @@ pub struct Entry {
     pub in_steps: bool,
     /// Whether its result is 1 after every call that does not fail, and says no more than that it was
     /// carried out.
-    pub confirms: bool,
+    pub(crate) confirms: bool,
     /// A file that the declaration must include for this function to be meant, where its name alone
     /// could be anybody's; empty otherwise.
-    pub stands_for: &'static str,
+    pub(crate) stands_for: &'static str,
     /// What it does.
     pub run: Native,
     /// The function in C that is called instead.
@@ -224,7 +225,7 @@ impl Entry {
     }
 
     /// Whether the result is a new object.
-    pub fn makes_object(&self) -> bool {
+    pub(crate) fn makes_object(&self) -> bool {
         self.signature.ends_with("->o")
     }
 
@@ -234,7 +235,7 @@ impl Entry {
     }
 
     /// The arguments that may name files to be read.
-    pub fn possible_files(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn possible_files(&self) -> impl Iterator<Item = usize> {
         self.places_of('g')
     }
 

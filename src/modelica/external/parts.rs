@@ -11,11 +11,11 @@ use crate::fault;
 use crate::value::format::written;
 
 /// The text of all arguments.
-pub static COMPOSE: Entry = Entry { stands_for: OWN, ..Entry::pure("String", "", compose) };
+pub(crate) static COMPOSE: Entry = Entry { stands_for: OWN, ..Entry::pure("String", "", compose) };
 
 /// Fails with a text: the first argument is the text as far as it is known at translation, the others
 /// are the parts.
-pub static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "", fail) };
+pub(crate) static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "", fail) };
 
 /// As `ModelicaInternal_print`: the file, then the text in parts.
 pub static PRINT: Entry =

@@ -7,11 +7,11 @@ pub fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
 }
 
 /// Number of rows of the block that starts in a row.
-pub fn block_size(t: &DMatrix<f64>, row: usize) -> usize {
+pub(crate) fn block_size(t: &DMatrix<f64>, row: usize) -> usize {
     if row + 1 < t.nrows() && t[(row + 1, row)] != 0.0 { 2 } else { 1 }
 }
 
 /// The first row of the block that a row belongs to.
-pub fn block_start(t: &DMatrix<f64>, row: usize) -> usize {
+pub(crate) fn block_start(t: &DMatrix<f64>, row: usize) -> usize {
     if row > 0 && t[(row, row - 1)] != 0.0 { row - 1 } else { row }
 }

@@ -12,7 +12,7 @@ use super::xorshift::Xorshift1024;
 use crate::diag::Fault;
 use crate::elementary;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaRandom_xorshift64star", "aAN", xorshift64_star),
     Entry::pure("ModelicaRandom_xorshift128plus", "aAN", xorshift128_plus),
     Entry::pure("ModelicaRandom_xorshift1024star", "aAN", xorshift1024_star),

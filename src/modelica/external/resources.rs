@@ -127,7 +127,7 @@ impl Contents {
     }
 
     /// Lets files be read whose names only the simulation knows.
-    pub fn grant_others(&mut self, resources: &Resources) {
+    pub(crate) fn grant_others(&mut self, resources: &Resources) {
         self.others = resources.clone();
     }
 
@@ -150,7 +150,7 @@ impl Contents {
     }
 
     /// The absolute path of a file or a folder.
-    pub fn full_path(&self, path: &str) -> Result<String, Fault> {
+    pub(crate) fn full_path(&self, path: &str) -> Result<String, Fault> {
         match self.others.is_granted() {
             true => self.others.path(path),
             false => ().full_path(path),

@@ -19,7 +19,7 @@ const MAX_SWEEPS: usize = 10_000;
 
 /// A real Schur form.
 #[derive(Debug, Clone)]
-pub struct RealSchur {
+pub(crate) struct RealSchur {
     /// Orthogonal.
     pub(super) q: DMatrix<f64>,
     /// Upper quasi-triangular.
@@ -65,7 +65,7 @@ impl RealSchur {
 
     /// Turns the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
     /// its eigenvalues are real.
-    pub fn standardize(&mut self, k: usize) {
+    pub(crate) fn standardize(&mut self, k: usize) {
         if self.t[(k + 1, k)] == 0.0 {
             return;
         }
@@ -112,7 +112,7 @@ impl RealSchur {
 
     /// Brings chosen eigenvalues to the front, in their order; both of a pair count as chosen where
     /// one is. How many there are.
-    pub fn reorder(&mut self, chosen: &[bool]) -> usize {
+    pub(crate) fn reorder(&mut self, chosen: &[bool]) -> usize {
         let mut front = 0;
         let mut at = 0;
         while at < self.t.nrows() {

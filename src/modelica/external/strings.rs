@@ -5,7 +5,7 @@ use super::call::Call;
 use crate::diag::Fault;
 use std::cmp::Ordering;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStrings_length", "t->n", length),
     Entry::pure("ModelicaStrings_substring", "tnn->t", substring),
     Entry::pure("ModelicaStrings_compare", "ttn->n", compare),

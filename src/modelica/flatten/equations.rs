@@ -29,7 +29,7 @@ const MAX_EQUATIONS: usize = 5_000_000;
 
 impl Instantiation<'_> {
     /// Adds the equations and algorithms of a node and of all below it.
-    pub fn add_equations(
+    pub(crate) fn add_equations(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,
@@ -288,7 +288,7 @@ impl Instantiation<'_> {
     }
 
     /// The loop variables of a loop of equations with their ranges.
-    pub fn loop_ranges(
+    pub(crate) fn loop_ranges(
         &mut self,
         indices: &[ForIndex],
         body: &[Equation],
@@ -349,7 +349,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+    pub(crate) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
         match self.flat_value(range)? {
             Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
                 Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
@@ -395,7 +395,7 @@ impl Instantiation<'_> {
 
     /// Which branch the conditions choose, if all of them up to that one are constants or
     /// parameters with values: `Some(None)` means `else`.
-    pub fn chosen_branch(
+    pub(crate) fn chosen_branch(
         &mut self,
         branches: &[(Expression, Vec<Equation>)],
         context: ScopeId,
@@ -480,7 +480,7 @@ impl FunctionTable {
 }
 
 /// `Connections.branch(…)` and the like, which are no equations.
-pub fn is_graph_statement(call: &Expression) -> bool {
+pub(crate) fn is_graph_statement(call: &Expression) -> bool {
     match &call.kind {
         ExpressionKind::Call { function, .. } => {
             function.parts.len() == 2 && function.parts[0].name == "Connections"

@@ -168,7 +168,7 @@ fn replace_end(e: &mut Expression, size: usize) {
 }
 
 /// The indices, from 1, of an element in an array, the last dimension fastest.
-pub fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
+pub(crate) fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
     let mut indices = vec![0; dims.len()];
     for (index, size) in indices.iter_mut().zip(dims).rev() {
         *index = at % size + 1;
@@ -178,7 +178,7 @@ pub fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
 }
 
 /// The element of a value that belongs to one element of an array of components.
-pub fn picked(value: Expression, indices: &[usize]) -> Expression {
+pub(crate) fn picked(value: Expression, indices: &[usize]) -> Expression {
     if indices.is_empty() {
         return value;
     }

@@ -2,7 +2,7 @@
 
 /// A class in its enclosing scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ScopeId(pub u32);
+pub(crate) struct ScopeId(pub u32);
 
 impl ScopeId {
     /// The scope of the whole library, in which the top-level classes stand.
@@ -11,4 +11,4 @@ impl ScopeId {
 
 /// A node of the instance tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct NodeId(pub usize);
+pub(crate) struct NodeId(pub usize);

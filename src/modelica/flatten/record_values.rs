@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Resolved values by the address of what is resolved, by scope, and by whether impure functions may
 /// be called.
 #[derive(Debug, Default)]
-pub struct RecordValues {
+pub(crate) struct RecordValues {
     resolved: FxHashMap<(usize, ScopeId, bool), Shared>,
     /// Resolved values whose components may have a variability, by address.
     fitting: FxHashMap<(usize, Variability), Arc<Expression>>,
@@ -49,13 +49,13 @@ impl RecordValues {
     }
 
     /// Whether another component of the record that this is one of has the variability.
-    pub fn may_be(&self, component: &Expression, variability: Variability) -> bool {
+    pub(crate) fn may_be(&self, component: &Expression, variability: Variability) -> bool {
         let at = |record| (Arc::as_ptr(record) as usize, variability);
         record_of(component).is_some_and(|record| self.fitting.contains_key(&at(record)))
     }
 
     /// The record that this is a component of may have components with the variability.
-    pub fn keep_may_be(&mut self, component: &Expression, variability: Variability) {
+    pub(crate) fn keep_may_be(&mut self, component: &Expression, variability: Variability) {
         let at = |record| (Arc::as_ptr(record) as usize, variability);
         self.fitting.extend(record_of(component).map(|record| (at(record), record.clone())));
     }

@@ -36,7 +36,7 @@ impl Rewrite for Iterators<'_> {
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
-    pub fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
+    pub(crate) fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         let value = self.part_of(value, bound)?;
         // Whether it may call impure functions is looked at with the value.
@@ -78,7 +78,7 @@ impl Instantiation<'_> {
     }
 
     /// `size(x, i)` and `size(x)` where only the sizes of `x` are known; `None` for other calls.
-    pub fn size_call(
+    pub(crate) fn size_call(
         &mut self,
         name: &str,
         arguments: &Arguments,
@@ -122,7 +122,7 @@ impl Instantiation<'_> {
     }
 
     /// The sizes of a resolved expression; `None` where its text does not tell them.
-    pub fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
+    pub(crate) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -211,7 +211,7 @@ impl Instantiation<'_> {
     }
 
     /// The sizes of an element that is computed for every value of iterators.
-    pub fn element_shape(
+    pub(crate) fn element_shape(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],

@@ -61,7 +61,7 @@ impl Types<'_> {
     }
 
     /// Refuses an equation between values of different types (MLS §8.3.1).
-    pub fn check_sides(
+    pub(crate) fn check_sides(
         &self,
         left: &Expression,
         right: &Expression,
@@ -76,7 +76,11 @@ impl Types<'_> {
     }
 
     /// Refuses a value that changes more often than the variable may.
-    pub fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {
+    pub(crate) fn check_variability(
+        &self,
+        e: &Expression,
+        variable: &Variable,
+    ) -> Result<(), Diagnostic> {
         if variable.variability > Variability::Parameter {
             return Ok(());
         }
@@ -213,7 +217,7 @@ impl Types<'_> {
     }
 
     /// The number of dimensions of an expression; `None` where its text does not show it.
-    pub fn rank_of(&self, e: &Expression) -> Option<usize> {
+    pub(crate) fn rank_of(&self, e: &Expression) -> Option<usize> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -418,7 +422,7 @@ fn may_be_literal(e: &Expression) -> bool {
 }
 
 /// Whether an expression holds no references and calls no functions of a library.
-pub fn has_only_literals(e: &Expression) -> bool {
+pub(crate) fn has_only_literals(e: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn reference(&mut self, _: &ComponentReference) {

@@ -28,7 +28,7 @@ const DECIDED: [&str; 2] = ["fixed", "stateSelect"];
 
 impl Instantiation<'_> {
     /// Adds the variables of a node and of all below it, in order of declaration.
-    pub fn add_variables(
+    pub(crate) fn add_variables(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,
@@ -247,7 +247,11 @@ impl Instantiation<'_> {
     /// The part of a value that belongs to one element of an array of components; without `each` the
     /// value must be an array (MLS §7.2.5). One value is that of every element, with a warning:
     /// libraries forget the word.
-    pub fn part_of(&mut self, value: &Expression, bound: &Bound) -> Result<Expression, Diagnostic> {
+    pub(crate) fn part_of(
+        &mut self,
+        value: &Expression,
+        bound: &Bound,
+    ) -> Result<Expression, Diagnostic> {
         let wanted = bound.indices.len();
         let is_array = matches!(value.kind, ExpressionKind::Array(_));
         if wanted == 0 || is_array && wanted == 1 {
@@ -272,7 +276,7 @@ impl Instantiation<'_> {
     }
 
     /// A warning, unless the same was given at the same place.
-    pub fn warn_once(&mut self, error: Diagnostic) {
+    pub(crate) fn warn_once(&mut self, error: Diagnostic) {
         let is_known = |one: &Diagnostic| one.code == error.code && one.span() == error.span();
         if !self.warnings.iter().any(is_known) {
             self.warnings.push(error.warning());

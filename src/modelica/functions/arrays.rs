@@ -228,7 +228,7 @@ fn cat(arguments: &[Argument<'_>]) -> Result<Plan, Fault> {
 /// # Errors
 ///
 /// Other sizes differ, or the array would be too large.
-pub fn concatenation(axis: usize, parts: &[&[usize]]) -> Result<Plan, Fault> {
+pub(crate) fn concatenation(axis: usize, parts: &[&[usize]]) -> Result<Plan, Fault> {
     let Some(first) = parts.first() else { bail!(SIZE_MISMATCH, "nothing to concatenate") };
     let mut dims = first.to_vec();
     // The position along the dimension where each part begins.

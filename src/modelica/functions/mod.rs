@@ -19,11 +19,13 @@ mod scalars;
 mod tests;
 mod values;
 
-pub use arrays::concatenation;
+pub(crate) use arrays::concatenation;
 pub use operators::{Clocked, Operator, StateOperator, Temporal};
-pub use plan::{Argument, Element, Elements, Pick, Plan, PlanOf};
+pub(crate) use plan::PlanOf;
+pub use plan::{Argument, Element, Elements, Pick, Plan};
 pub use reductions::Reduction;
-pub use rules::{ArgumentShapes, Known, ShapeRule, TypeRule, VariabilityRule};
+pub(crate) use rules::ArgumentShapes;
+pub use rules::{Known, ShapeRule, TypeRule, VariabilityRule};
 pub use scalars::each;
 
 use errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
@@ -175,29 +177,29 @@ impl Builtin {
     }
 
     /// Whether it is the operator with two outputs.
-    pub fn is_spatial_distribution(&self) -> bool {
+    pub(crate) fn is_spatial_distribution(&self) -> bool {
         matches!(self.meaning, Meaning::Operator(Operator::InTime(Temporal::SpatialDistribution)))
     }
 
     /// Whether it has a meaning in models only.
-    pub fn is_model_only(&self) -> bool {
+    pub(crate) fn is_model_only(&self) -> bool {
         matches!(self.meaning, Meaning::Operator(Operator::InTime(_)))
     }
 
     /// Whether functions may not call it (MLS §12.2).
-    pub fn is_forbidden_in_functions(&self) -> bool {
+    pub(crate) fn is_forbidden_in_functions(&self) -> bool {
         let is_name =
             matches!(self.meaning, Meaning::Operator(Operator::InTime(Temporal::InstanceName)));
         self.is_model_only() && !is_name
     }
 
     /// Whether it is a function of numbers (MLS §3.7.1, §3.7.3), which no other type has.
-    pub fn is_numeric(&self) -> bool {
+    pub(crate) fn is_numeric(&self) -> bool {
         matches!(self.meaning, Meaning::Mathematical(_))
     }
 
     /// Whether this many scalars have one, calculated without anything else.
-    pub fn is_of_scalars(&self, count: usize) -> bool {
+    pub(crate) fn is_of_scalars(&self, count: usize) -> bool {
         match self.meaning {
             Meaning::Mathematical(_)
             | Meaning::Operator(Operator::SemiLinear | Operator::Ordinal) => true,

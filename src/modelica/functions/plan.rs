@@ -13,7 +13,7 @@ pub struct Argument<'a> {
 }
 
 /// Makes the plan of a call, or says what does not fit.
-pub type PlanOf = fn(&[Argument<'_>]) -> Result<Plan, Fault>;
+pub(crate) type PlanOf = fn(&[Argument<'_>]) -> Result<Plan, Fault>;
 
 /// Sizes and elements of an array.
 pub struct Plan {

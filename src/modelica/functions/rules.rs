@@ -89,7 +89,7 @@ impl Known {
 }
 
 /// What a caller knows of the arguments of a call; asked for only where a rule needs it.
-pub trait ArgumentShapes {
+pub(crate) trait ArgumentShapes {
     /// How many there are.
     fn count(&self) -> usize;
     /// The sizes of one; `None` where they are not known.
@@ -104,7 +104,7 @@ pub trait ArgumentShapes {
 
 impl Builtin {
     /// The sizes of the value of a call; `None` where the arguments do not tell them.
-    pub fn shape_of(&self, arguments: &mut dyn ArgumentShapes) -> Option<Vec<usize>> {
+    pub(crate) fn shape_of(&self, arguments: &mut dyn ArgumentShapes) -> Option<Vec<usize>> {
         match self.shape {
             ShapeRule::Scalar => Some(Vec::new()),
             ShapeRule::As(at) => arguments.dims(at),

@@ -76,7 +76,7 @@ pub struct Variable {
     /// Unit, empty if none.
     pub unit: Arc<str>,
     /// Unit for people, empty if none.
-    pub display_unit: Arc<str>,
+    pub(crate) display_unit: Arc<str>,
     /// The string behind the declaration.
     pub description: Arc<str>,
     /// Value of a parameter; `None` for unknowns.
@@ -126,7 +126,7 @@ pub enum StateSelect {
 
 impl StateSelect {
     /// What two wishes for one variable come to: the stronger of those that are none.
-    pub fn merged_with(self, other: StateSelect) -> StateSelect {
+    pub(crate) fn merged_with(self, other: StateSelect) -> StateSelect {
         match (self, other) {
             (StateSelect::Default, other) => other,
             (one, StateSelect::Default) => one,
@@ -201,7 +201,7 @@ impl Dae {
     }
 
     /// Whether its value is found by the equations, at events or between them.
-    pub fn is_solved_for(&self, id: VarId) -> bool {
+    pub(crate) fn is_solved_for(&self, id: VarId) -> bool {
         self.is_unknown(id) || self.variable(id).kind == Kind::Discrete
     }
 }

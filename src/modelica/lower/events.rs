@@ -11,19 +11,19 @@ pub struct Events {
     /// is the variable.
     pub equations: Vec<Equation>,
     /// `floor` of what varies continuously.
-    pub roundings: Vec<Rounding>,
+    pub(crate) roundings: Vec<Rounding>,
     /// `sample(start, interval)`.
     pub samples: Vec<Sample>,
     /// `delay(argument, time)`.
     pub delays: Vec<Delay>,
     /// `delay` by a time that varies, and `spatialDistribution`.
-    pub transports: Vec<Transport>,
+    pub(crate) transports: Vec<Transport>,
     /// `reinit(x, value)` in when-clauses.
-    pub reinits: Vec<Reinit>,
+    pub(crate) reinits: Vec<Reinit>,
     /// Assertions in when-clauses.
     pub assertions: Vec<Assertion>,
     /// `terminate(message)` in when-clauses.
-    pub terminations: Vec<Termination>,
+    pub(crate) terminations: Vec<Termination>,
     /// The variable that is 1 during initialization, if `initial()` is used.
     pub initial: Option<VarId>,
     /// The variable that is 1 at the end, if `terminal()` is used.
@@ -49,7 +49,7 @@ pub struct Sample {
     /// First time, made of parameters.
     pub start: Expr,
     /// Whether that counts from the start of the simulation, as the ticks of clocks do.
-    pub since_start: bool,
+    pub(crate) since_start: bool,
     /// Distance of the times, made of parameters.
     pub interval: Expr,
     /// Where it is written.
@@ -71,7 +71,7 @@ pub struct Delay {
 
 /// Values that come out of something later than they go in.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Transport {
+pub(crate) enum Transport {
     /// `variable = delay(argument, time, longest)` (MLS §3.7.4.1).
     Delay {
         /// The variable that holds the value.
@@ -140,7 +140,7 @@ impl Transport {
 
 /// `reinit(state, value)`, carried out when the condition holds.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Reinit {
+pub(crate) struct Reinit {
     /// The state as written.
     pub state: VarId,
     /// When.
@@ -153,7 +153,7 @@ pub struct Reinit {
 
 /// `terminate(message)`, carried out when the condition holds; its message is an assertion's.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Termination {
+pub(crate) struct Termination {
     /// When.
     pub condition: Expr,
     /// Where it is written.
@@ -162,7 +162,7 @@ pub struct Termination {
 
 impl Events {
     /// Visits every expression.
-    pub fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
+    pub(crate) fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
         for equation in &mut self.equations {
             visit(&mut equation.left);
             visit(&mut equation.right);

@@ -228,7 +228,7 @@ impl Assertion {
     }
 
     /// Visits every expression.
-    pub fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
+    pub(crate) fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
         visit(&mut self.condition);
         self.parts.iter_mut().flat_map(TextPart::scalars_mut).for_each(visit);
     }

@@ -48,7 +48,7 @@ impl Shape {
     }
 
     /// Whether it is a text without a number, or a record with one.
-    pub fn holds_text(&self) -> bool {
+    pub(crate) fn holds_text(&self) -> bool {
         match self {
             Shape::Array(_) | Shape::Numbered => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
@@ -57,7 +57,7 @@ impl Shape {
     }
 
     /// Whether a String in it is not known.
-    pub fn holds_unknown_text(&self) -> bool {
+    pub(crate) fn holds_unknown_text(&self) -> bool {
         match self {
             Shape::Array(_) | Shape::Numbered => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_unknown_text()),
@@ -67,7 +67,7 @@ impl Shape {
     }
 
     /// Whether it is the number of a text, or a record with one.
-    pub fn holds_number_of_text(&self) -> bool {
+    pub(crate) fn holds_number_of_text(&self) -> bool {
         match self {
             Shape::Numbered => true,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_number_of_text()),
@@ -76,7 +76,7 @@ impl Shape {
     }
 
     /// Makes all texts unknown.
-    pub fn forget_texts(&mut self) {
+    pub(crate) fn forget_texts(&mut self) {
         match self {
             Shape::Array(_) | Shape::Numbered => {}
             Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),

@@ -25,7 +25,7 @@ impl<S> TextPart<S> {
     }
 
     /// The same, to be changed.
-    pub fn scalars_mut(&mut self) -> &mut [S] {
+    pub(crate) fn scalars_mut(&mut self) -> &mut [S] {
         match self {
             TextPart::Text(_) => &mut [],
             TextPart::Numbered(number) => std::slice::from_mut(number),

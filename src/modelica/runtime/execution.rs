@@ -40,7 +40,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    pub const DIVISION: u32 = 0;
+    pub(crate) const DIVISION: u32 = 0;
     pub const POWER: u32 = 1;
     pub const OTHER: u32 = u32::MAX;
     /// The number of the first function.
@@ -70,7 +70,7 @@ pub fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
 }
 
 /// Runs assignments, whose results stay in the registers.
-pub fn run_assignments(code: &CompiledRun, registers: &mut Memory) -> Result<(), Failure> {
+pub(crate) fn run_assignments(code: &CompiledRun, registers: &mut Memory) -> Result<(), Failure> {
     match code.machine_code.run_in_place(&code.tape, [&[], &[]], registers) {
         true => Ok(()),
         false => run(&code.tape, registers),
@@ -78,7 +78,7 @@ pub fn run_assignments(code: &CompiledRun, registers: &mut Memory) -> Result<(),
 }
 
 /// Computes residuals and Jacobian of a loop from its unknowns, in the registers.
-pub fn run_loop(torn: &CompiledLoop, registers: &mut Memory) -> Result<(), Failure> {
+pub(crate) fn run_loop(torn: &CompiledLoop, registers: &mut Memory) -> Result<(), Failure> {
     let others = [&*torn.residuals, &*torn.jacobian];
     if !torn.machine_code.run_in_place(&torn.tape, others, registers) {
         return run(&torn.tape, registers);
@@ -88,7 +88,7 @@ pub fn run_loop(torn: &CompiledLoop, registers: &mut Memory) -> Result<(), Failu
 }
 
 /// Runs a tape where what it computes is used long after: an overflow is a failure at once.
-pub fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
+pub(crate) fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     run(tape, registers)?;
     match registers.overflow {
         Some(at) => Err(failure(tape, registers, at)),
@@ -98,7 +98,7 @@ pub fn run_strictly(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> 
 
 /// Computes a parameter. One that a function leaves without value is not a number, and the failure
 /// that it is to who reads it is returned: records are passed of which the case at hand needs a part.
-pub fn run_parameter(
+pub(crate) fn run_parameter(
     parameter: VarId,
     tape: &Tape,
     registers: &mut Memory,

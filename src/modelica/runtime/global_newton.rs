@@ -25,11 +25,11 @@ const LAST_CORRECTION: f64 = 1e-3;
 
 /// The curve leads to no solution.
 #[derive(Debug)]
-pub struct NoSolution;
+pub(crate) struct NoSolution;
 
 /// The workspace for systems of one size.
 #[derive(Debug, Clone)]
-pub struct Continuation {
+pub(crate) struct Continuation {
     lu: DenseLu,
     /// F(x₀).
     start: Vec<f64>,

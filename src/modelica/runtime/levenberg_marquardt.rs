@@ -20,7 +20,7 @@ const LAST_STEP: f64 = 1e-14;
 
 /// There is no solution, or none that can be reached.
 #[derive(Debug)]
-pub struct NoSolution;
+pub(crate) struct NoSolution;
 
 /// The workspace for systems of one size.
 #[derive(Debug, Clone)]

@@ -25,7 +25,7 @@ pub fn differentiate(pool: &mut Pool, expr: Expr, seed: &dyn Fn(VarId) -> Option
 /// [`differentiate`] with one-sided derivatives of norms: where all `u` in `sqrt(u1^2 + u2^2)` are
 /// zero, it grows by `sqrt(u1'^2 + u2'^2)` from there on, although its partial derivatives are 0/0.
 /// That is not linear in the derivatives, as the other rules are.
-pub fn differentiate_forward(
+pub(crate) fn differentiate_forward(
     pool: &mut Pool,
     expr: Expr,
     seed: &dyn Fn(VarId) -> Option<Expr>,
@@ -37,7 +37,7 @@ pub fn differentiate_forward(
 }
 
 /// [`differentiate`] for several expressions at once: what they share is differentiated once.
-pub fn differentiate_all(
+pub(crate) fn differentiate_all(
     pool: &mut Pool,
     exprs: &[Expr],
     seed: &dyn Fn(VarId) -> Option<Expr>,

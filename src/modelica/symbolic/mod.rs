@@ -16,7 +16,6 @@
 //! assert!((evaluate(&pool, slope, &[0.5][..]) - expected).abs() < 1e-15);
 //! ```
 
-mod collect;
 mod derivative;
 mod evaluate;
 pub mod function;
@@ -31,13 +30,16 @@ mod substitute;
 #[cfg(test)]
 mod tests;
 
-pub use collect::collect_terms;
-pub use derivative::{derivative, differentiate, differentiate_all, differentiate_forward};
+pub use derivative::{derivative, differentiate};
+pub(crate) use derivative::{differentiate_all, differentiate_forward};
 pub use evaluate::{Environment, evaluate};
 pub use node::{Arguments, Expr, Inverse, Node, Number, RelationOperator, VarId};
-pub use pool::{Containing, Pool, VariableCollection};
+pub use pool::Pool;
+pub(crate) use pool::{Containing, VariableCollection};
 pub use print::print;
-pub use rounding::up_to_rounding;
-pub use solve::{Linear, Solution, linear_in, solve};
+pub(crate) use rounding::up_to_rounding;
+pub(crate) use solve::linear_in;
+pub use solve::{Linear, Solution, solve};
 pub(crate) use stored::{read_by_matrix, reading_variables};
-pub use substitute::{Substitution, substitute};
+pub(crate) use substitute::Substitution;
+pub use substitute::substitute;

@@ -204,7 +204,7 @@ pub enum Node {
 
 impl Node {
     /// Visits the operands in order.
-    pub fn for_each_operand(&self, mut visit: impl FnMut(Expr)) {
+    pub(crate) fn for_each_operand(&self, mut visit: impl FnMut(Expr)) {
         match self {
             Node::Constant(_) | Node::Variable(_) => {}
             Node::Neg(a)

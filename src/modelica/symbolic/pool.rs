@@ -21,7 +21,7 @@ impl Pool {
     }
 
     /// Lets equations be solved for an input of a user function.
-    pub fn declare_inverse(&mut self, function: u32, input: u32, inverse: Inverse) {
+    pub(crate) fn declare_inverse(&mut self, function: u32, input: u32, inverse: Inverse) {
         self.inverses.insert((function, input), inverse);
     }
 
@@ -54,7 +54,7 @@ impl Pool {
     }
 
     /// The variable, if the expression is one.
-    pub fn as_variable(&self, expr: Expr) -> Option<VarId> {
+    pub(crate) fn as_variable(&self, expr: Expr) -> Option<VarId> {
         match self.node(expr) {
             Node::Variable(variable) => Some(*variable),
             _ => None,
@@ -166,7 +166,7 @@ impl Pool {
     }
 
     /// Visits the variables that some expressions are made of, each once, in no certain order.
-    pub fn visit_variables(&self, exprs: &[Expr], mut found: impl FnMut(VarId)) {
+    pub(crate) fn visit_variables(&self, exprs: &[Expr], mut found: impl FnMut(VarId)) {
         self.visit(exprs, |expr| {
             if let Some(variable) = self.as_variable(expr) {
                 found(variable);
@@ -175,7 +175,7 @@ impl Pool {
     }
 
     /// Whether an expression contains one of the variables that `is_sought` tells.
-    pub fn any_variable(&self, expr: Expr, is_sought: impl Fn(VarId) -> bool) -> bool {
+    pub(crate) fn any_variable(&self, expr: Expr, is_sought: impl Fn(VarId) -> bool) -> bool {
         let mut found = false;
         self.visit_while(&[expr], |expr| {
             found = self.as_variable(expr).is_some_and(&is_sought);
@@ -185,7 +185,7 @@ impl Pool {
     }
 
     /// Whether an expression contains a variable.
-    pub fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
+    pub(crate) fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
         let Some(sought) = self.nodes.get_index_of(&Node::Variable(variable)) else { return false };
         let mut found = false;
         self.visit_while(&[expr], |expr| {
@@ -236,7 +236,7 @@ enum Next {
 }
 
 /// The variables of one expression after another; what they share is looked through once.
-pub struct VariableCollection<'a> {
+pub(crate) struct VariableCollection<'a> {
     pool: &'a Pool,
     seen: Vec<bool>,
     open: Vec<Expr>,
@@ -269,7 +269,7 @@ impl<'a> VariableCollection<'a> {
 }
 
 /// Whether expressions contain leaves of some sort, each node looked at once.
-pub struct Containing<F> {
+pub(crate) struct Containing<F> {
     is_sought: F,
     marks: Vec<bool>,
 }

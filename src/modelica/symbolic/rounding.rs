@@ -18,7 +18,7 @@ const ROUNDINGS: f64 = 8.0;
 
 /// A condition that holds where this one does, and where it fails by no more than what sums and
 /// differences in its relations are rounded by.
-pub fn up_to_rounding(pool: &mut Pool, condition: Expr) -> Expr {
+pub(crate) fn up_to_rounding(pool: &mut Pool, condition: Expr) -> Expr {
     let mut lenient: FxHashMap<Expr, Expr> = FxHashMap::default();
     for node in pool.reachable(&[condition]) {
         let of = |operand: Expr| lenient.get(&operand).copied().unwrap_or(operand);

@@ -157,7 +157,7 @@ impl Pool {
     }
 
     /// `if condition then a else b`
-    pub fn if_then_else(&mut self, condition: Expr, a: Expr, b: Expr) -> Expr {
+    pub(crate) fn if_then_else(&mut self, condition: Expr, a: Expr, b: Expr) -> Expr {
         match (self.as_constant(condition), self.node(condition)) {
             (Some(value), _) => {
                 if value != 0.0 {
@@ -250,7 +250,7 @@ impl Pool {
     }
 
     /// Another unknown of the system that an expression is an unknown of.
-    pub fn other_unknown(&mut self, solution: Expr, output: u32) -> Expr {
+    pub(crate) fn other_unknown(&mut self, solution: Expr, output: u32) -> Expr {
         match *self.node(solution) {
             Node::Solution { matrix, right, is_slope, .. } => {
                 self.any_solution(matrix, right, output, is_slope)
@@ -282,7 +282,7 @@ impl Pool {
     }
 
     /// The node with its operands replaced: `map` gives each operand's successor.
-    pub fn rebuild(&mut self, node: &Node, map: impl Fn(Expr) -> Expr) -> Expr {
+    pub(crate) fn rebuild(&mut self, node: &Node, map: impl Fn(Expr) -> Expr) -> Expr {
         match node {
             Node::Constant(value) => self.constant(value.0),
             Node::Variable(variable) => self.variable(*variable),

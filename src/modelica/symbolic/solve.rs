@@ -23,7 +23,7 @@ pub struct Solution {
     pub divisor: Expr,
     /// What it divides by where the variable stands below a fraction: `a / v = b` has no solution at
     /// all where `b` is zero, so that nothing is lost there.
-    pub inverted: Expr,
+    pub(crate) inverted: Expr,
     /// Whether it solves the equation everywhere: an inverse that a function declares may be one in
     /// a part of its range only.
     pub is_exact: bool,
@@ -38,7 +38,7 @@ struct Fraction {
 }
 
 /// Takes an expression apart that is linear in `variable`; `None` if it is not, or not visibly.
-pub fn linear_in(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Linear> {
+pub(crate) fn linear_in(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Linear> {
     let Fraction { coefficient, rest, .. } = fraction_in(pool, expr, variable, |pool, a, b| {
         Fraction { coefficient: pool.div(a.coefficient, b), rest: pool.div(a.rest, b), ..a }
     })?;

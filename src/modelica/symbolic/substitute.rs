@@ -15,7 +15,7 @@ pub fn substitute(
 }
 
 /// The same for one expression after another; what they share is replaced once.
-pub struct Substitution<'a> {
+pub(crate) struct Substitution<'a> {
     replacement: &'a dyn Fn(VarId) -> Option<Expr>,
     successors: FxHashMap<Expr, Expr>,
 }

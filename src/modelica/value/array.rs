@@ -105,7 +105,7 @@ pub fn sizes(dims: &[usize]) -> String {
 }
 
 /// The most bytes that a string may have.
-pub const MAX_BYTES: usize = 1 << 28;
+pub(crate) const MAX_BYTES: usize = 1 << 28;
 
 /// A fault if a string of so many bytes is longer than 2^28 bytes, which no string of a script or model may be.
 pub fn check_length(bytes: usize) -> Result<(), Fault> {
@@ -268,7 +268,7 @@ impl Elements {
     }
 
     /// The elements at these offsets, counted from 0, in this order.
-    pub fn gathered(&self, offsets: impl Iterator<Item = usize>) -> Elements {
+    pub(crate) fn gathered(&self, offsets: impl Iterator<Item = usize>) -> Elements {
         map_elements!(self, values => picked(values, offsets))
     }
 
@@ -323,7 +323,7 @@ impl Elements {
     }
 
     /// The same elements, Integers as Reals.
-    pub fn promoted(self) -> Elements {
+    pub(crate) fn promoted(self) -> Elements {
         match self {
             Elements::Integer(values) => {
                 Elements::Real(values.into_iter().map(|value| value as f64).collect())
@@ -333,7 +333,7 @@ impl Elements {
     }
 
     /// No element, of the same type.
-    pub fn none_of_type(&self) -> Elements {
+    pub(crate) fn none_of_type(&self) -> Elements {
         map_elements!(self, _values => Vec::new())
     }
 }

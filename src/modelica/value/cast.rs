@@ -70,7 +70,7 @@ impl Value {
     }
 
     /// Whether it is a number or an array of numbers.
-    pub fn is_numeric(&self) -> bool {
+    pub(crate) fn is_numeric(&self) -> bool {
         match self {
             Value::Real(_) | Value::Integer(_) => true,
             Value::Array(array) => {
@@ -104,7 +104,7 @@ impl Value {
     }
 
     /// The same value with its Integers as Reals.
-    pub fn promoted(self) -> Value {
+    pub(crate) fn promoted(self) -> Value {
         match self {
             Value::Integer(value) => Value::Real(value as f64),
             Value::Array(ArrayValue { dims, elements }) => {

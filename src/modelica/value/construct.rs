@@ -92,7 +92,7 @@ pub fn matrix(rows: Vec<Vec<Value>>) -> Result<Value, Fault> {
 }
 
 /// `promote(A, n)` (MLS §10.3.1): dimensions of size 1 appended up to rank `rank`.
-pub fn promote(value: Value, rank: usize) -> Result<Value, Fault> {
+pub(crate) fn promote(value: Value, rank: usize) -> Result<Value, Fault> {
     if value.rank() > rank {
         bail!(
             DOMAIN_ERROR,
@@ -288,7 +288,7 @@ impl Range {
     }
 
     /// The vector of the values.
-    pub fn into_value(self) -> Result<Value, Fault> {
+    pub(crate) fn into_value(self) -> Result<Value, Fault> {
         let count = element_count(&[self.count()])?;
         let elements = match self {
             Range::Integer { start, step, .. } => Elements::Integer(

@@ -81,7 +81,7 @@ impl PartialEq for EnumerationDefinition {
 
 impl EnumerationValue {
     /// The literal of a number, from 1, of the same enumeration.
-    pub fn of_number(&self, ordinal: i64) -> Option<EnumerationValue> {
+    pub(crate) fn of_number(&self, ordinal: i64) -> Option<EnumerationValue> {
         let known = 1..=self.definition.literals.len() as i64;
         known
             .contains(&ordinal)

@@ -46,7 +46,7 @@ impl Value {
     }
 
     /// Overwrites the part at the end of the path; of a slice of records, each one's share.
-    pub fn set_part(&mut self, path: &[Step], new: Value) -> Result<(), Fault> {
+    pub(crate) fn set_part(&mut self, path: &[Step], new: Value) -> Result<(), Fault> {
         let Some((step, rest)) = path.split_first() else {
             *self = new;
             return Ok(());

@@ -146,7 +146,7 @@ impl Matrix {
     }
 
     /// Each column as text, see [`Matrix::text_rows`].
-    pub fn text_columns(&self) -> Vec<String> {
+    pub(crate) fn text_columns(&self) -> Vec<String> {
         (0..self.columns).map(|j| decode_text(self.column(j).iter().copied())).collect()
     }
 }

@@ -14,7 +14,7 @@ use crate::diag::Fault;
 use crate::{bail, fault};
 
 /// The number P of a storage.
-pub const STORAGES: [Storage; 6] =
+pub(crate) const STORAGES: [Storage; 6] =
     [Storage::F64, Storage::F32, Storage::I32, Storage::I16, Storage::U16, Storage::U8];
 
 struct Header {

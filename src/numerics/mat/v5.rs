@@ -27,7 +27,7 @@ const MI_UTF16: u32 = 17;
 const MI_UTF32: u32 = 18;
 
 /// The byte order of a version 5 file; `None` if it is no such file.
-pub fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
+pub(crate) fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
     match bytes.get(126..HEADER)? {
         _ if bytes[..4].contains(&0) => None,
         b"IM" => Some(ByteOrder::Little),

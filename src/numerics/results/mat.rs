@@ -76,7 +76,7 @@ impl Format for Mat {
 }
 
 /// Whether a file holds the results of a simulation.
-pub fn holds_results(file: &MatFile) -> bool {
+pub(crate) fn holds_results(file: &MatFile) -> bool {
     file.arrays.contains_key("Aclass") && is_transposed(file).is_ok()
 }
 

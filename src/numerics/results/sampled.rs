@@ -9,7 +9,7 @@ use crate::bail;
 use crate::diag::Fault;
 
 /// The instants are divided by this number for a result that the samples are compared with.
-pub const REFINEMENT: usize = 10;
+pub(crate) const REFINEMENT: usize = 10;
 
 /// The results in such a file; `None` if it has none, as those of models that are only exported.
 ///

@@ -75,7 +75,7 @@ impl<'a> Tube<'a> {
     /// Of several points at one instant, the first and the last are the limits from both sides, and
     /// those between are steps of an event; at the end of the reference the limit from the left
     /// counts, for that is where it may end.
-    pub fn worst_deviation(&self, time: &[f64], values: &[f64]) -> Option<Deviation> {
+    pub(crate) fn worst_deviation(&self, time: &[f64], values: &[f64]) -> Option<Deviation> {
         let (start, stop) = (self.time[0], self.time[self.time.len() - 1]);
         let is_within = |at: usize, other: Option<usize>| {
             other.and_then(|other| time.get(other)).is_some_and(|t| same_instant(*t, time[at]))
@@ -138,7 +138,7 @@ impl<'a> Tube<'a> {
     }
 
     /// How far the tube reaches before and behind a point, seconds.
-    pub fn half_width(&self) -> f64 {
+    pub(crate) fn half_width(&self) -> f64 {
         self.half_width
     }
 

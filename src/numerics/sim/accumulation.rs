@@ -34,7 +34,7 @@ const REACH: f64 = 1e-6;
 impl Run<'_> {
     /// Lets the solution rest if the event just handled was the last impact that can be told from
     /// rest; whether the integrator was restarted for it.
-    pub fn rest_after_impact(&mut self) -> Result<bool, SimErrorKind> {
+    pub(crate) fn rest_after_impact(&mut self) -> Result<bool, SimErrorKind> {
         let Some(crossing) = self.watch.impacts.first().copied() else { return Ok(false) };
         if self.watch.jump.is_empty() {
             return Ok(false);
@@ -92,7 +92,7 @@ impl Run<'_> {
     }
 
     /// An error if events at a crossing function accumulate and nothing could be done about it.
-    pub fn watch_for_accumulation(&self) -> Result<(), SimErrorKind> {
+    pub(crate) fn watch_for_accumulation(&self) -> Result<(), SimErrorKind> {
         let settings = self.problem.settings;
         let reach = REACH * (settings.stop - settings.start);
         let accumulates = |at: &usize| {

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-13;
 
 impl Run<'_> {
     /// Counts the switches of the event at `event` in a step that was searched from `begin`.
-    pub fn count_switches(&mut self, begin: f64, event: f64) -> Result<(), SimErrorKind> {
+    pub(crate) fn count_switches(&mut self, begin: f64, event: f64) -> Result<(), SimErrorKind> {
         if self.watch.is_alert {
             // A function may have been large within the step.
             self.watch.y.resize(self.y.len(), 0.0);
@@ -72,7 +72,7 @@ impl Run<'_> {
     }
 
     /// Looks at the relations behind a step without event; y is there.
-    pub fn look_between_steps(&mut self) -> Result<(), SimErrorKind> {
+    pub(crate) fn look_between_steps(&mut self) -> Result<(), SimErrorKind> {
         if !self.watch.is_alert {
             return Ok(());
         }
@@ -111,7 +111,7 @@ impl Run<'_> {
 
     /// Does something about the rows that have become long at the event just handled; whether the
     /// integrator was restarted for it.
-    pub fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
+    pub(crate) fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
         if !settings.treats_chattering {
@@ -232,7 +232,7 @@ impl Run<'_> {
     }
 
     /// Slides along what of these surfaces is left, and rests at contacts; without any it restarts.
-    pub fn go_on_constrained(
+    pub(crate) fn go_on_constrained(
         &mut self,
         surfaces: &[usize],
         contacts: Vec<Contact>,
@@ -246,7 +246,7 @@ impl Run<'_> {
 
     /// Derivatives follow no solution that slides, rests, or crosses surfaces without events: whoever
     /// asks for them takes differences then.
-    pub fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
+    pub(crate) fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
         match self.problem.system.n_directions() {
             0 => Ok(()),
             _ => Err(SimErrorKind::Chattering),
@@ -308,13 +308,13 @@ impl Run<'_> {
     }
 
     /// The width of layers relative to the uncertainty of z.
-    pub fn widening(&self) -> f64 {
+    pub(crate) fn widening(&self) -> f64 {
         (NARROWEST / self.problem.settings.tolerance).max(1.0)
     }
 
     /// Implicit methods alone know shares; where an explicit one was asked for, one of them goes on
     /// if the system has no loops that it solves itself.
-    pub fn can_slide(&mut self) -> bool {
+    pub(crate) fn can_slide(&mut self) -> bool {
         let system = &mut *self.problem.system;
         if !self.is_explicit {
             return system.n_differential() > 0;
@@ -326,7 +326,7 @@ impl Run<'_> {
     }
 
     /// Ends sliding; the surfaces and contacts that the solution has not left.
-    pub fn end_slide(&mut self) -> (Vec<usize>, Vec<Contact>) {
+    pub(crate) fn end_slide(&mut self) -> (Vec<usize>, Vec<Contact>) {
         if !self.problem.system.is_constrained() {
             return Default::default();
         }
@@ -339,7 +339,7 @@ impl Run<'_> {
     }
 
     /// How fast y changes relative to its size, per second; at least so fast.
-    pub fn fastest_rate(&mut self, least: f64) -> Option<f64> {
+    pub(crate) fn fastest_rate(&mut self, least: f64) -> Option<f64> {
         let n = self.problem.system.n_differential();
         let mut f = vec![0.0; self.y.len()];
         self.problem.system.rhs(self.t, self.y, &mut f).ok()?;

@@ -15,7 +15,7 @@ use super::{DaeSystem, EventOutcome, Failure, SimErrorKind};
 /// wide as that, and begin where it arrived.
 const DISPLACED: f64 = 2.0;
 /// A flight is over if it would be so high, relative to the uncertainty of z.
-pub const HEIGHT: f64 = 1.0;
+pub(crate) const HEIGHT: f64 = 1.0;
 /// How far a solution that rests may be from where it began to without being moved, relative to the
 /// uncertainty.
 const MOVED: f64 = 0.1;
@@ -26,7 +26,7 @@ const LIFT: f64 = 1e-2;
 impl Run<'_> {
     /// An event at which relations of contacts keep their values as long as their sides do not
     /// differ: where the solution rests, their signs are made of rounding.
-    pub fn event_with_contacts(
+    pub(crate) fn event_with_contacts(
         &mut self,
         contacts: &[Contact],
     ) -> Result<EventOutcome, SimErrorKind> {
@@ -42,7 +42,7 @@ impl Run<'_> {
     }
 
     /// Goes on with what an event has left of surfaces and contacts.
-    pub fn go_on_behind_event(
+    pub(crate) fn go_on_behind_event(
         &mut self,
         mut surfaces: Vec<usize>,
         contacts: Vec<Contact>,

@@ -36,7 +36,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Crossing functions at both ends of a bracket, and their signs at the last event or step.
 #[derive(Debug, Default)]
-pub struct CrossingSearch {
+pub(crate) struct CrossingSearch {
     pub(super) signs: Vec<i8>,
     pub(super) left: Vec<f64>,
     right: Vec<f64>,
@@ -153,7 +153,7 @@ impl CrossingSearch {
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign
     /// changes, and then the search goes on from `b`. y must hold y(b).
-    pub fn first_event(
+    pub(crate) fn first_event(
         &mut self,
         problem: &mut Problem,
         integrator: &dyn Integrator,
@@ -343,7 +343,7 @@ impl CrossingSearch {
     }
 
     /// The functions at the last event.
-    pub fn at_event(&self) -> &[f64] {
+    pub(crate) fn at_event(&self) -> &[f64] {
         &self.right
     }
 

@@ -15,7 +15,7 @@ const LOOKS: u32 = 64;
 impl Run<'_> {
     /// Behind a step: relations without events get some where they keep the solution from getting
     /// on.
-    pub fn watch_progress(&mut self) -> Result<(), SimErrorKind> {
+    pub(crate) fn watch_progress(&mut self) -> Result<(), SimErrorKind> {
         let treats = self.problem.settings.treats_chattering;
         if self.progress.is_over || !treats || self.problem.system.is_constrained() {
             return Ok(());

@@ -82,7 +82,9 @@ mod trajectory;
 pub use effort::Effort;
 pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use instants::{AT_ONCE, same_time};
-pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
+#[cfg(test)]
+pub(crate) use integrators::INTEGRATORS;
+pub use integrators::{Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};

@@ -9,19 +9,19 @@ const SHARE_NOISE: f64 = 1e-6;
 /// of y, tests of the error would make steps shorter and this error larger until the steps are used up
 /// (`der(x) = if x > 0.3*sin(3*time) then -2 else 2` at the tolerance 1e-6). What y does follows from
 /// the mean of the shares over time, and their values are computed anew where they are asked for.
-pub fn nominal_share(tolerance: f64) -> f64 {
+pub(crate) fn nominal_share(tolerance: f64) -> f64 {
     (SHARE_NOISE / tolerance).max(1.0 / tolerance.sqrt())
 }
 
 /// Writes the weight of every variable, tolerance · max(|y|, nominal).
-pub fn set_weights(tolerance: f64, y: &[f64], nominal: &[f64], weights: &mut [f64]) {
+pub(crate) fn set_weights(tolerance: f64, y: &[f64], nominal: &[f64], weights: &mut [f64]) {
     for ((weight, y), nominal) in weights.iter_mut().zip(y).zip(nominal) {
         *weight = tolerance * y.abs().max(*nominal);
     }
 }
 
 /// Root mean square of x / weight for the first variables, those that have weights; 0 for none.
-pub fn weighted_rms(x: &[f64], weights: &[f64]) -> f64 {
+pub(crate) fn weighted_rms(x: &[f64], weights: &[f64]) -> f64 {
     let x = &x[..weights.len()];
     if x.is_empty() {
         return 0.0;

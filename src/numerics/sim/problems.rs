@@ -4,7 +4,7 @@ use super::{DaeSystem, EventOutcome, Failure, Pattern};
 use crate::elementary;
 
 /// A system given by closures over (t, y), all of y observed; Jacobian by differences.
-pub struct TestProblem {
+pub(crate) struct TestProblem {
     pub initial: Vec<f64>,
     pub n_differential: usize,
     pub nominal: Vec<f64>,
@@ -61,7 +61,7 @@ impl TestProblem {
         self
     }
 
-    pub fn with_crossings(
+    pub(crate) fn with_crossings(
         mut self,
         n: usize,
         crossings: fn(f64, &[f64], &[f64], &mut [f64]),
@@ -168,7 +168,7 @@ pub fn oscillator() -> TestProblem {
 }
 
 /// x' = −1e4 (x − cos t) − sin t, x(0) = 1: x = cos t (Prothero & Robinson).
-pub fn stiff_linear() -> TestProblem {
+pub(crate) fn stiff_linear() -> TestProblem {
     TestProblem::new(&[1.0], 1, |t, y, _, out| {
         out[0] = -1e4 * (y[0] - elementary::cos(t)) - elementary::sin(t)
     })
@@ -215,7 +215,7 @@ pub fn hires() -> TestProblem {
 }
 
 /// Test set of Bari.
-pub const HIRES_END: [f64; 8] = [
+pub(crate) const HIRES_END: [f64; 8] = [
     0.7371312573325668e-3,
     0.1442485726316185e-3,
     0.5888729740967575e-4,
@@ -227,7 +227,7 @@ pub const HIRES_END: [f64; 8] = [
 ];
 
 /// The Oregonator of Field and Noyes; at t = 360: [`OREGONATOR_END`].
-pub fn oregonator() -> TestProblem {
+pub(crate) fn oregonator() -> TestProblem {
     TestProblem::new(&[1.0, 2.0, 3.0], 3, |_, y, _, out| {
         out[0] = 77.27 * (y[1] + y[0] * (1.0 - 8.375e-6 * y[0] - y[1]));
         out[1] = (y[2] - (1.0 + y[0]) * y[1]) / 77.27;
@@ -236,7 +236,7 @@ pub fn oregonator() -> TestProblem {
 }
 
 /// Test set of Bari.
-pub const OREGONATOR_END: [f64; 3] =
+pub(crate) const OREGONATOR_END: [f64; 3] =
     [0.1000814870318523e1, 0.1228178521549917e4, 0.1320554942846706e3];
 
 /// A source x = sin t behind 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) − 1).
@@ -269,7 +269,7 @@ pub fn algebraic() -> TestProblem {
 }
 
 /// x' = 2 t x (1 − x) + (w − exp(−t)), w' = −w, x(0) = 1/2: x = 1/(1 + exp(−t²)), w = exp(−t).
-pub fn driven_logistic() -> TestProblem {
+pub(crate) fn driven_logistic() -> TestProblem {
     TestProblem::new(&[0.5, 1.0], 2, |t, y, _, out| {
         out[0] = 2.0 * t * y[0] * (1.0 - y[0]) + (y[1] - elementary::exp(-t));
         out[1] = -y[1];
@@ -277,7 +277,7 @@ pub fn driven_logistic() -> TestProblem {
 }
 
 /// A ball from height 1 with restitution 0.7 and g = 9.81.
-pub fn bouncing_ball() -> TestProblem {
+pub(crate) fn bouncing_ball() -> TestProblem {
     TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
         out[0] = y[1];
         out[1] = -9.81;
@@ -296,7 +296,7 @@ pub fn bouncing_ball() -> TestProblem {
 }
 
 /// x' = u − x with u = 1 before t = 0.5 and −1 after, a time event.
-pub fn switched_input() -> TestProblem {
+pub(crate) fn switched_input() -> TestProblem {
     let mut problem =
         TestProblem::new(&[0.0], 1, |_, y, discrete, out| out[0] = discrete[0] - y[0])
             .with_discrete(&[1.0]);
@@ -323,19 +323,19 @@ pub fn chattering() -> TestProblem {
 }
 
 /// x' = x², x(0) = 1: x = 1 / (1 − t), which ends at t = 1.
-pub fn blow_up() -> TestProblem {
+pub(crate) fn blow_up() -> TestProblem {
     TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = y[0] * y[0])
 }
 
 /// x' = −1 − √x, x(0) = 1: √x − log(1 + √x) = (1 − log 2) − t/2, which reaches 0, where the root
 /// ends, at t = 2 (1 − log 2).
-pub fn end_of_domain() -> TestProblem {
+pub(crate) fn end_of_domain() -> TestProblem {
     TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -1.0 - y[0].sqrt())
 }
 
 /// Heat conduction: x'_i = k (x_{i−1} − 2 x_i + x_{i+1}) with zero at both ends, started in its
 /// slowest mode, which decays by exp(−rate t) as a whole.
-pub struct HeatRod {
+pub(crate) struct HeatRod {
     pattern: Pattern,
     n: usize,
 }

@@ -53,7 +53,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    pub fn end_of_looking(&mut self) {
+    pub(crate) fn end_of_looking(&mut self) {
         (self.begin, self.looks) = (None, 0);
         self.relations.clear();
     }
@@ -68,7 +68,7 @@ impl Progress {
         self.looks += 1;
     }
 
-    pub fn is_chattering(&self) -> bool {
+    pub(crate) fn is_chattering(&self) -> bool {
         self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.reversals >= REVERSALS)
     }
 }

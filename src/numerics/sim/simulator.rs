@@ -59,7 +59,7 @@ pub struct Simulator {
 
 /// Nominal values of y, without and with shares of surfaces.
 #[derive(Default)]
-pub struct Nominals {
+pub(crate) struct Nominals {
     plain: Vec<f64>,
     /// Those of the states alone, once loops are solved inside.
     states: OnceCell<Vec<f64>>,
@@ -75,12 +75,12 @@ impl Nominals {
     }
 
     /// Leaves out those of algebraic unknowns from now on.
-    pub fn show_states(&self, n: usize) {
+    pub(crate) fn show_states(&self, n: usize) {
         self.states.get_or_init(|| self.plain[..n].to_vec());
     }
 
     /// With so many shares at a place.
-    pub fn with_shares(&self, place: usize, k: usize) -> &[f64] {
+    pub(crate) fn with_shares(&self, place: usize, k: usize) -> &[f64] {
         let slots = &self.with_shares[usize::from(self.states.get().is_some())];
         slots[k - 1].get_or_init(|| {
             let (before, behind) = self.plain().split_at(place);
@@ -348,7 +348,7 @@ impl Run<'_> {
         self.integrator.restart(&mut self.problem, self.t, self.y)
     }
 
-    pub fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
+    pub(crate) fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
@@ -675,7 +675,7 @@ impl Run<'_> {
     }
 
     /// Lets the system handle an event and those that follow it at the same time.
-    pub fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
+    pub(crate) fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {

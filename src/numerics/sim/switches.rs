@@ -3,7 +3,7 @@
 
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
 /// the limit of a two-point controller, switches twice.
-pub const ROW: u32 = 4;
+pub(crate) const ROW: u32 = 4;
 /// Events of a row whose density tells whether the simulation gets on.
 const LONG_ROW: u32 = 200;
 /// The most events of a row in a whole simulation. Switching that noise causes stays far below it, and
@@ -36,7 +36,7 @@ impl Row {
         *self = Row::default();
     }
 
-    pub fn lengthen(&mut self, t: f64) {
+    pub(crate) fn lengthen(&mut self, t: f64) {
         if self.length > 0 && self.length.is_multiple_of(LONG_ROW) {
             self.duration = Some(t - self.mark);
         }
@@ -90,7 +90,7 @@ impl Watch {
     }
 
     /// Notes by how much an event that a crossing function led to has changed the states.
-    pub fn note_jump(&mut self, y: &[f64]) {
+    pub(crate) fn note_jump(&mut self, y: &[f64]) {
         self.jump.clear();
         let changes = y.iter().zip(&self.before).map(|(y, before)| y - before).enumerate();
         self.jump.extend(changes.filter(|(_, change)| *change != 0.0));

@@ -78,26 +78,11 @@ impl Trajectory {
     pub fn at(&self, column: usize, time: f64) -> Option<f64> {
         interpolate(&self.time, &self.columns[column], time)
     }
-
-    /// The value of a column where another, monotone column has the value `x`, linear between rows;
-    /// `None` outside the range of that column.
-    pub fn at_value_of(&self, column: usize, monotone: usize, x: f64) -> Option<f64> {
-        let abscissas = &self.columns[monotone];
-        if abscissas.first() <= abscissas.last() {
-            return interpolate(abscissas, &self.columns[column], x);
-        }
-        let before = abscissas.partition_point(|a| *a >= x);
-        between(abscissas, &self.columns[column], before, x)
-    }
 }
 
 /// For ascending abscissas.
 fn interpolate(abscissas: &[f64], ordinates: &[f64], x: f64) -> Option<f64> {
-    between(abscissas, ordinates, abscissas.partition_point(|a| *a <= x), x)
-}
-
-/// `before` abscissas are not beyond `x`.
-fn between(abscissas: &[f64], ordinates: &[f64], before: usize, x: f64) -> Option<f64> {
+    let before = abscissas.partition_point(|a| *a <= x);
     let last = before.checked_sub(1)?;
     let (a, fa) = (abscissas[last], ordinates[last]);
     if a == x {
@@ -130,15 +115,6 @@ mod tests {
         assert_eq!(trajectory.at(0, 2.5), None);
         assert_eq!(trajectory.at(0, -0.1), None);
         assert_eq!(trajectory.at(0, f64::NAN), None);
-    }
-
-    #[test]
-    fn a_monotone_column_serves_as_abscissa() {
-        let trajectory = sawtooth();
-        assert_eq!(trajectory.at_value_of(0, 1, 3.5), Some(1.0));
-        assert_eq!(trajectory.at_value_of(0, 1, 2.0), Some(0.0));
-        assert_eq!(trajectory.at_value_of(0, 1, 0.5), None);
-        assert_eq!(trajectory.at_value_of(0, 1, 4.5), None);
     }
 
     #[test]

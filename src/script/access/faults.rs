@@ -37,7 +37,7 @@ pub fn shown(path: &Path) -> String {
 }
 
 /// What to do about a path that has a control character, as `"..\bin"` has in Modelica.
-pub fn escape_help(path: &Path) -> Option<String> {
+pub(crate) fn escape_help(path: &Path) -> Option<String> {
     let text = path.to_string_lossy();
     let (escape, name) = text.chars().find_map(escape_of)?;
     Some(format!("`{escape}` in a string is {name}: write `/` or `\\\\` between folders"))

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the
     /// folders of the scripts being run, innermost first. `None` if it is nowhere.
-    pub fn find_file(&self, path: &Path) -> Option<PathBuf> {
+    pub(crate) fn find_file(&self, path: &Path) -> Option<PathBuf> {
         let path = self.expanded(path);
         let folders = self.execution.folders().map(|folder| folder.join(&path));
         std::iter::once(self.world.absolute(&path))
@@ -42,7 +42,7 @@ impl Session {
     ///
     /// # Errors
     /// A command was to write this file and did not.
-    pub fn find_current(&self, path: &Path) -> Result<Option<PathBuf>, Fault> {
+    pub(crate) fn find_current(&self, path: &Path) -> Result<Option<PathBuf>, Fault> {
         // One beside the script does not stand for one that was not written.
         self.check_current(&self.expanded(path))?;
         let found = self.find_file(path);
@@ -51,7 +51,7 @@ impl Session {
     }
 
     /// A fault if a command was to write this file and did not.
-    pub fn check_current(&self, path: &Path) -> Result<(), Fault> {
+    pub(crate) fn check_current(&self, path: &Path) -> Result<(), Fault> {
         let path = normalized(&self.world.absolute(path));
         let Some(reason) = self.outdated.reason(&path) else { return Ok(()) };
         let shown = path.display();
@@ -89,7 +89,7 @@ impl Session {
     }
 
     /// Writes behind the end of a file.
-    pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    pub(crate) fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
         self.write_by(&path, &mut |session| session.world.append(&path, bytes))
     }
@@ -177,7 +177,7 @@ impl Session {
     }
 
     /// The fault of a file that is nowhere, or that it may not be read if it were there.
-    pub fn missing_file(&self, path: &Path) -> Fault {
+    pub(crate) fn missing_file(&self, path: &Path) -> Fault {
         if let Err(refused) = self.may(Access::Read, &self.expanded(path)) {
             return refused;
         }
@@ -223,7 +223,7 @@ impl Session {
     }
 
     /// The value, or `None` and the fault reported.
-    pub fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+    pub(crate) fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
         result.map_err(|fault| self.report_fault(fault)).ok()
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Files that commands of this run were to write and did not.
 #[derive(Debug, Default)]
-pub struct Outdated {
+pub(crate) struct Outdated {
     /// Each with the reason.
     files: BTreeMap<PathBuf, String>,
     /// Files that the commands being executed are going to write. They can be read until then: a model may
@@ -25,13 +25,13 @@ impl Outdated {
     }
 
     /// The file was written.
-    pub fn note_written(&mut self, file: &Path) {
+    pub(crate) fn note_written(&mut self, file: &Path) {
         self.expected.remove(file);
         self.files.remove(file);
     }
 
     /// The file could not be written.
-    pub fn note_failed(&mut self, file: PathBuf, reason: String) {
+    pub(crate) fn note_failed(&mut self, file: PathBuf, reason: String) {
         self.files.insert(file, reason);
     }
 

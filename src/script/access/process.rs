@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Environment variables that hold no secrets: folders, languages, the machine, the tools that
 /// scripts are written for. Secrets have all names there are.
-pub const HARMLESS: &[&str] = &[
+pub(crate) const HARMLESS: &[&str] = &[
     "APPDATA",
     "COMPUTERNAME",
     "DYMOLA",
@@ -60,7 +60,7 @@ pub const HARMLESS: &[&str] = &[
 
 /// The environment variables that scripts set, before those of the process.
 #[derive(Debug, Clone, Default)]
-pub struct Process {
+pub(crate) struct Process {
     variables: BTreeMap<String, String>,
     /// Names that the user allows besides the harmless ones.
     allowed: BTreeSet<String>,

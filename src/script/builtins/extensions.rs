@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 /// One value of each type, made when it is first asked for.
 #[derive(Default)]
-pub struct Extensions(HashMap<TypeId, Box<dyn Any>>);
+pub(crate) struct Extensions(HashMap<TypeId, Box<dyn Any>>);
 
 impl Extensions {
     /// The value of this type.

@@ -11,7 +11,7 @@ mod data_files;
 mod end_values;
 mod executable;
 mod extended;
-pub mod extensions;
+pub(crate) mod extensions;
 mod files;
 mod final_states;
 mod gapilib;

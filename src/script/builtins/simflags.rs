@@ -18,7 +18,7 @@ pub(super) struct SimulationFlags {
     /// `-overrideFile`: files with lines `name=value`.
     override_files: Vec<String>,
     /// `-csvInput`: the file whose columns the inputs follow.
-    pub csv_input: Option<String>,
+    pub(crate) csv_input: Option<String>,
     /// The ending of the result file.
     pub format: Option<String>,
     /// Which variables are stored, as a regular expression.
@@ -31,7 +31,7 @@ pub(super) struct SimulationFlags {
     /// `-r`: the file for the results.
     result: Option<String>,
     /// `-f`: the init file, of which the values are known that scripts wrote into it.
-    pub init_file: Option<String>,
+    pub(crate) init_file: Option<String>,
     idle: Vec<String>,
 }
 

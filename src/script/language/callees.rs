@@ -45,7 +45,7 @@ impl Callees {
     }
 
     /// As [`Callees::get`], of a name of one identifier.
-    pub fn get_simple(
+    pub(crate) fn get_simple(
         &mut self,
         name: Ident,
         revision: u64,
@@ -68,7 +68,7 @@ impl Callees {
     }
 
     /// Remembers the answer to a name of one identifier.
-    pub fn put_simple(&mut self, name: Ident, callee: Option<&Callee>) {
+    pub(crate) fn put_simple(&mut self, name: Ident, callee: Option<&Callee>) {
         self.simple.insert(name, callee.map(Known::of));
     }
 

@@ -64,7 +64,7 @@ impl Session {
     ///
     /// # Errors
     /// There is no such class, or it is no type with values.
-    pub fn declared_type(
+    pub(crate) fn declared_type(
         &mut self,
         name: &Name,
         span: Span,

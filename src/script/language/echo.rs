@@ -41,7 +41,7 @@ impl Session {
     }
 
     /// The statement itself, which Dymola repeats in its log.
-    pub fn echo_input(&mut self, span: Span) {
+    pub(crate) fn echo_input(&mut self, span: Span) {
         let wanted = self.options.echo == Echo::Everything && self.dialect() == Dialect::Dymola;
         if wanted && self.may_echo() {
             let end = if self.sources.is_followed_by(span, ';') { ";" } else { "" };
@@ -51,7 +51,7 @@ impl Session {
     }
 
     /// The value of an expression that is a statement.
-    pub fn echo_value(&mut self, expression: &Expression, value: &Value) {
+    pub(crate) fn echo_value(&mut self, expression: &Expression, value: &Value) {
         if !self.execution.is_at_top() || self.output.is_muted() {
             return;
         }
@@ -133,7 +133,7 @@ impl Session {
     }
 
     /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
-    pub fn echo_assignment(&mut self, name: Ident, is_new: bool, expression: &Expression) {
+    pub(crate) fn echo_assignment(&mut self, name: Ident, is_new: bool, expression: &Expression) {
         match self.dialect() {
             Dialect::OpenModelica if self.may_echo() => {
                 match self.workspace.variables.get(name).cloned() {
@@ -148,7 +148,7 @@ impl Session {
     }
 
     /// A variable that an assignment made, as Dymola announces it.
-    pub fn echo_declaration(&mut self, name: Ident) {
+    pub(crate) fn echo_declaration(&mut self, name: Ident) {
         let wanted = self.dialect() == Dialect::Dymola
             && matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.may_echo();
@@ -165,7 +165,7 @@ impl Session {
     }
 
     /// The empty line that OpenModelica prints for a statement without a value.
-    pub fn echo_nothing(&mut self) {
+    pub(crate) fn echo_nothing(&mut self) {
         if self.dialect() == Dialect::OpenModelica && self.may_echo() {
             self.echo("\n");
         }

@@ -64,7 +64,7 @@ impl Execution {
     }
 
     /// Whether the outermost script is a file from here on.
-    pub fn set_file(&mut self, is_file: bool) {
+    pub(crate) fn set_file(&mut self, is_file: bool) {
         self.is_file = is_file;
     }
 
@@ -89,7 +89,7 @@ impl Execution {
     }
 
     /// Execution stops, for the first reason that is given.
-    pub fn stop_for(&mut self, reason: Stop) {
+    pub(crate) fn stop_for(&mut self, reason: Stop) {
         self.stop.get_or_insert(reason);
     }
 
@@ -104,27 +104,27 @@ impl Execution {
     }
 
     /// A command is called here; where the one around it was.
-    pub fn begin_call(&mut self, call: Span) -> Option<Span> {
+    pub(crate) fn begin_call(&mut self, call: Span) -> Option<Span> {
         self.call.replace(call)
     }
 
     /// The command has ended.
-    pub fn end_call(&mut self, around: Option<Span>) {
+    pub(crate) fn end_call(&mut self, around: Option<Span>) {
         self.call = around;
     }
 
     /// Whether the command that is being run was called in a function.
-    pub fn is_in_function(&self) -> bool {
+    pub(crate) fn is_in_function(&self) -> bool {
         self.in_function
     }
 
     /// Calls are in a function from here on, or not; how it was before.
-    pub fn set_in_function(&mut self, in_function: bool) -> bool {
+    pub(crate) fn set_in_function(&mut self, in_function: bool) -> bool {
         std::mem::replace(&mut self.in_function, in_function)
     }
 
     /// Whether answers are echoed: at the top level.
-    pub fn is_at_top(&self) -> bool {
+    pub(crate) fn is_at_top(&self) -> bool {
         self.depth == 0
     }
 
@@ -139,12 +139,12 @@ impl Execution {
     }
 
     /// Statements are at the top level from here on; the depth until now.
-    pub fn go_to_top(&mut self) -> usize {
+    pub(crate) fn go_to_top(&mut self) -> usize {
         std::mem::take(&mut self.depth)
     }
 
     /// Statements are as deep as they were before.
-    pub fn return_to(&mut self, depth: usize) {
+    pub(crate) fn return_to(&mut self, depth: usize) {
         self.depth = depth;
     }
 

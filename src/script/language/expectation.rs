@@ -132,7 +132,7 @@ impl Number {
 }
 
 /// Whether two lines say the same: the same text between numbers that agree.
-pub fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) -> bool {
+pub(crate) fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) -> bool {
     if expected == actual {
         return true;
     }

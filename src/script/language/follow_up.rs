@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 /// Variables that have no value because their statement failed.
 #[derive(Debug, Default)]
-pub struct FollowUps {
+pub(crate) struct FollowUps {
     missing: HashSet<Ident>,
     /// A script that was not run to its end ran others: anything may be missing.
     anything: bool,
@@ -44,12 +44,12 @@ impl FollowUps {
     }
 
     /// A script that was asked for was not run at all.
-    pub fn script_not_run(&mut self) {
+    pub(crate) fn script_not_run(&mut self) {
         self.anything = true;
     }
 
     /// These statements were not executed.
-    pub fn not_done(&mut self, statements: &[InteractiveStatement]) {
+    pub(crate) fn not_done(&mut self, statements: &[InteractiveStatement]) {
         for statement in statements {
             match &statement.kind {
                 InteractiveKind::Statement(statement) => {

@@ -36,7 +36,7 @@ impl Messages {
     }
 
     /// The script has tested the status that stands for these messages.
-    pub fn note_tested(&mut self, numbers: Range<usize>) {
+    pub(crate) fn note_tested(&mut self, numbers: Range<usize>) {
         self.tested.extend(numbers.start.max(self.first)..numbers.end);
     }
 
@@ -48,12 +48,12 @@ impl Messages {
     }
 
     /// How many of them there are.
-    pub fn unread_errors(&self) -> usize {
+    pub(crate) fn unread_errors(&self) -> usize {
         self.unhandled().count()
     }
 
     /// The first of them from this number on.
-    pub fn first_unhandled(&self, from: usize) -> Option<&Diagnostic> {
+    pub(crate) fn first_unhandled(&self, from: usize) -> Option<&Diagnostic> {
         self.unhandled().find(|(_, number)| *number >= from).map(|(diagnostic, _)| diagnostic)
     }
 
@@ -76,12 +76,12 @@ impl Messages {
     }
 
     /// Notes that a command succeeded: there is no last error, but what was not read stays.
-    pub fn note_success(&mut self) {
+    pub(crate) fn note_success(&mut self) {
         self.last_error = None;
     }
 
     /// The last error's message since the last call or the last success.
-    pub fn take_last_error(&mut self) -> String {
+    pub(crate) fn take_last_error(&mut self) -> String {
         let last = self.last_error.take().unwrap_or_default();
         self.clear();
         last

@@ -27,7 +27,7 @@ pub struct Output {
     /// Answers of scripts that return them, innermost last.
     collected: Vec<String>,
     /// Warnings and notes from here on, for whoever keeps what they are about.
-    pub overheard: Option<Vec<Diagnostic>>,
+    pub(crate) overheard: Option<Vec<Diagnostic>>,
 }
 
 impl Output {
@@ -48,7 +48,7 @@ impl Output {
     }
 
     /// Notes a report that the program prints by itself; `brief` is what a brief transcript has of it.
-    pub fn record_report(&mut self, whole: &str, brief: &str) {
+    pub(crate) fn record_report(&mut self, whole: &str, brief: &str) {
         if let Some(transcript) = &mut self.transcript {
             transcript.print_report(whole, brief);
         }
@@ -94,12 +94,12 @@ impl Output {
     }
 
     /// Whether it is the first time that this command has no effect.
-    pub fn is_first_without_window(&mut self, command: &'static str) -> bool {
+    pub(crate) fn is_first_without_window(&mut self, command: &'static str) -> bool {
         self.windowless.insert(command)
     }
 
     /// Answers are collected from here on, not shown.
-    pub fn begin_collecting(&mut self) {
+    pub(crate) fn begin_collecting(&mut self) {
         self.collected.push(String::new());
     }
 
@@ -117,12 +117,12 @@ impl Output {
     }
 
     /// Whether `echo(false)` was called.
-    pub fn is_muted(&self) -> bool {
+    pub(crate) fn is_muted(&self) -> bool {
         self.muted
     }
 
     /// `echo` was called.
-    pub fn set_muted(&mut self, muted: bool) {
+    pub(crate) fn set_muted(&mut self, muted: bool) {
         self.muted = muted;
     }
 

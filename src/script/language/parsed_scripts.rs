@@ -50,13 +50,13 @@ impl Parsed {
     }
 
     /// The dialect of a script that shows none but in the word for running others.
-    pub fn dialect_of_running(&self) -> Option<Dialect> {
+    pub(crate) fn dialect_of_running(&self) -> Option<Dialect> {
         let runs = self.signs.iter().any(|sign| matches!(sign, Sign::Runs(_)));
         runs.then_some(Dialect::OpenModelica)
     }
 
     /// The scripts that it runs by `runScript`, as far as they are named by literals.
-    pub fn scripts_run(&self) -> impl Iterator<Item = &Arc<str>> {
+    pub(crate) fn scripts_run(&self) -> impl Iterator<Item = &Arc<str>> {
         self.signs.iter().filter_map(|sign| match sign {
             Sign::Runs(name) => name.as_ref(),
             Sign::Of(_) => None,
@@ -70,7 +70,7 @@ pub type Call = (PathBuf, PathBuf, String);
 /// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
 /// names led to.
 #[derive(Default)]
-pub struct ParsedScripts {
+pub(crate) struct ParsedScripts {
     by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Parsed>)>,
     found: HashMap<Call, PathBuf>,
 }
@@ -93,7 +93,7 @@ impl ParsedScripts {
     }
 
     /// Keeps where a call led to.
-    pub fn keep_found(&mut self, call: Call, path: PathBuf) {
+    pub(crate) fn keep_found(&mut self, call: Call, path: PathBuf) {
         self.found.insert(call, path);
     }
 }

@@ -215,7 +215,7 @@ impl Session {
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.
-    pub fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
+    pub(crate) fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
         if !self.follow_ups.is_missing(name) {
             return None;
         }

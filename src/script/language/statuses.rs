@@ -13,7 +13,7 @@ type Numbers = Range<usize>;
 
 /// What statuses stand for.
 #[derive(Debug, Default)]
-pub struct Statuses {
+pub(crate) struct Statuses {
     own: Frame,
     /// Those of the callers of the function being executed, innermost last.
     callers: Vec<Frame>,

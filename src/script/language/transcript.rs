@@ -4,7 +4,7 @@ use crate::diag::Code;
 use std::fmt;
 
 /// What stands before a statement.
-pub const PROMPT: &str = ">>> ";
+pub(crate) const PROMPT: &str = ">>> ";
 
 /// One statement and its answer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -48,7 +48,7 @@ impl Transcript {
 
     /// Adds a report of the program to the answer of the current statement: all of it, or what is left of
     /// it in a brief transcript.
-    pub fn print_report(&mut self, whole: &str, brief: &str) {
+    pub(crate) fn print_report(&mut self, whole: &str, brief: &str) {
         self.print(if self.is_brief { brief } else { whole });
     }
 

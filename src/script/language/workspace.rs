@@ -58,7 +58,7 @@ fn is_flag(reference: &ComponentReference) -> bool {
 
 impl Workspace {
     /// A function is called in place of a command; whether that was not said yet.
-    pub fn replaces_newly(&mut self, command: Ident, function: &Name) -> bool {
+    pub(crate) fn replaces_newly(&mut self, command: Ident, function: &Name) -> bool {
         self.replacing.insert(command, function.clone()).as_ref() != Some(function)
     }
 
@@ -69,7 +69,7 @@ impl Workspace {
 
     /// The value of a flag, if the reference names one that was set, or one that has a value
     /// without that.
-    pub fn flag_at(&self, reference: &ComponentReference) -> Option<Value> {
+    pub(crate) fn flag_at(&self, reference: &ComponentReference) -> Option<Value> {
         if !is_flag(reference) {
             return None;
         }
@@ -84,7 +84,7 @@ impl Workspace {
     }
 
     /// Sets a flag; `false` if the name is not one of a flag.
-    pub fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
+    pub(crate) fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
         let is_flag = is_flag(target);
         if is_flag {
             self.flags.insert(target.name().to_string(), value.clone());
@@ -98,7 +98,7 @@ impl Workspace {
     }
 
     /// The content of a package is visible from here on.
-    pub fn open_package(&mut self, package: Name) {
+    pub(crate) fn open_package(&mut self, package: Name) {
         self.open_packages.push(package);
     }
 
@@ -118,7 +118,7 @@ impl Workspace {
 
     /// The variables whose names match a pattern, with values and if wanted types, in alphabetic
     /// order.
-    pub fn listing(&self, pattern: &str, types: bool) -> String {
+    pub(crate) fn listing(&self, pattern: &str, types: bool) -> String {
         let matching = |name: &str| matches(pattern.as_bytes(), name.as_bytes());
         let mut variables: Vec<(&str, &Value)> = self
             .variables

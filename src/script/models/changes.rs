@@ -58,12 +58,12 @@ impl Changes {
     }
 
     /// Keeps the model with these changes.
-    pub fn keep_model(&mut self, model: Arc<Translated>) {
+    pub(crate) fn keep_model(&mut self, model: Arc<Translated>) {
         self.model = Some(model);
     }
 
     /// From here on the model with these changes is another one.
-    pub fn forget_model(&mut self) {
+    pub(crate) fn forget_model(&mut self) {
         self.model = None;
     }
 

@@ -111,7 +111,7 @@ impl Classes {
     }
 
     /// Folders whose packages are loaded when somebody names them.
-    pub fn directories(&self) -> &[PathBuf] {
+    pub(crate) fn directories(&self) -> &[PathBuf] {
         &self.directories
     }
 
@@ -151,7 +151,7 @@ impl Classes {
     }
 
     /// The classes are going to change: what was known about names holds no longer.
-    pub fn invalidate(&mut self) {
+    pub(crate) fn invalidate(&mut self) {
         self.revision += 1;
         self.nowhere.clear();
         self.copies.clear();
@@ -171,12 +171,12 @@ impl Classes {
     }
 
     /// Whether classes of this file or package folder are loaded.
-    pub fn has_loaded(&self, path: &Path) -> bool {
+    pub(crate) fn has_loaded(&self, path: &Path) -> bool {
         self.files.values().any(|file| file == path)
     }
 
     /// Top-level classes were loaded from this file or folder.
-    pub fn note_files(&mut self, names: &[Name], path: &Path) {
+    pub(crate) fn note_files(&mut self, names: &[Name], path: &Path) {
         for name in names.iter().filter(|name| name.is_simple()) {
             self.files.insert(name.clone(), path.to_owned());
         }
@@ -193,12 +193,12 @@ impl Classes {
     }
 
     /// There is no file of this class.
-    pub fn note_nowhere(&mut self, name: Ident) {
+    pub(crate) fn note_nowhere(&mut self, name: Ident) {
         self.nowhere.insert(name);
     }
 
     /// The file that is named after this class does not define it.
-    pub fn note_misnamed(&mut self, name: Ident, path: PathBuf) {
+    pub(crate) fn note_misnamed(&mut self, name: Ident, path: PathBuf) {
         self.misnamed.insert(name, path);
     }
 
@@ -208,13 +208,13 @@ impl Classes {
     }
 
     /// Keeps the functions that are no classes of their own.
-    pub fn keep_copies(&mut self, functions: IndexMap<Name, Arc<Function>>) {
+    pub(crate) fn keep_copies(&mut self, functions: IndexMap<Name, Arc<Function>>) {
         let Classes { library, copies, .. } = self;
         copies.extend(functions.into_iter().filter(|(called, _)| !library.contains(called)));
     }
 
     /// The diagnostic of an unknown class, with what the file of its name defines instead.
-    pub fn with_misnamed_file(&self, diagnostic: Diagnostic, name: &Name) -> Diagnostic {
+    pub(crate) fn with_misnamed_file(&self, diagnostic: Diagnostic, name: &Name) -> Diagnostic {
         match self.misnamed_note(name).filter(|_| diagnostic.code == UNKNOWN_CLASS) {
             Some(note) => diagnostic.help(note),
             None => diagnostic,
@@ -222,7 +222,7 @@ impl Classes {
     }
 
     /// What a file defines instead of the class that it is named after.
-    pub fn misnamed_note(&self, name: &Name) -> Option<String> {
+    pub(crate) fn misnamed_note(&self, name: &Name) -> Option<String> {
         let wanted = name.first()?;
         let path = self.misnamed.get(&wanted)?;
         let own = self.files.iter().filter(|(_, file)| *file == path);

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// The compiled models of a session.
 #[derive(Default)]
-pub struct CompiledModels {
+pub(crate) struct CompiledModels {
     /// By the class with its modification, each with what it depends on.
     known: FxHashMap<String, (Uses, Arc<Translated>)>,
     /// The model translated last.
@@ -38,7 +38,7 @@ pub struct CompiledModels {
 
 /// The model translated last, with the values that scripts gave to its parameters.
 #[derive(Clone)]
-pub struct Current {
+pub(crate) struct Current {
     /// The model.
     pub model: Arc<Translated>,
     /// Values of parameters by their names.
@@ -48,7 +48,7 @@ pub struct Current {
     /// Values that states and discrete variables have at the start in place of those of the initial equations.
     pub imported: IndexMap<Arc<str>, f64>,
     /// Names that scripts could not give a value: the one before does not stand for it.
-    pub unset: BTreeSet<String>,
+    pub(crate) unset: BTreeSet<String>,
 }
 
 impl Current {
@@ -60,7 +60,7 @@ impl Current {
 
     /// # Errors
     /// An assignment to a parameter failed, and none has given it a value since.
-    pub fn check_set(&self) -> Result<(), Fault> {
+    pub(crate) fn check_set(&self) -> Result<(), Fault> {
         let Some(name) = self.unset.first() else { return Ok(()) };
         let problem = &self.model.problem;
         Err(
@@ -71,7 +71,7 @@ impl Current {
     }
 
     /// What scripts set by hand, as they could write it.
-    pub fn set_by_hand(&self) -> Vec<String> {
+    pub(crate) fn set_by_hand(&self) -> Vec<String> {
         let changes = self.changes.shown();
         let number = |(name, value): (&Arc<str>, &f64)| {
             format!("{name} = {}", shown(&self.model, name, *value))
@@ -112,26 +112,26 @@ impl CompiledModels {
     }
 
     /// Makes a model, with the values that it has itself, the one that dotted names refer to.
-    pub fn refer_anew_to(&mut self, model: &Arc<Translated>) {
+    pub(crate) fn refer_anew_to(&mut self, model: &Arc<Translated>) {
         self.current = Some(Current::of(model.clone()));
     }
 
     /// An assignment to something in the current model failed.
-    pub fn note_unset(&mut self, target: &ComponentReference) {
+    pub(crate) fn note_unset(&mut self, target: &ComponentReference) {
         if let Some(current) = &mut self.current {
             current.unset.insert(target.name().to_string());
         }
     }
 
     /// Something in the current model has got a value.
-    pub fn note_set(&mut self, target: &ComponentReference) {
+    pub(crate) fn note_set(&mut self, target: &ComponentReference) {
         if let Some(current) = &mut self.current {
             current.unset.remove(&target.name().to_string());
         }
     }
 
     /// Whether a warning about a model is to be reported: it was not yet.
-    pub fn is_new_warning(&mut self, span: Span, message: &str) -> bool {
+    pub(crate) fn is_new_warning(&mut self, span: Span, message: &str) -> bool {
         self.reported.insert((span, message.to_owned()))
     }
 
@@ -144,12 +144,12 @@ impl CompiledModels {
     }
 
     /// What was set by hand on a model before another one took its place.
-    pub fn take_left(&mut self, problem: &str) -> Option<Vec<String>> {
+    pub(crate) fn take_left(&mut self, problem: &str) -> Option<Vec<String>> {
         self.left.remove(problem)
     }
 
     /// A script has a variable of this name that has nothing to do with a model.
-    pub fn note_own(&mut self, name: Ident) {
+    pub(crate) fn note_own(&mut self, name: Ident) {
         self.own.insert(name);
     }
 
@@ -159,12 +159,12 @@ impl CompiledModels {
     }
 
     /// The scripts' variables are gone.
-    pub fn forget_variables(&mut self) {
+    pub(crate) fn forget_variables(&mut self) {
         self.own.clear();
     }
 
     /// Whether a note about a parameter is to be reported: there was none yet.
-    pub fn is_new_note(&mut self, name: Ident) -> bool {
+    pub(crate) fn is_new_note(&mut self, name: Ident) -> bool {
         self.noted.insert(name)
     }
 }

@@ -35,12 +35,12 @@ pub struct Final {
     /// Its value.
     pub value: f64,
     /// What it is.
-    pub category: Category,
+    pub(crate) category: Category,
 }
 
 /// What a variable is, with the numbers that these files have for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Category {
+pub(crate) enum Category {
     /// A parameter or constant.
     Parameter = 1,
     /// A state.

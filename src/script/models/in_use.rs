@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// A model with what was set by hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InUse {
+pub(crate) struct InUse {
     /// The class with its modification, and with what needs another translation.
     pub problem: String,
     /// The same with all that was set by hand.
@@ -37,7 +37,11 @@ impl Session {
     ///
     /// # Errors
     /// Its classes have changed, and it cannot be translated again.
-    pub fn in_use(&mut self, problem: &str, varied: &[String]) -> Result<InUse, Vec<Diagnostic>> {
+    pub(crate) fn in_use(
+        &mut self,
+        problem: &str,
+        varied: &[String],
+    ) -> Result<InUse, Vec<Diagnostic>> {
         let problem = problem.trim();
         let plain = InUse { problem: problem.into(), shown: problem.into(), values: Vec::new() };
         let Some(last) = self.last_model().filter(|last| last.problem == problem) else {

@@ -20,7 +20,7 @@ const LIMITS: &[&str] = &["not-supported", "external-refused"];
 
 /// What a model leaves open, by its declarations.
 #[derive(Debug, Clone, Copy)]
-pub struct LeftOpen {
+pub(crate) struct LeftOpen {
     /// Parameters without values, or replaceable partial classes.
     generic: bool,
     /// Connectors with more than outputs, or inputs.

@@ -164,7 +164,7 @@ impl Session {
     }
 
     /// Notes the versions that loaded packages ask for, and tells if another one is loaded.
-    pub fn note_versions(&mut self, names: &[Name]) {
+    pub(crate) fn note_versions(&mut self, names: &[Name]) {
         for name in names {
             let Some(definition) = self.classes.library.definition(name) else { continue };
             for (library, version) in uses(&definition) {
@@ -222,7 +222,7 @@ impl Session {
     }
 
     /// Puts the types under their former name into a standard library that lacks them.
-    pub fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
+    pub(crate) fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
         let modelica = Name::parse("Modelica");
         let library: &mut Library = &mut self.classes.library;
         let has = |part: &str| library.contains(&modelica.child(Ident::new(part)));

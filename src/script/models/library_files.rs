@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 /// The files of one library.
 #[derive(Debug)]
-pub struct SourceFiles {
+pub(crate) struct SourceFiles {
     files: Watched,
     reads: Reads,
     sources: SourceMap,

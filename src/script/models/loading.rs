@@ -202,7 +202,7 @@ impl Session {
 
     /// Loads what the library asked for and did not have. Returns whether something was loaded:
     /// then what failed is worth another attempt.
-    pub fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
+    pub(crate) fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
         let mut loaded = false;
         for name in self.classes.library.take_missing() {
             loaded |= self.autoload_class(name)?;

@@ -7,7 +7,7 @@ pub mod changes;
 pub mod checking;
 pub mod classes;
 pub mod compiled;
-pub mod constant_cache;
+pub(crate) mod constant_cache;
 mod continuation;
 pub mod documents;
 pub mod final_state;

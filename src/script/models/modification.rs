@@ -13,7 +13,7 @@ pub fn merge(arguments: &mut Vec<Argument>, path: &[Ident], value: &Expression) 
 
 /// The modification of the element at a path, which is made where it is missing; `None` for the
 /// empty path and behind a redeclaration.
-pub fn modification_at<'a>(
+pub(crate) fn modification_at<'a>(
     arguments: &'a mut Vec<Argument>,
     path: &[Ident],
 ) -> Option<&'a mut Modification> {
@@ -36,7 +36,7 @@ pub fn modification_at<'a>(
 }
 
 /// A modification that says nothing.
-pub fn no_modification() -> Modification {
+pub(crate) fn no_modification() -> Modification {
     Modification { arguments: Vec::new(), binding: None, span: Span::NONE }
 }
 

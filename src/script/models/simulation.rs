@@ -606,7 +606,7 @@ impl Session {
     /// Puts a variant of the model translated last, or of what scripts changed it to, in its place;
     /// its parameters have the values that scripts gave. `None`: it stays as it is.
     /// `Session::restore_values` takes it back.
-    pub fn vary_current(
+    pub(crate) fn vary_current(
         &mut self,
         variant: impl FnOnce(&Translated, &FlatModel) -> Result<Option<Translated>, Diagnostic>,
     ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
@@ -627,7 +627,7 @@ impl Session {
     }
 
     /// A system of the model with the values that scripts gave to it.
-    pub fn system_with_values(&mut self, model: &Translated) -> Result<System, Diagnostic> {
+    pub(crate) fn system_with_values(&mut self, model: &Translated) -> Result<System, Diagnostic> {
         Ok(prepared(self, model)?.1.system)
     }
 

@@ -48,9 +48,9 @@ pub struct Declaration {
     /// Whether it stands directly in the class.
     pub top_level: bool,
     /// Whether it has the attribute `fixed`.
-    pub says_fixed: bool,
+    pub(crate) says_fixed: bool,
     /// Whether the attribute `start` is final, if it has one.
-    pub final_start: Option<bool>,
+    pub(crate) final_start: Option<bool>,
 }
 
 impl Translated {

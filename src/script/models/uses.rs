@@ -43,7 +43,7 @@ impl LoadedSources {
     }
 
     /// Whether the names still mean what they did.
-    pub fn are_unchanged(&self, uses: &Uses) -> bool {
+    pub(crate) fn are_unchanged(&self, uses: &Uses) -> bool {
         uses.0.iter().all(|(root, text)| self.of(*root) == *text)
     }
 

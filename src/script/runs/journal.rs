@@ -154,12 +154,12 @@ impl Session {
     }
 
     /// Notes what the user typed during a pause.
-    pub fn journal_typed(&mut self, line: &str) {
+    pub(crate) fn journal_typed(&mut self, line: &str) {
         self.note_entry(&Entry::Typed(line.to_owned()), true);
     }
 
     /// What the user typed here in the run that is resumed.
-    pub fn typed_before(&mut self) -> Option<String> {
+    pub(crate) fn typed_before(&mut self) -> Option<String> {
         match self.extension::<Journal>().replay.pop_front()? {
             Entry::Typed(line) => Some(line),
             other => {
@@ -180,7 +180,7 @@ impl Session {
 
     /// The Modelica sources that were read from the source number `seen` on, as files to name when they
     /// change.
-    pub fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
+    pub(crate) fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
         while let Some(source) = self.sources.get(SourceId(*seen)) {
             *seen += 1;
             if source.name.ends_with(".mo") {
@@ -209,14 +209,14 @@ impl Session {
     }
 
     /// The earlier run is another one: nothing more is done, and its checkpoint stays as it is.
-    pub fn refuse_to_resume(&mut self) {
+    pub(crate) fn refuse_to_resume(&mut self) {
         self.extension::<Journal>().checkpoint = None;
         self.execution.stop_for(Stop::Error);
     }
 
     /// Whether the answer taken last from the earlier run is to be computed again: the first and
     /// the last are.
-    pub fn is_to_be_checked(&mut self) -> bool {
+    pub(crate) fn is_to_be_checked(&mut self) -> bool {
         let journal = self.extension::<Journal>();
         journal.answered += 1;
         let is_answer = |entry: &Entry| matches!(entry, Entry::Simulated { .. });

@@ -19,7 +19,7 @@ const PROMPT: &str = "> ";
 impl Session {
     /// How far the run is: the generations seen, of as many as the loop that the script is in has
     /// iterations.
-    pub fn show_run(&mut self, study: &Study, genomes: &Genomes) {
+    pub(crate) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
         let iterations = match self.loop_iteration() {
             Some((_, Some(iterations))) => iterations as u64,
             _ => 0,

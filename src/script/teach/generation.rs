@@ -139,11 +139,11 @@ pub struct Generation {
     /// Their fitness, if it is known; smaller is better.
     pub fitness: Vec<f64>,
     /// How often they were compared with measurements once more: with others, perhaps.
-    pub more_ratings: usize,
+    pub(crate) more_ratings: usize,
     /// Where it was computed.
     pub rated: Option<Place>,
     /// Simulated Y of the best individual at every measured point; empty where it is not known.
-    pub best_simulated: Vec<f64>,
+    pub(crate) best_simulated: Vec<f64>,
     /// Their order.
     pub sorted: Option<Sorted>,
     /// The crossover.
@@ -190,7 +190,7 @@ impl Generation {
     }
 
     /// Whether some of them came out of the generation before.
-    pub fn has_parents(&self) -> bool {
+    pub(crate) fn has_parents(&self) -> bool {
         let is_offspring =
             |origin: &Origin| matches!(origin, Origin::Elite { .. } | Origin::Child { .. });
         self.origins.iter().any(is_offspring)
@@ -227,7 +227,7 @@ impl Generation {
 
     /// The numbers that placed the genes of individual `k`, which completes this generation at
     /// random; `None` where as many were not drawn for those who do.
-    pub fn random_numbers(&self, k: usize) -> Option<Vec<f64>> {
+    pub(crate) fn random_numbers(&self, k: usize) -> Option<Vec<f64>> {
         let random = |origin: &&Origin| **origin == Origin::Random;
         let before = self.origins.get(..k)?.iter().filter(random).count();
         let all = self.origins.iter().filter(random).count();
@@ -283,7 +283,7 @@ impl Generation {
     }
 
     /// Which genes of row `k` of the mutation were replaced.
-    pub fn mutated_genes(&self, k: usize) -> Vec<usize> {
+    pub(crate) fn mutated_genes(&self, k: usize) -> Vec<usize> {
         let Some(mutated) = self.mutated.as_ref().filter(|mutated| k >= mutated.elites) else {
             return Vec::new();
         };

@@ -29,7 +29,7 @@ pub struct Kept {
     /// How many of those are there in which the best has improved.
     pub improvements: usize,
     /// How many there are in the run.
-    pub all_improvements: usize,
+    pub(crate) all_improvements: usize,
 }
 
 /// The generations to keep within about `most` bytes: the first and the last, those in which the best

@@ -47,5 +47,5 @@ pub use generation::{Generation, Origin};
 pub use operation::{Action, Operation};
 pub use step::Step;
 pub use trace::Trace;
-pub use tracer::{MutationCall, Tracer};
+pub(crate) use tracer::{MutationCall, Tracer};
 pub use walk::Walk;

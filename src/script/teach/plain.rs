@@ -32,7 +32,7 @@ pub fn step(walk: &Walk) -> String {
 }
 
 /// Which generation it is, or which call of operators where nothing is simulated.
-pub fn place_in_run(walk: &Walk) -> String {
+pub(crate) fn place_in_run(walk: &Walk) -> String {
     format!("{} {}", unit(walk.generation()), walk.number() + 1)
 }
 

@@ -7,7 +7,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 
 /// The results of the paper's functions, as the next ones usually get them.
 #[derive(Debug, Clone, Default)]
-pub struct Produced {
+pub(crate) struct Produced {
     /// Number of genes of each individual; 0 before the first simulation.
     pub(super) n_genes: usize,
     /// The numbers drawn last.

@@ -3,7 +3,7 @@
 
 /// The line, from 1, of the innermost `for` or `while` that is open where `line` begins; `None`
 /// where there is none.
-pub fn loop_around(script: &[String], line: usize) -> Option<usize> {
+pub(crate) fn loop_around(script: &[String], line: usize) -> Option<usize> {
     let mut open: Vec<usize> = Vec::new();
     let mut head = None;
     let mut after_end = false;

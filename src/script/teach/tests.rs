@@ -39,7 +39,7 @@ proptest! {
             match kind {
                 0 => walk.forward_phase(),
                 1 => walk.forward_generation(),
-                2 => walk.back_phase(),
+                2 => walk.back(),
                 _ => walk.forward(),
             };
             let before = (walk.number(), walk.progress());

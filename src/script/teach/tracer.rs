@@ -12,7 +12,7 @@ const LARGEST: usize = 64 << 20;
 
 /// Observes the calls of the paper's functions and gives the bytes of a trace, piece by piece.
 #[derive(Debug)]
-pub struct Tracer {
+pub(crate) struct Tracer {
     scripts: HashMap<PathBuf, u32>,
     subject: Option<Subject>,
     /// Where the model was asked for its Y, and what was measured there.
@@ -34,7 +34,7 @@ impl Default for Tracer {
 
 /// What `Mutation` was given.
 #[derive(Debug, Clone, Copy)]
-pub struct MutationCall<'a> {
+pub(crate) struct MutationCall<'a> {
     /// Elites and children, row by row.
     pub genes: &'a [f64],
     /// One number for each gene.
@@ -67,12 +67,12 @@ impl Tracer {
     }
 
     /// The bytes that came since the last call, to be written behind those.
-    pub fn take_bytes(&mut self) -> Vec<u8> {
+    pub(crate) fn take_bytes(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.unwritten)
     }
 
     /// How many bytes [`Tracer::take_bytes`] would give.
-    pub fn unwritten(&self) -> usize {
+    pub(crate) fn unwritten(&self) -> usize {
         self.unwritten.len()
     }
 
@@ -177,12 +177,12 @@ impl Tracer {
     }
 
     /// Whether calls of operators by name are recorded: not where the trace has its largest size.
-    pub fn takes_operations(&self) -> bool {
+    pub(crate) fn takes_operations(&self) -> bool {
         !self.full
     }
 
     /// An operator was called by name.
-    pub fn operated(&mut self, operation: Operation) {
+    pub(crate) fn operated(&mut self, operation: Operation) {
         if self.takes_operations() {
             self.push(&Event::Operate(operation));
         }

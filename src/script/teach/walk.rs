@@ -30,7 +30,7 @@ impl Walk {
     }
 
     /// Ends the walk.
-    pub fn into_trace(self) -> Trace {
+    pub(crate) fn into_trace(self) -> Trace {
         self.trace
     }
 
@@ -45,7 +45,7 @@ impl Walk {
     }
 
     /// The generation after it.
-    pub fn next_generation(&self) -> Option<&Generation> {
+    pub(crate) fn next_generation(&self) -> Option<&Generation> {
         self.trace.generations.get(self.generation + 1)
     }
 
@@ -115,7 +115,7 @@ impl Walk {
     }
 
     /// On to the next part of the generation, such as from crossover to mutation.
-    pub fn forward_phase(&mut self) -> bool {
+    pub(crate) fn forward_phase(&mut self) -> bool {
         let phase = self.step().phase();
         match (self.at..self.steps.len()).find(|&k| self.steps[k].phase() != phase) {
             Some(at) => {
@@ -126,20 +126,8 @@ impl Walk {
         }
     }
 
-    /// Back to the first step of this part of the generation, or of the one before it.
-    pub fn back_phase(&mut self) -> bool {
-        if !self.back() {
-            return false;
-        }
-        let phase = self.step().phase();
-        while self.at > 0 && self.steps[self.at - 1].phase() == phase {
-            self.at -= 1;
-        }
-        true
-    }
-
     /// On to the first step of the next generation.
-    pub fn forward_generation(&mut self) -> bool {
+    pub(crate) fn forward_generation(&mut self) -> bool {
         self.go_to(self.generation + 1)
     }
 

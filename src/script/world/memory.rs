@@ -109,7 +109,7 @@ impl MemoryWorld {
 
     /// The same where the user asks to stop by setting `flag`.
     #[must_use]
-    pub fn stopped_by(mut self, flag: &Arc<AtomicBool>) -> MemoryWorld {
+    pub(crate) fn stopped_by(mut self, flag: &Arc<AtomicBool>) -> MemoryWorld {
         self.stop = Some(Arc::clone(flag));
         self
     }

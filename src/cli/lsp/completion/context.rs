@@ -17,7 +17,7 @@ pub struct Context {
     /// The cursor is in a string that begins here.
     pub string: Option<usize>,
     /// The cursor is in a comment.
-    pub in_comment: bool,
+    pub(crate) in_comment: bool,
 }
 
 /// Parentheses that are open.
@@ -30,7 +30,7 @@ pub struct Open {
     /// Commas in them so far.
     pub commas: usize,
     /// Whether the cursor is behind a `=`.
-    pub in_value: bool,
+    pub(crate) in_value: bool,
 }
 
 /// A piece of a text.

@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// What a name means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Entity {
+pub(crate) enum Entity {
     /// Something that a class declares, or a class.
     Declared(Declared),
     /// A loop variable, by the place where it is declared.
@@ -33,9 +33,9 @@ pub struct Occurrence {
     /// Its bytes.
     pub range: Range<usize>,
     /// What it means.
-    pub entity: Entity,
+    pub(crate) entity: Entity,
     /// Whether it is declared here.
-    pub is_declaration: bool,
+    pub(crate) is_declaration: bool,
 }
 
 /// The names of a document that mean something, in the order of the text.

@@ -59,7 +59,7 @@ pub trait Analysis {
 }
 
 /// All ways.
-pub const ANALYSES: &[&Entry<dyn Analysis>] = &[&morris::ENTRY, &sobol::ENTRY];
+pub(crate) const ANALYSES: &[&Entry<dyn Analysis>] = &[&morris::ENTRY, &sobol::ENTRY];
 
 /// The way of a name.
 ///
@@ -96,7 +96,7 @@ impl Importance {
     }
 
     /// Parameters that hardly matter.
-    pub fn hardly_matter(&self) -> Vec<&str> {
+    pub(crate) fn hardly_matter(&self) -> Vec<&str> {
         // Both figures of the screening and the total share are zero without any effect.
         let size =
             |p: &ParameterImportance| p.figures.iter().flatten().copied().fold(0.0, f64::max);

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// The experiment to which the points of priors belong.
-pub const PRIOR: &str = "(prior)";
+pub(crate) const PRIOR: &str = "(prior)";
 
 /// What is known of a parameter without the data.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -196,7 +196,10 @@ struct PortableAdjustments {
 /// # Errors
 ///
 /// `bad-option` where these are not such bytes.
-pub fn adjusted_from(inner: Box<dyn Simulate>, bytes: &[u8]) -> Result<Box<dyn Simulate>, Fault> {
+pub(crate) fn adjusted_from(
+    inner: Box<dyn Simulate>,
+    bytes: &[u8],
+) -> Result<Box<dyn Simulate>, Fault> {
     let read: PortableAdjustments = postcard::from_bytes(bytes)
         .map_err(|error| fault!(BAD_OPTION, "the adjustments cannot be read: {error}"))?;
     let PortableAdjustments { points, logarithmic, priors, constraints } = read;

@@ -95,7 +95,7 @@ pub struct Bootstrapped {
     pub interval: [f64; 2],
     /// The share of the replicates at an end of the search range.
     #[serde(default)]
-    pub at_bounds: f64,
+    pub(crate) at_bounds: f64,
 }
 
 /// The bootstrap; `None` where it is refused.

@@ -45,14 +45,14 @@ pub struct Compared {
     /// Its likelihood.
     pub likelihood: Likelihood,
     /// Akaike's criterion, corrected for few points; `None` with too few.
-    pub aicc: Option<f64>,
+    pub(crate) aicc: Option<f64>,
     /// Schwarz' criterion.
-    pub bic: f64,
+    pub(crate) bic: f64,
     /// Akaike weight; `None` with too few points, or where a model has not ended at a minimum.
     pub weight: Option<f64>,
     /// Why there is no minimum, so that the likelihood is not the largest one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub no_minimum: Option<String>,
+    pub(crate) no_minimum: Option<String>,
 }
 
 /// A pair of nested models.
@@ -63,7 +63,7 @@ pub struct Nested {
     /// Place of the model that contains it.
     pub larger: usize,
     /// Twice the difference of ln L.
-    pub statistic: f64,
+    pub(crate) statistic: f64,
     /// Additional estimated quantities.
     pub freedom: usize,
     /// Probability of such a difference if the special case is right; `None` where the larger

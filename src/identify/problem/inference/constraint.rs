@@ -8,7 +8,7 @@ use std::sync::Arc;
 const AT_LIMIT: f64 = 1e-3;
 
 /// The smaller and the larger side at values of the parameters.
-pub type Sides = Arc<dyn Fn(&[f64]) -> [f64; 2] + Send + Sync>;
+pub(crate) type Sides = Arc<dyn Fn(&[f64]) -> [f64; 2] + Send + Sync>;
 
 /// What is compared.
 #[derive(Clone)]
@@ -19,7 +19,7 @@ enum Compared {
 
 /// A constraint as another process can read it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct PortableConstraint {
+pub(crate) struct PortableConstraint {
     text: String,
     terms: [Term; 2],
 }

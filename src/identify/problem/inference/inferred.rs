@@ -28,12 +28,12 @@ pub struct Inferred {
     pub findings: Vec<Finding>,
     /// What could not be inferred, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub refusals: Vec<String>,
+    pub(crate) refusals: Vec<String>,
 }
 
 impl Inferred {
     /// `bands.csv`: all bands.
-    pub fn bands_csv(&self) -> String {
+    pub(crate) fn bands_csv(&self) -> String {
         let mut text = String::from("experiment,variable,x,y,confidence_95,prediction_95\n");
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
         for band in &self.bands {

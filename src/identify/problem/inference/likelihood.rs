@@ -16,7 +16,7 @@ pub struct Likelihood {
     /// Estimated quantities: parameters, and the standard deviation where it is not given.
     pub estimated: usize,
     /// Whether the standard deviations of the measurements are given.
-    pub known_sigma: bool,
+    pub(crate) known_sigma: bool,
 }
 
 /// The sum of the logarithms of log-normal data: what the density of a value is less than that of its

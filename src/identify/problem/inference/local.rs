@@ -48,7 +48,7 @@ pub struct Local {
     pub known: bool,
     /// Whether the fit minimises a robust loss: the variance is then that of its estimates, and not
     /// that of a measurement.
-    pub robust: bool,
+    pub(crate) robust: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.
     pub quantile: f64,
     /// The Fisher information.
@@ -141,7 +141,7 @@ impl Local {
 
     /// The standard deviation of a measurement of series `series` at `x`: that of the measured
     /// point nearest to it.
-    pub fn noise_at(&self, problem: &Problem, series: usize, x: f64) -> f64 {
+    pub(crate) fn noise_at(&self, problem: &Problem, series: usize, x: f64) -> f64 {
         let first: usize = problem.series[..series].iter().map(|series| series.x.len()).sum();
         let own = problem.series[series].x.iter().enumerate();
         let nearest = own.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()));
@@ -187,7 +187,7 @@ impl Information {
     }
 
     /// gᵀF⁻¹g; `None` where the data leave a direction open on which g depends.
-    pub fn variance_of(&self, gradient: &[f64]) -> Option<f64> {
+    pub(crate) fn variance_of(&self, gradient: &[f64]) -> Option<f64> {
         let scaled = gradient.iter().zip(&self.sizes).map(|(g, size)| g / size);
         let scaled = DVector::from_iterator(gradient.len(), scaled);
         let length = scaled.norm();
@@ -206,14 +206,14 @@ impl Information {
     }
 
     /// The variance of every parameter; `None` where it is unbounded.
-    pub fn variances(&self) -> Vec<Option<f64>> {
+    pub(crate) fn variances(&self) -> Vec<Option<f64>> {
         let n = self.sizes.len();
         let unit = |k: usize| (0..n).map(|l| if k == l { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
         (0..n).map(|k| self.variance_of(&unit(k))).collect()
     }
 
     /// ln det F; −∞ where the data leave a direction open.
-    pub fn log_determinant(&self) -> f64 {
+    pub(crate) fn log_determinant(&self) -> f64 {
         let values = self.eigen.eigenvalues.iter();
         let logs =
             values.map(
@@ -224,13 +224,13 @@ impl Information {
 
     /// ln det F with open directions counted as the smallest information that counts, so that
     /// matrices with open directions can be compared.
-    pub fn floored_log_determinant(&self) -> f64 {
+    pub(crate) fn floored_log_determinant(&self) -> f64 {
         let logs = self.eigen.eigenvalues.iter().map(|value| elementary::ln(value.max(self.zero)));
         logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| elementary::ln(*size)).sum::<f64>()
     }
 
     /// The sum of the variances, open directions counted in the same way.
-    pub fn floored_trace_of_inverse(&self) -> f64 {
+    pub(crate) fn floored_trace_of_inverse(&self) -> f64 {
         let vectors = &self.eigen.eigenvectors;
         let entry = |(k, size): (usize, &f64)| {
             let values = self.eigen.eigenvalues.iter().enumerate();

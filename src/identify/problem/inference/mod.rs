@@ -20,11 +20,14 @@ mod predictions;
 mod prior_data;
 mod term;
 
-pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust, adjusted_from};
+pub use adjusted::{Adjustments, Distribution, Prior, adjust};
+
+pub(crate) use adjusted::{PRIOR, adjusted_from};
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Nested, compare};
-pub use constraint::{Constraint, PortableConstraint, Sides};
+pub use constraint::Constraint;
+pub(crate) use constraint::PortableConstraint;
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use inferred::Inferred;
 pub use likelihood::{Likelihood, logarithms};
@@ -65,7 +68,7 @@ pub struct Inference {
 /// # Errors
 ///
 /// Settings that do not fit the problem.
-pub fn infer(run: &Run) -> Result<Inferred, Fault> {
+pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
     let wanted = &run.problem.inference;
     let mut found = Inferred::default();
     let Some(best) = &run.best else { return Ok(found) };

@@ -54,7 +54,7 @@ pub struct Curves {
     /// Writes all points of all curves.
     pub simulator: Box<dyn Simulate>,
     /// Which experiments are missing, and why.
-    pub refusals: Vec<String>,
+    pub(crate) refusals: Vec<String>,
 }
 
 /// Something that can simulate where nothing was measured.
@@ -72,7 +72,7 @@ pub struct Linear {
     /// The points of all curves, one curve after the other.
     pub values: Vec<f64>,
     /// Derivatives by the parameters, point by point.
-    pub gradients: Vec<Vec<f64>>,
+    pub(crate) gradients: Vec<Vec<f64>>,
 }
 
 /// Curves at `values`, linear in the parameters about them.

@@ -54,7 +54,7 @@ pub fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
 }
 
 /// Constraints at whose limit the estimates lie.
-pub fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> {
+pub(crate) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> {
     let active =
         problem.inference.constraints.iter().filter(|constraint| constraint.is_active(values));
     let remark = |text: &str| {

@@ -26,7 +26,7 @@ pub(in crate::problem) struct AtEnd {
     /// Which one.
     pub parameter: usize,
     /// 1 where the range lies above the end, −1 where below.
-    pub inward: f64,
+    pub(crate) inward: f64,
     /// How far the linear fit would go beyond the end, in standard errors.
     pub pull: f64,
 }

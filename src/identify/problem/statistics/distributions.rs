@@ -10,7 +10,7 @@ use super::special_functions::{beta_tails, falls_to, gamma_tails, ln_binomial};
 use crate::elementary;
 
 /// The `p` quantile of Student's distribution with `freedom` degrees of freedom.
-pub fn student_quantile(p: f64, freedom: f64) -> f64 {
+pub(crate) fn student_quantile(p: f64, freedom: f64) -> f64 {
     match exists(freedom) {
         true => symmetric_quantile(p, |t| student_two_sided(t, freedom)),
         false => f64::NAN,
@@ -18,7 +18,7 @@ pub fn student_quantile(p: f64, freedom: f64) -> f64 {
 }
 
 /// Probability that a Student variable is farther from 0 than `t`.
-pub fn student_two_sided(t: f64, freedom: f64) -> f64 {
+pub(crate) fn student_two_sided(t: f64, freedom: f64) -> f64 {
     if !exists(freedom) || t.is_nan() {
         return f64::NAN;
     }
@@ -28,7 +28,7 @@ pub fn student_two_sided(t: f64, freedom: f64) -> f64 {
 }
 
 /// The `p` quantile of the standard normal distribution.
-pub fn normal_quantile(p: f64) -> f64 {
+pub(crate) fn normal_quantile(p: f64) -> f64 {
     symmetric_quantile(p, normal_two_sided)
 }
 
@@ -48,23 +48,23 @@ fn symmetric_quantile(p: f64, two_sided: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Probability that a standard normal variable is less than `z`.
-pub fn normal_below(z: f64) -> f64 {
+pub(crate) fn normal_below(z: f64) -> f64 {
     let half = 0.5 * normal_two_sided(z);
     if z < 0.0 { half } else { 1.0 - half }
 }
 
 /// Density of the standard normal distribution.
-pub fn normal_density(z: f64) -> f64 {
+pub(crate) fn normal_density(z: f64) -> f64 {
     elementary::exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt()
 }
 
 /// Probability that a standard normal variable is farther from 0 than `z`.
-pub fn normal_two_sided(z: f64) -> f64 {
+pub(crate) fn normal_two_sided(z: f64) -> f64 {
     if z.is_nan() { f64::NAN } else { gamma_tails(0.5, 0.5 * z * z)[1] }
 }
 
 /// Probabilities of a smaller and of a larger value of χ².
-pub fn chi_square_tails(value: f64, freedom: f64) -> [f64; 2] {
+pub(crate) fn chi_square_tails(value: f64, freedom: f64) -> [f64; 2] {
     if exists(freedom) && !value.is_nan() {
         gamma_tails(0.5 * freedom, 0.5 * value)
     } else {
@@ -73,7 +73,7 @@ pub fn chi_square_tails(value: f64, freedom: f64) -> [f64; 2] {
 }
 
 /// The `p` quantile of χ².
-pub fn chi_square_quantile(p: f64, freedom: f64) -> f64 {
+pub(crate) fn chi_square_quantile(p: f64, freedom: f64) -> f64 {
     if !exists(freedom) || !(0.0..=1.0).contains(&p) {
         return f64::NAN;
     }
@@ -81,7 +81,7 @@ pub fn chi_square_quantile(p: f64, freedom: f64) -> f64 {
 }
 
 /// Probability of a larger ratio of two variances.
-pub fn f_upper(ratio: f64, [above, below]: [f64; 2]) -> f64 {
+pub(crate) fn f_upper(ratio: f64, [above, below]: [f64; 2]) -> f64 {
     if !exists(above) || !exists(below) || ratio.is_nan() {
         return f64::NAN;
     }
@@ -90,7 +90,7 @@ pub fn f_upper(ratio: f64, [above, below]: [f64; 2]) -> f64 {
 }
 
 /// Probability of a split of `n` signs at least as uneven as `positive` to the rest.
-pub fn signs_two_sided(positive: u64, n: u64) -> f64 {
+pub(crate) fn signs_two_sided(positive: u64, n: u64) -> f64 {
     let least = positive.min(n - positive) as f64;
     (2.0 * beta_tails(n as f64 - least, least + 1.0, [0.5; 2])[0]).min(1.0)
 }
@@ -101,7 +101,7 @@ fn exists(freedom: f64) -> bool {
 
 /// Probability of as few or as many runs by chance among `above` and `below` signs, exactly:
 /// twice the smaller tail of the distribution of Wald and Wolfowitz.
-pub fn runs_two_sided(runs: usize, above: u64, below: u64) -> f64 {
+pub(crate) fn runs_two_sided(runs: usize, above: u64, below: u64) -> f64 {
     if above == 0 || below == 0 {
         return 1.0;
     }

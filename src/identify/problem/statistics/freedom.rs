@@ -28,12 +28,12 @@ const LEAST: f64 = 1.0;
 const NULL: f64 = 1e-10;
 
 /// How much standard errors and their quantiles have to account for.
-pub struct Effective {
+pub(crate) struct Effective {
     /// The smallest degrees of freedom of a parameter.
     pub freedom: f64,
     /// What the variance of the residuals is multiplied with: an output that determines the parameters
     /// has residuals that are smaller than its errors by more than those of the others are.
-    pub inflation: f64,
+    pub(crate) inflation: f64,
 }
 
 /// Of `freedom` degrees in all; `columns`: weighted sensitivities.

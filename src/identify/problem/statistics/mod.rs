@@ -11,7 +11,7 @@
 //! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 5.
 
 pub(super) mod at_bounds;
-pub mod distributions;
+pub(crate) mod distributions;
 pub(super) mod freedom;
 pub(super) mod outliers;
 pub(super) mod residuals;
@@ -19,7 +19,7 @@ mod special_functions;
 
 use crate::elementary;
 use at_bounds::AtBounds;
-pub use residuals::{ResidualTest, residual_test};
+pub(crate) use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
 use super::non_identifiable::{self, Form, NonIdentifiable};
@@ -76,7 +76,7 @@ pub struct Statistics {
     /// residual variance, or for robust fitness functions that of M-estimators.
     pub variance: f64,
     /// Whether the fitness is a robust one.
-    pub robust: bool,
+    pub(crate) robust: bool,
     /// Weights of the points: reciprocal standard deviations where these are known or estimated.
     pub weights: Vec<f64>,
     /// Weighted residuals, measured less simulated.
@@ -86,11 +86,11 @@ pub struct Statistics {
     /// Condition number of the sensitivities, columns of unit length.
     pub condition: Option<f64>,
     /// Groups of parameters that only together have an effect.
-    pub non_identifiable: Vec<NonIdentifiable>,
+    pub(crate) non_identifiable: Vec<NonIdentifiable>,
     /// Parameters whose derivatives cancel each other, while finite changes do not.
     pub(super) cancelling: Vec<usize>,
     /// Parameters without any effect on the compared points at the best values.
-    pub without_effect: Vec<usize>,
+    pub(crate) without_effect: Vec<usize>,
     /// Sensitivities of the simulated points by the parameters, column by column, without weights.
     pub jacobian: Vec<Vec<f64>>,
     /// Simulations that it took.

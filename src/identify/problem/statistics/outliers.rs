@@ -22,7 +22,7 @@ pub(in super::super) struct Outlier {
     /// Its place.
     pub point: usize,
     /// Its studentised residual without it.
-    pub studentised: f64,
+    pub(crate) studentised: f64,
     /// Probability of one as large by chance among all points.
     pub probability: f64,
 }

@@ -10,21 +10,21 @@ use crate::elementary;
 
 /// Whether residuals in the order of X look like noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResidualTest {
+pub(crate) struct ResidualTest {
     /// Runs of equal sign.
     pub runs: usize,
     /// How many would be expected.
-    pub expected_runs: f64,
+    pub(crate) expected_runs: f64,
     /// Probability of as few or as many runs by chance.
-    pub runs_probability: f64,
+    pub(crate) runs_probability: f64,
     /// Correlation of neighbours.
-    pub autocorrelation: f64,
+    pub(crate) autocorrelation: f64,
     /// Probability of a correlation as far from 0 by chance.
-    pub autocorrelation_probability: f64,
+    pub(crate) autocorrelation_probability: f64,
 }
 
 /// The tests of residuals in their order; `None` for fewer than three.
-pub fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
+pub(crate) fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
     let n = residuals.len();
     if n < 3 {
         return None;

@@ -10,7 +10,7 @@ const MOST_TERMS: usize = 100_000;
 const TINY: f64 = 1e-300;
 
 /// ln Γ(x) for a positive x: Stirling's series, after the recurrence where x is small.
-pub fn ln_gamma(x: f64) -> f64 {
+pub(crate) fn ln_gamma(x: f64) -> f64 {
     const TERMS: [f64; 7] = [
         1.0 / 12.0,
         -1.0 / 360.0,
@@ -32,13 +32,13 @@ pub fn ln_gamma(x: f64) -> f64 {
 }
 
 /// ln of the number of ways to choose `k` of `n`.
-pub fn ln_binomial(n: u64, k: u64) -> f64 {
+pub(crate) fn ln_binomial(n: u64, k: u64) -> f64 {
     let factorial = |n: u64| ln_gamma(n as f64 + 1.0);
     factorial(n) - factorial(k) - factorial(n - k)
 }
 
 /// The regularized incomplete gamma functions P(a, x) and Q(a, x) = 1 - P(a, x).
-pub fn gamma_tails(a: f64, x: f64) -> [f64; 2] {
+pub(crate) fn gamma_tails(a: f64, x: f64) -> [f64; 2] {
     if x <= 0.0 {
         return [0.0, 1.0];
     }
@@ -67,7 +67,7 @@ pub fn gamma_tails(a: f64, x: f64) -> [f64; 2] {
 }
 
 /// The regularized incomplete beta functions I(x; a, b) and 1 - I(x; a, b), from `x` and `1 - x`.
-pub fn beta_tails(a: f64, b: f64, [x, rest]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn beta_tails(a: f64, b: f64, [x, rest]: [f64; 2]) -> [f64; 2] {
     if x <= 0.0 {
         return [0.0, 1.0];
     }
@@ -111,7 +111,7 @@ fn continued_fraction(first: f64, term: impl Fn(usize) -> (f64, f64)) -> f64 {
 
 /// Where a function of a positive number, not increasing, falls to `value`; by bisection to the
 /// last bit.
-pub fn falls_to(value: f64, function: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn falls_to(value: f64, function: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
     while function(high) > value {
         (low, high) = (high, 2.0 * high);

@@ -9,7 +9,7 @@ use super::call::Call;
 use crate::diag::Fault;
 use schedule::Schedule;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("getTimeSpan", "ftA", time_span).for_source("getTimeSpan"),
     Entry::pure("cryptographicsHash", "t->t", hash).for_source("cryptographicsHash"),
     Entry::pure("weeklyScheduleInit", "ngnt->o", new_schedule).for_source("WeeklySchedule"),

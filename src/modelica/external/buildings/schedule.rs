@@ -14,7 +14,7 @@ const WEEK: f64 = 7.0 * DAY;
 const DAYS: [&str; 7] = ["mon", "tue", "wed", "thu", "fri", "sat", "sun"];
 
 /// A schedule that was read.
-pub struct Schedule {
+pub(crate) struct Schedule {
     /// When Monday begins, in seconds.
     offset: f64,
     /// The changes of each column: seconds since Monday, value; ascending.

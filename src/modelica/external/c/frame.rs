@@ -130,7 +130,7 @@ fn write(cell: Cell, slot: &Slot, call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// An object that C has made; freed by its destructor when nobody holds it any more.
-pub struct CObject {
+pub(crate) struct CObject {
     pub(super) library: Arc<dyn CLibrary>,
     pub(super) address: usize,
     pub(super) destructor: Option<usize>,

@@ -11,7 +11,7 @@ pub enum Smoothness {
 }
 
 impl Smoothness {
-    pub fn from_ordinal(ordinal: i64) -> Option<Smoothness> {
+    pub(crate) fn from_ordinal(ordinal: i64) -> Option<Smoothness> {
         Some(match ordinal {
             1 => Smoothness::Linear,
             2 => Smoothness::Spline(Spline::Akima),
@@ -34,7 +34,7 @@ pub enum Extrapolation {
 }
 
 impl Extrapolation {
-    pub fn from_ordinal(ordinal: i64) -> Option<Extrapolation> {
+    pub(crate) fn from_ordinal(ordinal: i64) -> Option<Extrapolation> {
         Some(match ordinal {
             1 => Extrapolation::Hold,
             2 => Extrapolation::LastTwoPoints,

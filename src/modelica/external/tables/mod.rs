@@ -11,13 +11,13 @@ mod surface;
 mod time;
 mod two;
 
-pub use source::names_a_file;
+pub(crate) use source::names_a_file;
 
 use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
 
-pub const ENTRIES: &[Entry] = &[
+pub(crate) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init", "tfannnannn->o", time::init),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "ftannnannnnnn->o", time::init2),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ftannnannnnnntn->o", time::init3),

@@ -8,7 +8,7 @@ use crate::external::call::Call;
 
 /// Columns of a table over its first column.
 #[derive(Debug)]
-pub struct Table1D {
+pub(crate) struct Table1D {
     pub(super) x: Vec<f64>,
     pub(super) curves: Vec<Curve>,
     pub(super) smoothness: Smoothness,
@@ -90,13 +90,13 @@ pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// As [`init`], file before table, with extrapolation and verbosity.
-pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, extrapolation)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((10, 11)) }, extrapolation)
 }

@@ -30,7 +30,7 @@ pub struct Source {
 const NOTHING: &str = "NoName";
 
 /// Whether a text given as the name of a file is one.
-pub fn names_a_file(text: &str) -> bool {
+pub(crate) fn names_a_file(text: &str) -> bool {
     !matches!(text.trim(), "" | NOTHING)
 }
 

@@ -6,7 +6,7 @@
 
 /// How slopes are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spline {
+pub(crate) enum Spline {
     /// Akima's weights.
     Akima,
     /// Akima's weights with the mean slopes added, so that flat parts do not overshoot.

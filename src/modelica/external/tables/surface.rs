@@ -12,7 +12,7 @@ pub struct Surface {
 /// Where an abscissa lies in an interval of its axis: weights of the values and of the slopes at
 /// both ends for the value, the first and the second derivative.
 #[derive(Debug, Clone, Copy)]
-pub struct Basis {
+pub(crate) struct Basis {
     low: usize,
     high: usize,
     /// By order of the derivative: low value, low slope, high value, high slope.

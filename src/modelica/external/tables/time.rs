@@ -40,13 +40,13 @@ pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// As [`init`], file before table, with shift, time events and verbosity.
-pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, shift, events)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((13, 14)) }, shift, events)
 }

@@ -36,13 +36,13 @@ pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// As [`init`], file before table, with extrapolation and verbosity.
-pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(6);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, extrapolation)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub(crate) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(6);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((8, 9)) }, extrapolation)
 }

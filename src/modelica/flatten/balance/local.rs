@@ -74,7 +74,7 @@ struct Place {
 
 impl LocalBalance {
     /// Whether the numbers agree.
-    pub fn is_balanced(&self) -> bool {
+    pub(crate) fn is_balanced(&self) -> bool {
         self.unknowns == self.equations
     }
 
@@ -102,7 +102,7 @@ impl LocalBalance {
 
 impl Instantiation<'_> {
     /// The local balance of the model and of its components, as far as they are known.
-    pub fn local_balances(
+    pub(crate) fn local_balances(
         &mut self,
         connections: &Connections,
         model: &FlatModel,

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 
 /// The connected sides, in sets of two or more.
-pub fn of_edges(edges: &[ScalarPair]) -> Vec<Vec<ConnectorSide>> {
+pub(crate) fn of_edges(edges: &[ScalarPair]) -> Vec<Vec<ConnectorSide>> {
     let mut number: FxHashMap<ConnectorSide, usize> = FxHashMap::default();
     let mut sides = Vec::new();
     let mut parent: Vec<usize> = Vec::new();

@@ -7,7 +7,7 @@ use crate::functions::{self, Clocked, Operator, Temporal};
 use crate::syntax::ast::{Expression, ExpressionKind};
 
 /// Whether an expression is a clock: a component that is one, a constructor or a conversion.
-pub fn is_clock(class: Scope<'_>, e: &Expression) -> bool {
+pub(crate) fn is_clock(class: Scope<'_>, e: &Expression) -> bool {
     match &e.kind {
         ExpressionKind::Reference(reference) => {
             let component = class.component_at(reference);

@@ -9,7 +9,7 @@ use crate::syntax::ast::{ClassSpecifier, Restriction, Visibility};
 use rustc_hash::FxHashSet;
 
 /// What a class lacks to be compatible with another.
-pub struct Lack(pub String);
+pub(crate) struct Lack(pub String);
 
 /// What a class lacks to stand where `expected` is expected.
 pub fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {

@@ -55,7 +55,7 @@ pub fn names(class: Scope<'_>, name: Ident) -> bool {
 }
 
 /// The packages from which a class imports everything.
-pub fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
+pub(crate) fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
     let imports = class.library.class(class.class).imports();
     let packages = imports.iter().filter_map(|import| match import {
         ImportKind::Unqualified(package) => Some(global(package)),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 const MAX_BASES: usize = 10_000;
 
 /// Goes through a class and its bases, each once.
-pub struct Lineage<'a> {
+pub(crate) struct Lineage<'a> {
     library: &'a Library,
     seen: FxHashSet<ClassId>,
     pending: Vec<ClassId>,

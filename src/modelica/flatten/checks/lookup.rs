@@ -82,7 +82,7 @@ impl Library {
     }
 
     /// The classes that a class extends, or that it is short for; unknown ones left out.
-    pub fn declared_bases(&self, class: ClassId) -> Arc<[ClassId]> {
+    pub(crate) fn declared_bases(&self, class: ClassId) -> Arc<[ClassId]> {
         self.bases_once(class, || self.find_bases(class))
     }
 

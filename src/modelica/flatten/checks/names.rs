@@ -17,7 +17,7 @@ pub struct Written {
     pub name: Name,
     pub span: Span,
     /// It is the base of an extends clause.
-    pub is_base: bool,
+    pub(crate) is_base: bool,
 }
 
 /// All names that a class itself writes, those of loop variables left out. What short classes

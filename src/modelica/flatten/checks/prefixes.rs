@@ -217,7 +217,7 @@ fn fixed_word(variability: Option<VariabilityPrefix>) -> Option<&'static str> {
     }
 }
 
-pub fn connection_word(prefix: ConnectionPrefix) -> &'static str {
+pub(crate) fn connection_word(prefix: ConnectionPrefix) -> &'static str {
     match prefix {
         ConnectionPrefix::Flow => "flow",
         ConnectionPrefix::Stream => "stream",

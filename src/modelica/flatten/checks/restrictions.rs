@@ -223,7 +223,7 @@ fn no_behaviour(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {
 }
 
 /// Whether a section holds equations or an algorithm.
-pub fn is_behaviour(section: &Section) -> bool {
+pub(crate) fn is_behaviour(section: &Section) -> bool {
     matches!(section, Section::Equations { .. } | Section::Algorithm { .. })
 }
 

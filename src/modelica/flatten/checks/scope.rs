@@ -89,7 +89,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The classes that it declares itself, with their visibility.
-    pub fn class_elements(self) -> impl Iterator<Item = (Visibility, &'a ClassElement)> {
+    pub(crate) fn class_elements(self) -> impl Iterator<Item = (Visibility, &'a ClassElement)> {
         self.elements().filter_map(|(visibility, element)| match element {
             Element::Class(nested) => Some((visibility, nested)),
             _ => None,
@@ -124,14 +124,14 @@ impl<'a> Scope<'a> {
     }
 
     /// The component of a name that it declares itself.
-    pub fn own_component(self, name: Ident) -> Option<Component<'a>> {
+    pub(crate) fn own_component(self, name: Ident) -> Option<Component<'a>> {
         let (visibility, clause, declaration) =
             self.library.class(self.class).component_element(name)?;
         Some(Component { owner: self, visibility, clause, declaration })
     }
 
     /// The class of a name that it declares itself, in its file, with its visibility.
-    pub fn class_element(self, name: Ident) -> Option<(Visibility, &'a ClassElement)> {
+    pub(crate) fn class_element(self, name: Ident) -> Option<(Visibility, &'a ClassElement)> {
         self.library.class(self.class).class_element(name)
     }
 
@@ -154,7 +154,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The component that a reference names, as [`Scope::path`] finds it.
-    pub fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
+    pub(crate) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
         self.path(reference)?.pop()
     }
 
@@ -164,7 +164,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The class that a name means in it.
-    pub fn class_named(self, name: &Name) -> Option<Scope<'a>> {
+    pub(crate) fn class_named(self, name: &Name) -> Option<Scope<'a>> {
         match self.meaning(name)? {
             Type::Class(class) => Some(self.of(class)),
             Type::Predefined(_) => None,
@@ -172,7 +172,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The class behind a row of short classes, and the prefixes that they add.
-    pub fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
+    pub(crate) fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
         let mut class = self;
         let mut prefixes = Vec::new();
         for _ in 0..MAX_CHAIN {
@@ -221,7 +221,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Whether it is an enumeration, by itself or through others.
-    pub fn is_enumeration(self) -> bool {
+    pub(crate) fn is_enumeration(self) -> bool {
         self.enumeration().is_some()
     }
 
@@ -254,7 +254,7 @@ impl<'a> Component<'a> {
     }
 
     /// Whether it, or its type, is declared input or output.
-    pub fn has_direction(&self) -> bool {
+    pub(crate) fn has_direction(&self) -> bool {
         let directed = |prefixes: &TypePrefixes| prefixes.causality.is_some();
         let of_type = || self.class().is_some_and(|class| class.unaliased().1.iter().any(directed));
         directed(&self.clause.type_prefixes) || of_type()

@@ -23,7 +23,7 @@ pub struct Found {
 
 impl Found {
     /// A class whose file is another one than that of its package.
-    pub fn in_own_file(class: Scope<'_>) -> Found {
+    pub(crate) fn in_own_file(class: Scope<'_>) -> Found {
         Found { visibility: Visibility::Public, encapsulated: class.definition().encapsulated }
     }
 }

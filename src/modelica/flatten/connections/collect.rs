@@ -53,7 +53,7 @@ impl Instantiation<'_> {
     }
 
     /// The record that an argument of such a statement names; `None` if it does not exist.
-    pub fn overdetermined_argument(
+    pub(crate) fn overdetermined_argument(
         &mut self,
         arguments: &Arguments,
         at: usize,

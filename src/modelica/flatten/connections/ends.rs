@@ -145,13 +145,13 @@ impl Instantiation<'_> {
 
 impl Tree {
     /// Where an end is declared, for messages.
-    pub fn end_path(&self, end: End) -> String {
+    pub(crate) fn end_path(&self, end: End) -> String {
         match end {
             End::Composite(node) | End::Scalar(node, _) => self.nodes[node.0].path.clone(),
         }
     }
 
-    pub fn end_span(&self, end: End) -> Span {
+    pub(crate) fn end_span(&self, end: End) -> Span {
         match end {
             End::Composite(_) => Span::NONE,
             End::Scalar(node, _) => match &self.nodes[node.0].kind {

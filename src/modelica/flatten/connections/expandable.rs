@@ -39,7 +39,7 @@ struct Undeclared {
 
 impl Instantiation<'_> {
     /// Adds to all expandable connectors what connections ask of them.
-    pub fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
+    pub(crate) fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
         let mut links: Vec<(NodeId, NodeId)> = Vec::new();
         let mut is_linked = vec![false; connects.len()];
         for _ in 0..MAX_ROUNDS {
@@ -74,7 +74,7 @@ impl Instantiation<'_> {
 
     /// Whether one side of a connection would be a new component of an expandable connector: where
     /// the other side is disabled, there is no such component and no connection (MLS §4.4.5).
-    pub fn adds_nothing(&mut self, connect: &Connect) -> Result<bool, Diagnostic> {
+    pub(crate) fn adds_nothing(&mut self, connect: &Connect) -> Result<bool, Diagnostic> {
         let left = self.undeclared(&connect.left, connect)?;
         let right = self.undeclared(&connect.right, connect)?;
         Ok(left.is_some() || right.is_some())
@@ -284,7 +284,7 @@ impl Instantiation<'_> {
 }
 
 impl Classes<'_> {
-    pub fn is_expandable(&self, node: NodeId) -> bool {
+    pub(crate) fn is_expandable(&self, node: NodeId) -> bool {
         self.tree.scope_of(node).is_some_and(|scope| {
             scope != ScopeId::TOP
                 && self.text(scope).restriction() == Restriction::ExpandableConnector
@@ -292,7 +292,7 @@ impl Classes<'_> {
     }
 
     /// Leaves out the components of expandable connectors that no connection names.
-    pub fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
+    pub(crate) fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
         let expandable = self.is_expandable(node);
         let Ok(members) = self.members(node) else { return };
         for (name, state) in members {
@@ -328,7 +328,7 @@ impl Classes<'_> {
         }
     }
 
-    pub fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+    pub(crate) fn is_inside_expandable(&self, leaf: NodeId) -> bool {
         let mut node = self.tree.nodes[leaf.0].parent;
         while let Some(id) = node {
             if self.is_expandable(id) {

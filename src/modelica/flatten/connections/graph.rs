@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 /// A connection of two redundant records.
 #[derive(Debug, Clone, Copy)]
-pub struct Edge {
+pub(crate) struct Edge {
     pub nodes: (NodeId, NodeId),
     pub outside: (bool, bool),
     pub span: Span,
@@ -17,7 +17,7 @@ pub struct Edge {
 
 /// The virtual connection graph.
 #[derive(Debug, Default)]
-pub struct Graph {
+pub(crate) struct Graph {
     nodes: IndexSet<NodeId>,
     branches: Vec<(NodeId, NodeId)>,
     edges: Vec<Edge>,
@@ -47,7 +47,7 @@ impl Graph {
         self.definite.push(node);
     }
 
-    pub fn potential_root(&mut self, node: NodeId, priority: i64) {
+    pub(crate) fn potential_root(&mut self, node: NodeId, priority: i64) {
         self.nodes.insert(node);
         self.potential.entry(node).or_insert(priority);
     }
@@ -63,7 +63,7 @@ impl Graph {
     }
 
     /// Whether a node is nearer to the root than the node at the other end of its branch.
-    pub fn is_rooted(&self, node: NodeId) -> bool {
+    pub(crate) fn is_rooted(&self, node: NodeId) -> bool {
         let other = self.branches.iter().find_map(|(a, b)| match node {
             node if node == *a => Some(*b),
             node if node == *b => Some(*a),

@@ -19,5 +19,5 @@ mod set_equations;
 pub mod sets;
 mod stream;
 
-pub use sets::ScalarPair;
+pub(crate) use sets::ScalarPair;
 pub use stream::arranged;

@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 impl Instantiation<'_> {
     /// The value of such an operator; `None` for any other call.
-    pub fn connection_operator(
+    pub(crate) fn connection_operator(
         &mut self,
         span: Span,
         function: &ComponentReference,

@@ -28,7 +28,7 @@ const EQUALITY_CONSTRAINT: &str = "equalityConstraint";
 
 impl Classes<'_> {
     /// Chooses the spanning tree and joins the records that it connects.
-    pub fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
+    pub(crate) fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
         let kept = connections.graph.span();
         for edge in kept {
             let (one, other) = edge.nodes;
@@ -46,7 +46,7 @@ impl Classes<'_> {
     }
 
     /// Whether the class of a component declares itself redundant.
-    pub fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
+    pub(crate) fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
         Ok(self.redundant_class(node)?.is_some())
     }
 
@@ -97,7 +97,7 @@ impl Tree {
 
 impl Instantiation<'_> {
     /// `0 = equalityConstraint(a, b)` for every connection outside the tree.
-    pub fn add_constraint_equations(
+    pub(crate) fn add_constraint_equations(
         &mut self,
         connections: &Connections,
         model: &mut FlatModel,

@@ -43,7 +43,7 @@ impl Classes<'_> {
         }
     }
 
-    pub fn pair_members(
+    pub(crate) fn pair_members(
         &mut self,
         one: NodeId,
         other: NodeId,
@@ -165,7 +165,7 @@ impl Tree {
         Ok(())
     }
 
-    pub fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
+    pub(crate) fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
         match &self.nodes[leaf.0].kind {
             NodeKind::Variable(leaf) => leaf.connection,
             NodeKind::Composite(_) => None,

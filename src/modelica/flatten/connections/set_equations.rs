@@ -25,7 +25,7 @@ const LONGEST_SUM: usize = 100;
 
 impl Instantiation<'_> {
     /// Adds the equations of all sets, and those of flows that are not connected.
-    pub fn add_connection_equations(
+    pub(crate) fn add_connection_equations(
         &mut self,
         connections: &Connections,
         model: &mut FlatModel,

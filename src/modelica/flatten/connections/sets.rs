@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ConnectorSide {
+pub(crate) struct ConnectorSide {
     /// The node of the variable.
     pub leaf: NodeId,
     /// The element of the variable, from 0.
@@ -18,7 +18,7 @@ pub struct ConnectorSide {
 
 /// Two scalars that a connection joins.
 #[derive(Debug, Clone)]
-pub struct ScalarPair {
+pub(crate) struct ScalarPair {
     /// The instance whose class writes the connection.
     pub context: NodeId,
     pub sides: [ConnectorSide; 2],
@@ -89,7 +89,7 @@ impl Connections {
     }
 
     /// How many connections name a connector (`cardinality`, MLS §3.7.4.3).
-    pub fn cardinality(&self, end: End) -> i64 {
+    pub(crate) fn cardinality(&self, end: End) -> i64 {
         self.counts.get(&end).copied().unwrap_or(0)
     }
 
@@ -130,7 +130,7 @@ impl Connections {
     }
 
     /// The set of a side; the side alone if it is not connected.
-    pub fn set_of(&self, side: ConnectorSide) -> Vec<ConnectorSide> {
+    pub(crate) fn set_of(&self, side: ConnectorSide) -> Vec<ConnectorSide> {
         match self.number.get(&side) {
             Some(at) => self.members[self.parent[*at]].iter().map(|at| self.sides[*at]).collect(),
             None => vec![side],

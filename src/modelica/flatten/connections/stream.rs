@@ -31,7 +31,7 @@ const MAX_LEVELS: usize = 50;
 
 impl Instantiation<'_> {
     /// The values of `inStream` or `actualStream` of what a reference names, as one expression.
-    pub fn stream_value(
+    pub(crate) fn stream_value(
         &mut self,
         ends: &Ends,
         actual: bool,
@@ -148,7 +148,7 @@ impl Instantiation<'_> {
 
     /// The equations of the connectors of an instance: what leaves through them is the mixture of
     /// all others (MLS §15.2).
-    pub fn add_stream_equations(
+    pub(crate) fn add_stream_equations(
         &mut self,
         sides: &[ConnectorSide],
         connections: &Connections,

@@ -28,7 +28,7 @@ const MAX_ELEMENTS: usize = 100_000;
 
 /// `sum(e for i in 1:0)` of components of an array without elements, or a multiple of it: nothing tells
 /// the sizes of e (MLS §10.3.4.1), and added to an array it is that array of zeros.
-pub fn is_sum_of_nothing(e: &Expression) -> bool {
+pub(crate) fn is_sum_of_nothing(e: &Expression) -> bool {
     match &e.kind {
         ExpressionKind::Call { function, arguments } => {
             function.as_ident().is_some_and(|name| name == "sum")
@@ -117,7 +117,7 @@ impl Instantiation<'_> {
 
     /// `sum(e for i in …)` of arrays e where its elements had to be written out, or where there are
     /// none: the arrays are added one by one (MLS §10.3.4.1). `None` for other sums.
-    pub fn sum_of_arrays(
+    pub(crate) fn sum_of_arrays(
         &mut self,
         written: &Arguments,
         resolved: &Arguments,

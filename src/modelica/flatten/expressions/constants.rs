@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// The value of an expression that shapes the model; the parameters that it needs are marked.
-    pub fn structural_value(
+    pub(crate) fn structural_value(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -39,7 +39,7 @@ impl Instantiation<'_> {
     }
 
     /// The value of an expression whose names are resolved already.
-    pub fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+    pub(crate) fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
         let outer = std::mem::take(&mut self.values.read);
         let value = self.known_flat_value(e);
         let read = std::mem::replace(&mut self.values.read, outer);
@@ -48,14 +48,18 @@ impl Instantiation<'_> {
     }
 
     /// The value of an expression of flat names of constants and parameters.
-    pub fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+    pub(crate) fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
         let local = Local { values: true, flat: true, ..Local::default() };
         let resolved = self.resolve(e, self.classes.flat_scope(), &local)?;
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
     /// The value of an expression of constants and parameters.
-    pub fn known_value(&mut self, e: &Expression, context: ScopeId) -> Result<Value, Diagnostic> {
+    pub(crate) fn known_value(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+    ) -> Result<Value, Diagnostic> {
         let local = Local { values: true, ..Local::default() };
         let resolved = self.resolve(e, context, &local)?;
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
@@ -350,7 +354,11 @@ impl Instantiation<'_> {
 
 impl Classes<'_> {
     /// Whether a class has a component of this name, itself or inherited.
-    pub fn has_component(&mut self, scope: ScopeId, name: Ident) -> Result<bool, Diagnostic> {
+    pub(crate) fn has_component(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<bool, Diagnostic> {
         if scope == ScopeId::TOP {
             return Ok(false);
         }
@@ -369,7 +377,7 @@ impl Classes<'_> {
     }
 
     /// The scope in which flat names mean variables.
-    pub fn flat_scope(&self) -> ScopeId {
+    pub(crate) fn flat_scope(&self) -> ScopeId {
         self.tree.scope_of(self.tree.root).unwrap_or(ScopeId::TOP)
     }
 }

@@ -26,7 +26,7 @@ const MAX_CHAIN: usize = 100;
 
 impl Classes<'_> {
     /// All values of the type that an expression names, as a vector; `None` if it names none.
-    pub fn type_range(
+    pub(crate) fn type_range(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -44,7 +44,7 @@ impl Classes<'_> {
     }
 
     /// Boolean or the enumeration that an expression names; `None` if it names none.
-    pub fn type_of_range(
+    pub(crate) fn type_of_range(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -83,7 +83,7 @@ impl Classes<'_> {
 
     /// A dimension that is sized by an enumeration or by Boolean has subscripts of that type alone
     /// (MLS §10.5).
-    pub fn check_subscript_types(
+    pub(crate) fn check_subscript_types(
         &mut self,
         node: NodeId,
         part: &ReferencePart,
@@ -121,7 +121,7 @@ impl Classes<'_> {
 
 impl Instantiation<'_> {
     /// Whether the subscripts of one dimension of a component are of type Boolean.
-    pub fn is_sized_by_boolean(
+    pub(crate) fn is_sized_by_boolean(
         &mut self,
         node: NodeId,
         name: Ident,
@@ -227,14 +227,14 @@ impl Instantiation<'_> {
 impl Types<'_> {
     /// The ordinal of a variable of an enumeration, with which old libraries compute; any other
     /// expression as it is.
-    pub fn number_of_enumeration(&self, e: Expression, local: &Local) -> Expression {
+    pub(crate) fn number_of_enumeration(&self, e: Expression, local: &Local) -> Expression {
         let is_enumeration = matches!(e.kind, ExpressionKind::Reference(_))
             && matches!(self.value_type_of(&e, local), Some(ValueType::Enumeration(_)));
         if is_enumeration { ordinal(e) } else { e }
     }
 
     /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
-    pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
+    pub(crate) fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
         if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
             return index;
         }
@@ -259,7 +259,7 @@ impl Types<'_> {
 }
 
 /// `false` and `true` as a vector.
-pub fn all_booleans(span: Span) -> Expression {
+pub(crate) fn all_booleans(span: Span) -> Expression {
     let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
     Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
 }

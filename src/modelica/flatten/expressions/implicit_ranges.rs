@@ -79,7 +79,7 @@ impl Visit for Assigned {
 impl Instantiation<'_> {
     /// The size that gives a loop in a function its range must stay as it is in the loop
     /// (MLS §11.2.2.1).
-    pub fn check_range_stays(
+    pub(crate) fn check_range_stays(
         &mut self,
         indices: &[ForIndex],
         body: &[Statement],
@@ -110,7 +110,7 @@ impl Instantiation<'_> {
 
     /// The loop variables with ranges; those that are not written are found by letting `visit` look
     /// through the body.
-    pub fn with_ranges(
+    pub(crate) fn with_ranges(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,

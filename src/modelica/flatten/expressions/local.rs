@@ -13,7 +13,7 @@ pub struct Local {
     /// their value.
     pub names: Vec<(Ident, Option<Expression>)>,
     /// Inputs of a function.
-    pub read_only: Vec<Ident>,
+    pub(crate) read_only: Vec<Ident>,
     /// Types of the variables of a function.
     pub types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
@@ -22,7 +22,7 @@ pub struct Local {
     /// (MLS §12.3).
     pub impure: bool,
     /// Whether the call at hand is an equation: an impure function without outputs may then be called.
-    pub is_equation: bool,
+    pub(crate) is_equation: bool,
     /// Whether names are flat paths, to which protected components are no secret.
     pub flat: bool,
 }
@@ -42,7 +42,7 @@ impl Local {
     }
 
     /// Whether an expression needs a local name that has no value yet.
-    pub fn is_open_in(&self, e: &Expression) -> bool {
+    pub(crate) fn is_open_in(&self, e: &Expression) -> bool {
         let mut names = OpenNames { local: self, found: false };
         names.expression(e);
         names.found

@@ -2,15 +2,15 @@
 //! constants of packages their values, calls of functions their full names.
 
 pub mod calls;
-pub mod comprehensions;
+pub(crate) mod comprehensions;
 pub mod constants;
 pub mod enumerations;
-pub mod implicit_ranges;
+pub(crate) mod implicit_ranges;
 pub mod local;
-pub mod overloaded_arrays;
-pub mod overloading;
+pub(crate) mod overloaded_arrays;
+pub(crate) mod overloading;
 pub mod paths;
 pub mod resolve;
 pub mod state_machines;
 pub mod values;
-pub mod vectorization;
+pub(crate) mod vectorization;

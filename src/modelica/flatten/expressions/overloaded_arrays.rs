@@ -13,7 +13,7 @@ use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind};
 impl Instantiation<'_> {
     /// `sum(argument)` by the operators '+' and '0' of the record; `None` where the argument has
     /// no records.
-    pub fn overloaded_sum(
+    pub(crate) fn overloaded_sum(
         &mut self,
         argument: &Expression,
         local: &Local,
@@ -43,7 +43,7 @@ impl Instantiation<'_> {
     }
 
     /// The product of a matrix with a vector or a matrix of records; `None` for other operands.
-    pub fn overloaded_product(
+    pub(crate) fn overloaded_product(
         &mut self,
         left: &Expression,
         right: &Expression,

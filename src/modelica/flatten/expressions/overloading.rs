@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// `left operator right` as a call, if one of the operands is a record.
-    pub fn overloaded_binary(
+    pub(crate) fn overloaded_binary(
         &mut self,
         operator: BinaryOperator,
         left: &Expression,
@@ -79,7 +79,7 @@ impl Instantiation<'_> {
     }
 
     /// `-operand` as a call, if the operand is a record.
-    pub fn overloaded_unary(
+    pub(crate) fn overloaded_unary(
         &mut self,
         sign: &str,
         operand: &Expression,
@@ -105,7 +105,7 @@ impl Instantiation<'_> {
 
     /// The constructor of an operator record that fits resolved arguments; `None` if it has none,
     /// or none that fits, and the record's own constructor is meant.
-    pub fn overloaded_constructor(
+    pub(crate) fn overloaded_constructor(
         &mut self,
         class: ScopeId,
         arguments: &Arguments,
@@ -137,7 +137,7 @@ impl Instantiation<'_> {
 
     /// `String(a, …)` of an operator record as a call of its operator `'String'` (MLS §14.4); `None` for
     /// other values.
-    pub fn overloaded_string(
+    pub(crate) fn overloaded_string(
         &mut self,
         arguments: &Arguments,
         local: &Local,
@@ -159,7 +159,7 @@ impl Instantiation<'_> {
             .at(span))
     }
 
-    pub fn operator_call(
+    pub(crate) fn operator_call(
         &mut self,
         record: &Name,
         sign: &str,
@@ -226,7 +226,7 @@ impl Types<'_> {
     }
 
     /// The record that an expression, or the elements of an array constructor, are of.
-    pub fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
+    pub(crate) fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
         if !self.may_be_record(e, local) {
             return None;
         }
@@ -235,7 +235,7 @@ impl Types<'_> {
 
     /// Whether a value, or the elements of an array constructor, may be records, judged by its outermost
     /// operation: what is below operations is looked at where these are.
-    pub fn may_be_record(&self, e: &Expression, local: &Local) -> bool {
+    pub(crate) fn may_be_record(&self, e: &Expression, local: &Local) -> bool {
         match &e.kind {
             ExpressionKind::Array(elements) => {
                 elements.first().is_some_and(|element| self.may_be_record(element, local))
@@ -310,7 +310,7 @@ impl Types<'_> {
     }
 
     /// The type of a resolved expression, records included; `None` where it does not follow from its text.
-    pub fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
+    pub(crate) fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
         match &e.kind {
             ExpressionKind::Call { function, .. } => {
                 if let Some(Some(function)) = self.functions.table.get(&function.name()) {

@@ -304,7 +304,7 @@ impl Instantiation<'_> {
     }
 
     /// A component of a value.
-    pub fn field_of(
+    pub(crate) fn field_of(
         &mut self,
         base: &Expression,
         name: Ident,
@@ -442,7 +442,7 @@ impl Classes<'_> {
         Ok(())
     }
 
-    pub fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
+    pub(crate) fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
         let text = self.tree.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
         let Some(text) = text else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);

@@ -297,7 +297,7 @@ impl Instantiation<'_> {
         expressions.iter().map(|e| self.resolve(e, context, local)).collect()
     }
 
-    pub fn named_arguments(
+    pub(crate) fn named_arguments(
         &mut self,
         named: &[NamedArgument],
         context: ScopeId,

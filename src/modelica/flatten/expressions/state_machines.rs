@@ -17,7 +17,7 @@ impl Instantiation<'_> {
     /// `transition(A, B, …)` as `transition("path of A", "path of B", …)`, `initialState` and
     /// `activeState` likewise; `ticksInState()` and `timeInState()` with the path of the instance
     /// in whose class they are written. `None` for any other call.
-    pub fn state_operator(
+    pub(crate) fn state_operator(
         &mut self,
         span: Span,
         function: &ComponentReference,

@@ -44,7 +44,7 @@ impl Spread {
 
 impl Instantiation<'_> {
     /// A call with resolved arguments as an array of calls; `None` if it is one call.
-    pub fn vectorized(
+    pub(crate) fn vectorized(
         &mut self,
         name: &Name,
         arguments: &Arguments,

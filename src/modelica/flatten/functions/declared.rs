@@ -71,7 +71,7 @@ impl Library {
 impl Instantiation<'_> {
     /// The full name of a called function, which is made ready; a name that no class declares is
     /// left for evaluation (operators and intrinsics).
-    pub fn function_name(
+    pub(crate) fn function_name(
         &mut self,
         name: &Name,
         context: ScopeId,
@@ -285,7 +285,11 @@ impl Instantiation<'_> {
     }
 
     /// The name of a record's constructor, made ready.
-    pub fn record_constructor(&mut self, class: ScopeId, span: Span) -> Result<Name, Diagnostic> {
+    pub(crate) fn record_constructor(
+        &mut self,
+        class: ScopeId,
+        span: Span,
+    ) -> Result<Name, Diagnostic> {
         self.function(class)?.ok_or_else(|| {
             fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.classes.text(class).name).at(span)
         })
@@ -768,7 +772,7 @@ impl Classes<'_> {
     }
 
     /// Whether a scope is of a model, not of a function.
-    pub fn is_in_model(&self, context: ScopeId) -> bool {
+    pub(crate) fn is_in_model(&self, context: ScopeId) -> bool {
         context != ScopeId::TOP && !self.tree.in_package(self.node_of(context))
     }
 }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 impl FunctionTable {
     /// The arguments of a call with such defaults added.
-    pub fn with_defaults(
+    pub(crate) fn with_defaults(
         &self,
         function: &Name,
         mut arguments: Arguments,

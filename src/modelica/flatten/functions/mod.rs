@@ -6,6 +6,6 @@ pub mod defaults;
 mod outer_names;
 mod partial_derivative;
 mod printing;
-pub mod specialization;
+pub(crate) mod specialization;
 pub mod table;
 mod unrolled;

@@ -18,7 +18,7 @@ const MESSAGE: &str = "ModelicaMessage";
 
 impl Instantiation<'_> {
     /// The name under which the functions of the model have `print`.
-    pub fn bare_print(&mut self) -> Name {
+    pub(crate) fn bare_print(&mut self) -> Name {
         let name = Name::parse(PRINT);
         let table = &mut self.functions.table;
         table.entry(name.clone()).or_insert_with(|| Some(Arc::new(declaration())));

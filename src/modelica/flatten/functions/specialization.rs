@@ -42,7 +42,7 @@ impl Passed {
 impl FunctionTable {
     /// The function and the arguments of a call without functions among the arguments. A call
     /// inside a function that passes on an input of its own stays until that function is copied.
-    pub fn specialized(
+    pub(crate) fn specialized(
         &mut self,
         name: Name,
         arguments: Arguments,

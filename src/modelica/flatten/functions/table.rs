@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The functions that calls name.
 #[derive(Debug, Default)]
-pub struct FunctionTable {
+pub(crate) struct FunctionTable {
     /// The functions; `None` while one is being made.
     pub table: IndexMap<Name, Option<Arc<Function>>>,
     /// The function that alone is asked for; `None` for a model.
@@ -18,5 +18,5 @@ pub struct FunctionTable {
     /// The names under which functions are known.
     pub names: FxHashMap<ScopeId, Name>,
     /// The classes of records by the names of their constructors.
-    pub record_scopes: FxHashMap<Name, ScopeId>,
+    pub(crate) record_scopes: FxHashMap<Name, ScopeId>,
 }

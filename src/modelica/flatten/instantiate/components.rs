@@ -248,7 +248,7 @@ impl Classes<'_> {
     }
 
     /// A partial class has no instances (MLS §4.7).
-    pub fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
+    pub(crate) fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
         let found = self.text(class);
         if found.definition.partial {
             return Err(

@@ -159,7 +159,7 @@ impl Instantiation<'_> {
 impl Classes<'_> {
     /// Of an outer component only what its own class declares can be named, whatever else the inner
     /// one has.
-    pub fn check_outer_element(
+    pub(crate) fn check_outer_element(
         &mut self,
         node: NodeId,
         outer: Ident,

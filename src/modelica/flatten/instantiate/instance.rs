@@ -27,7 +27,7 @@ pub struct Node {
 
 #[allow(clippy::large_enum_variant, reason = "most nodes are variables: a box would cost more")]
 #[derive(Debug, Clone)]
-pub enum NodeKind {
+pub(crate) enum NodeKind {
     /// Components, some of them not instantiated yet.
     Composite(Composite),
     /// A variable; its place in the flat model.
@@ -36,7 +36,7 @@ pub enum NodeKind {
 
 /// An instance of a class with components.
 #[derive(Debug, Clone)]
-pub struct Composite {
+pub(crate) struct Composite {
     pub scope: ScopeId,
     /// The class that was asked for, without the modifiers of this instance.
     pub class: ScopeId,
@@ -67,7 +67,7 @@ pub struct Member {
 
 /// How far the instantiation of a component is.
 #[derive(Debug, Clone)]
-pub enum MemberState {
+pub(crate) enum MemberState {
     Pending,
     Busy,
     /// A component without dimensions, or whose type is predefined.
@@ -140,7 +140,7 @@ pub enum Shape {
 }
 
 /// What the type of a component is made of.
-pub struct Expanded {
+pub(crate) struct Expanded {
     pub shape: Shape,
     pub dims: Vec<(Subscript, ScopeId)>,
     pub modifier: Modifier,
@@ -155,7 +155,7 @@ pub struct Expanded {
 
 /// A variable of the tree.
 #[derive(Debug, Clone)]
-pub struct Leaf {
+pub(crate) struct Leaf {
     /// Its place in the list of variables.
     pub variable: usize,
     /// Its binding and attributes as written, resolved when the tree is whole.

@@ -15,7 +15,7 @@ use crate::flatten::types::Types;
 use std::rc::Rc;
 
 /// The parts of an instantiation.
-pub struct Instantiation<'a> {
+pub(crate) struct Instantiation<'a> {
     pub classes: Classes<'a>,
     pub functions: FunctionTable,
     pub values: Values,
@@ -27,7 +27,7 @@ pub struct Instantiation<'a> {
     /// The components that are being completed, outermost first.
     pub growth: Growth,
     /// Values of records, which their components share.
-    pub record_values: RecordValues,
+    pub(crate) record_values: RecordValues,
 }
 
 impl<'a> Instantiation<'a> {

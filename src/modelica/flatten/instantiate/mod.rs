@@ -3,9 +3,9 @@
 pub mod build;
 pub mod components;
 pub mod growth;
-pub mod inner_outer;
+pub(crate) mod inner_outer;
 pub mod instance;
-pub mod instantiation;
-pub mod own_sizes;
-pub mod state_outputs;
+pub(crate) mod instantiation;
+pub(crate) mod own_sizes;
+pub(crate) mod state_outputs;
 pub mod tree;

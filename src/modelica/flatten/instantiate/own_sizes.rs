@@ -6,7 +6,7 @@ use crate::syntax::visit::{Rewrite, rewrite_expression};
 use std::borrow::Cow;
 
 /// A size of the array `name` where the sizes before it are known: `size(name, k)` is replaced.
-pub fn with_own_sizes<'e>(
+pub(crate) fn with_own_sizes<'e>(
     size: &'e Expression,
     name: Ident,
     before: &[usize],

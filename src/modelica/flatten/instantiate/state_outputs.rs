@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// The variables behind the `outer output` components of an instance, by their flat names.
-    pub fn outer_outputs(&mut self, node: NodeId) -> Result<Vec<Arc<str>>, Diagnostic> {
+    pub(crate) fn outer_outputs(&mut self, node: NodeId) -> Result<Vec<Arc<str>>, Diagnostic> {
         let mut found = Vec::new();
         for name in self.classes.tree.component_names(node) {
             let Some(declared) = self.classes.tree.declaration_of(node, name) else { continue };
@@ -53,7 +53,7 @@ impl Instantiation<'_> {
 
     /// Whether an `inner outer` component is one variable with the one further out: an output of
     /// a state, whose definitions on all levels are merged.
-    pub fn is_merged_output(
+    pub(crate) fn is_merged_output(
         &mut self,
         node: NodeId,
         declared: &Declaration,

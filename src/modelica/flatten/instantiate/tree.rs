@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// The most scalar variables and the most components that are built: heat conduction with a million
 /// states, and heat flows between them, has two million and one.
 const MAX_SCALARS: usize = 5_000_000;
-pub const MAX_INSTANCES: usize = 1_000_000;
+pub(crate) const MAX_INSTANCES: usize = 1_000_000;
 
 /// The attributes of the predefined types (MLS §4.9).
 pub const ATTRIBUTES: [&str; 10] = [
@@ -51,7 +51,7 @@ pub struct Tree {
     /// The instance of the model.
     pub root: NodeId,
     /// The simple name of its class.
-    pub model_name: Ident,
+    pub(crate) model_name: Ident,
     scalars: usize,
 }
 
@@ -85,7 +85,7 @@ impl Tree {
         }
     }
 
-    pub fn add_node(
+    pub(crate) fn add_node(
         &mut self,
         path: String,
         parent: Option<NodeId>,
@@ -104,36 +104,36 @@ impl Tree {
     }
 
     /// The instance of a package or class for its constants; nothing in it is built yet.
-    pub fn add_package(&mut self, name: &Name, holder: NodeId) -> NodeId {
+    pub(crate) fn add_package(&mut self, name: &Name, holder: NodeId) -> NodeId {
         let path = format!("{PACKAGE_MARK}{name}");
         self.add_node(path, Some(holder), Inherited::default())
     }
 
-    pub fn set_scope(&mut self, node: NodeId, scope: ScopeId) {
+    pub(crate) fn set_scope(&mut self, node: NodeId, scope: ScopeId) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
             composite.scope = scope;
             composite.class = scope;
         }
     }
 
-    pub fn set_class(&mut self, node: NodeId, class: ScopeId) {
+    pub(crate) fn set_class(&mut self, node: NodeId, class: ScopeId) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
             composite.class = class;
         }
     }
 
     /// The class of an instance; `None` for a variable.
-    pub fn scope_of(&self, node: NodeId) -> Option<ScopeId> {
+    pub(crate) fn scope_of(&self, node: NodeId) -> Option<ScopeId> {
         self.composite_of(node).map(|composite| composite.scope)
     }
 
     /// The declaration of a component of an instance.
-    pub fn declaration_of(&self, node: NodeId, name: Ident) -> Option<Arc<Declaration>> {
+    pub(crate) fn declaration_of(&self, node: NodeId, name: Ident) -> Option<Arc<Declaration>> {
         let members = self.composite_of(node)?.members.as_ref()?;
         members.get(&name).map(|member| member.declaration.clone())
     }
 
-    pub fn composite_of(&self, node: NodeId) -> Option<&Composite> {
+    pub(crate) fn composite_of(&self, node: NodeId) -> Option<&Composite> {
         match &self.nodes[node.0].kind {
             NodeKind::Composite(composite) => Some(composite),
             NodeKind::Variable(_) => None,
@@ -141,7 +141,7 @@ impl Tree {
     }
 
     /// The names of the `outer` components of an instance whose components are known.
-    pub fn outer_members(&self, node: NodeId) -> Vec<Ident> {
+    pub(crate) fn outer_members(&self, node: NodeId) -> Vec<Ident> {
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         let is_outer = |(name, member): (&Ident, &Member)| {
             matches!(member.state, MemberState::Outer(_)).then_some(*name)
@@ -149,7 +149,7 @@ impl Tree {
         members.map_or(Vec::new(), |members| members.iter().filter_map(is_outer).collect())
     }
 
-    pub fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
+    pub(crate) fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
                 composite.members.as_mut().and_then(|members| members.get_mut(&name))
@@ -175,7 +175,7 @@ impl Tree {
         Ok(())
     }
 
-    pub fn inherited_by(
+    pub(crate) fn inherited_by(
         &self,
         node: NodeId,
         declared: &Declaration,
@@ -193,7 +193,7 @@ impl Tree {
         }
     }
 
-    pub fn mark_connector(&mut self, node: NodeId, connector: bool) {
+    pub(crate) fn mark_connector(&mut self, node: NodeId, connector: bool) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
             composite.connector = connector;
         }
@@ -261,7 +261,7 @@ impl Tree {
         self.nodes[node.0].path.starts_with(PACKAGE_MARK)
     }
 
-    pub fn member_at(&self, node: NodeId, at: usize) -> Option<Ident> {
+    pub(crate) fn member_at(&self, node: NodeId, at: usize) -> Option<Ident> {
         let members = self.composite_of(node)?.members.as_ref()?;
         members.get_index(at).map(|(name, _)| *name)
     }

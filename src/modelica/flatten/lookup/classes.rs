@@ -64,21 +64,21 @@ impl Classes<'_> {
 
     /// The full name of a class that stands in a scope; a modifier of a simulated model stands in
     /// that of the whole library.
-    pub fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
+    pub(crate) fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
         let text = self.scope(scope).text.as_ref();
         text.map_or_else(|| Name::from(name), |text| text.name.child(name))
     }
 
     /// The instance whose components a scope's names mean.
-    pub fn node_of(&self, id: ScopeId) -> NodeId {
+    pub(crate) fn node_of(&self, id: ScopeId) -> NodeId {
         self.scope(id).node
     }
 
-    pub fn is_encapsulated(&self, id: ScopeId) -> bool {
+    pub(crate) fn is_encapsulated(&self, id: ScopeId) -> bool {
         self.scope(id).text.as_ref().is_none_or(|text| text.definition.encapsulated)
     }
 
-    pub fn add_scope(
+    pub(crate) fn add_scope(
         &mut self,
         text: Text,
         parent: ScopeId,

@@ -20,7 +20,7 @@ use crate::syntax::print;
 use std::sync::Arc;
 
 impl Classes<'_> {
-    pub fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
+    pub(crate) fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
         let text = self.text(id).clone();
         let bases = self.bases(id)?;
         let mut bases = bases.iter();

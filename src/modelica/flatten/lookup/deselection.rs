@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 impl Classes<'_> {
     /// Whether a class that extends the one in which a connection is written leaves it out.
-    pub fn is_deselected(
+    pub(crate) fn is_deselected(
         &self,
         context: ScopeId,
         left: &ComponentReference,
@@ -39,7 +39,7 @@ impl Classes<'_> {
     }
 
     /// Each deselection of an extends clause must match something of the base class.
-    pub fn check_deselected(
+    pub(crate) fn check_deselected(
         &mut self,
         derived: &Text,
         base: ScopeId,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 const MAX_PARTS: usize = 64;
 
 /// The most base classes that one class may have, those of its bases included.
-pub const MAX_BASES: usize = 10_000;
+pub(crate) const MAX_BASES: usize = 10_000;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
@@ -31,7 +31,7 @@ pub struct Elements {
 
 impl Elements {
     /// All of another class, which nothing comes before.
-    pub fn sharing(base: &Rc<Elements>) -> Elements {
+    pub(crate) fn sharing(base: &Rc<Elements>) -> Elements {
         if base.parts < MAX_PARTS {
             let shared = Some(base.clone());
             return Elements {
@@ -89,7 +89,7 @@ impl Elements {
     }
 
     /// Adds a class that equations come from.
-    pub fn add_base(&mut self, base: ScopeId) {
+    pub(crate) fn add_base(&mut self, base: ScopeId) {
         self.lineage.push(base);
         self.bases += 1;
     }

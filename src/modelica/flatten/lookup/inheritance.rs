@@ -259,7 +259,7 @@ impl Classes<'_> {
     }
 
     /// An error if a class has no element of a name that a modifier names.
-    pub fn check_modified(
+    pub(crate) fn check_modified(
         &mut self,
         id: ScopeId,
         name: Ident,

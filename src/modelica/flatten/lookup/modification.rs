@@ -49,7 +49,7 @@ pub struct Redeclaration {
 
 /// The text of a redeclaration.
 #[derive(Debug, Clone)]
-pub enum Replacement {
+pub(crate) enum Replacement {
     /// A short class in a modification.
     Class(Arc<ClassElement>),
     /// A class among the elements of a class.
@@ -67,7 +67,7 @@ pub struct Bound {
     /// `each`: holds for every element of an array.
     pub each: bool,
     /// How many arrays of components, the outermost first, have `each` and no element picked yet.
-    pub each_left: usize,
+    pub(crate) each_left: usize,
     /// For modifiers of arrays of components: the element of the value that is meant, one index a
     /// dimension, from 1.
     pub indices: Vec<usize>,
@@ -182,7 +182,7 @@ impl Modifier {
     }
 
     /// Adds the redeclaration of a component by an element of a class.
-    pub fn redeclare_component(
+    pub(crate) fn redeclare_component(
         &mut self,
         clause: &ComponentClause,
         component: &ComponentDeclaration,
@@ -217,7 +217,7 @@ impl Modifier {
     }
 
     /// Whether both give the same value, and neither another declaration.
-    pub fn has_same_binding(&self, other: &Modifier) -> bool {
+    pub(crate) fn has_same_binding(&self, other: &Modifier) -> bool {
         let value = |one: &Modifier| {
             one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
         };
@@ -253,7 +253,7 @@ impl Modifier {
     }
 
     /// This modifier with an outer one over it; `name` is the element's, for messages.
-    pub fn overridden_by(
+    pub(crate) fn overridden_by(
         mut self,
         mut outer: Modifier,
         name: Ident,
@@ -309,7 +309,11 @@ impl Modifier {
     /// The modifier of one element of an array of components, whose name is that of the array: values
     /// written without `each` are arrays, and the element is picked from them. What modifies this
     /// element alone stands over what modifies all.
-    pub fn at_element(&self, indices: &[usize], name: Ident) -> Result<Modifier, Diagnostic> {
+    pub(crate) fn at_element(
+        &self,
+        indices: &[usize],
+        name: Ident,
+    ) -> Result<Modifier, Diagnostic> {
         let mut picked = self.picked(indices);
         let own = picked.of_elements.shift_remove(indices);
         picked.of_elements.clear();
@@ -359,7 +363,7 @@ impl Modifier {
     }
 
     /// The modifiers of single elements; a fault where an array of these sizes has no such element.
-    pub fn check_elements(&self, name: Ident, dims: &[usize]) -> Result<(), Diagnostic> {
+    pub(crate) fn check_elements(&self, name: Ident, dims: &[usize]) -> Result<(), Diagnostic> {
         let fits = |indices: &[usize]| {
             indices.len() == dims.len()
                 && indices.iter().zip(dims).all(|(at, size)| (1..=*size).contains(at))
@@ -385,7 +389,7 @@ fn constructs_array(value: &Expression) -> bool {
 
 impl Redeclaration {
     /// This redeclaration and those that it stands over, the innermost first.
-    pub fn innermost_first(&self) -> impl Iterator<Item = &Redeclaration> {
+    pub(crate) fn innermost_first(&self) -> impl Iterator<Item = &Redeclaration> {
         let chain = std::iter::successors(Some(self), |one| one.over.as_deref());
         chain.collect::<Vec<_>>().into_iter().rev()
     }

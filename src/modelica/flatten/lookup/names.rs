@@ -20,7 +20,7 @@ use std::rc::Rc;
 
 impl Classes<'_> {
     /// What a type specifier means in a scope; an error with suggestions if nothing.
-    pub fn lookup_type(
+    pub(crate) fn lookup_type(
         &mut self,
         scope: ScopeId,
         specifier: &TypeSpecifier,
@@ -49,7 +49,7 @@ impl Classes<'_> {
     }
 
     /// The class of a path of names inside a class.
-    pub fn lookup_inside(
+    pub(crate) fn lookup_inside(
         &mut self,
         mut found: Option<Type>,
         path: &[Ident],
@@ -65,7 +65,7 @@ impl Classes<'_> {
     }
 
     /// A simple name: declared, inherited or imported by the class or by one that encloses it.
-    pub fn lookup_simple(
+    pub(crate) fn lookup_simple(
         &mut self,
         scope: ScopeId,
         name: Ident,
@@ -304,7 +304,7 @@ impl Classes<'_> {
     }
 
     /// The full names that imports of a class give to a name, the named imports first.
-    pub fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
+    pub(crate) fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
         let Some(class) = self.scope(scope).text.as_ref().and_then(|text| text.id) else {
             return Vec::new();
         };
@@ -342,7 +342,7 @@ impl Classes<'_> {
     }
 
     /// The class of a full name, without what modifies it anywhere.
-    pub fn class_named(&mut self, name: &Name) -> Result<Option<Type>, Diagnostic> {
+    pub(crate) fn class_named(&mut self, name: &Name) -> Result<Option<Type>, Diagnostic> {
         self.lookup(ScopeId::TOP, &Name { global: true, ..name.clone() })
     }
 
@@ -353,7 +353,12 @@ impl Classes<'_> {
     }
 
     /// The diagnostic for a function that is not there.
-    pub fn unknown_function(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
+    pub(crate) fn unknown_function(
+        &mut self,
+        scope: ScopeId,
+        name: &Name,
+        span: Span,
+    ) -> Diagnostic {
         let builtin = || suggest::did_you_mean(&name.to_string(), crate::functions::names());
         let suggestion = self.suggestion(scope, name).or_else(builtin);
         fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)

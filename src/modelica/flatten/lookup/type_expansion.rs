@@ -171,7 +171,7 @@ impl Classes<'_> {
 
     /// The predefined type that a long class extends, directly or through others, if it does:
     /// `type T extends Real(…); end T;`, or a class of external objects.
-    pub fn predefined_base(
+    pub(crate) fn predefined_base(
         &mut self,
         id: ScopeId,
         text: &Text,

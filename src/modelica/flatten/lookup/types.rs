@@ -45,7 +45,7 @@ impl Predefined {
     }
 
     /// Whether no class can have its name (MLS §4.9).
-    pub fn is_reserved(self) -> bool {
+    pub(crate) fn is_reserved(self) -> bool {
         use Predefined::{Boolean, Integer, Real, String};
         matches!(self, Real | Integer | Boolean | String)
     }

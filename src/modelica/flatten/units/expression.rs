@@ -27,12 +27,12 @@ pub fn compared(operator: BinaryOperator) -> Option<&'static str> {
 
 impl Units {
     /// That of a variable. `time` has none: ramps are written `slope*time` with the unit of the value.
-    pub fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
+    pub(crate) fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
         self.known.get(&*path(reference)).copied()
     }
 
     /// The dimension, where the units of all that matters are known.
-    pub fn of_expression(&self, e: &Expression) -> Option<Dimension> {
+    pub(crate) fn of_expression(&self, e: &Expression) -> Option<Dimension> {
         match &e.kind {
             ExpressionKind::Reference(reference) => self.of_reference(reference),
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => None,

@@ -49,7 +49,7 @@ fn check(model: &FlatModel) -> Vec<Diagnostic> {
 
 impl Classes<'_> {
     /// What does not fit; of an old library, only the first finding.
-    pub fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
+    pub(crate) fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
         let found = check(model);
         if found.is_empty() {
             return found;

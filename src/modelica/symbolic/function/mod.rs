@@ -42,7 +42,7 @@ pub struct Function {
     /// The type of its value.
     pub result: ResultType,
     /// Whether a jump of its value is a state event outside `noEvent` (MLS §3.7.2).
-    pub event_generating: bool,
+    pub(crate) event_generating: bool,
     /// The unit of its value.
     pub unit: UnitRule,
     /// The section of the MLS that defines it.
@@ -148,7 +148,7 @@ impl Value {
 
 impl Function {
     /// Number of arguments.
-    pub fn arity(&self) -> usize {
+    pub(crate) fn arity(&self) -> usize {
         match self.value {
             Value::Unary(_) => 1,
             Value::Binary(_) => 2,

@@ -284,7 +284,7 @@ impl ComponentReference {
     }
 
     /// The name, if no part has subscripts.
-    pub fn as_name(&self) -> Option<Name> {
+    pub(crate) fn as_name(&self) -> Option<Name> {
         self.parts.iter().all(|part| part.subscripts.is_empty()).then(|| self.name())
     }
 
@@ -310,7 +310,7 @@ impl Expression {
 
     /// The sizes that its text shows: those of array constructors; none for anything else. An
     /// array of such elements has them even if it is empty.
-    pub fn written_sizes(&self) -> Vec<usize> {
+    pub(crate) fn written_sizes(&self) -> Vec<usize> {
         match &self.kind {
             ExpressionKind::Array(elements) => {
                 let inner = elements.first().map_or(Vec::new(), Expression::written_sizes);

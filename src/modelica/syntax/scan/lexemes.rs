@@ -44,7 +44,7 @@ pub struct Lexeme {
     /// Whether a line end before it closes a statement of a script.
     pub ends_line: bool,
     /// Whether it is in brackets, or a word of a conditional expression: no keyword of a statement.
-    pub in_expression: bool,
+    pub(crate) in_expression: bool,
 }
 
 /// Operators of two characters, which the scanner reads one by one.

@@ -7,14 +7,15 @@ mod read;
 mod rewrite;
 
 pub use read::{
-    Visit, walk_arguments, walk_equation, walk_expression, walk_modification, walk_reference,
-    walk_statement,
+    Visit, walk_equation, walk_expression, walk_modification, walk_reference, walk_statement,
 };
+
+pub(crate) use read::walk_arguments;
 pub use rewrite::{
-    Rewrite, rewrite_arguments, rewrite_class, rewrite_equation, rewrite_expression,
-    rewrite_modification, rewrite_reference, rewrite_script, rewrite_statement,
-    rewrite_stored_definition,
+    Rewrite, rewrite_class, rewrite_equation, rewrite_expression, rewrite_reference,
+    rewrite_script, rewrite_statement, rewrite_stored_definition,
 };
+pub(crate) use rewrite::{rewrite_arguments, rewrite_modification};
 
 use crate::source::Span;
 

@@ -122,7 +122,7 @@ pub fn walk_modification<V: Visit + ?Sized>(visitor: &mut V, modification: &Modi
 
 /// Visits the expressions of modification arguments, those of redeclared components included;
 /// not those of redeclared classes.
-pub fn walk_arguments<V: Visit + ?Sized>(visitor: &mut V, arguments: &[Argument]) {
+pub(crate) fn walk_arguments<V: Visit + ?Sized>(visitor: &mut V, arguments: &[Argument]) {
     for argument in arguments {
         match argument {
             Argument::Element(element) => {

@@ -222,7 +222,7 @@ fn equation_branches<R: Rewrite + ?Sized>(
 }
 
 /// Rewrites a modification.
-pub fn rewrite_modification<R: Rewrite + ?Sized>(
+pub(crate) fn rewrite_modification<R: Rewrite + ?Sized>(
     rewriter: &mut R,
     modification: &mut Modification,
 ) {
@@ -236,7 +236,7 @@ pub fn rewrite_modification<R: Rewrite + ?Sized>(
 }
 
 /// Rewrites the arguments of a modification.
-pub fn rewrite_arguments<R: Rewrite + ?Sized>(rewriter: &mut R, arguments: &mut [Argument]) {
+pub(crate) fn rewrite_arguments<R: Rewrite + ?Sized>(rewriter: &mut R, arguments: &mut [Argument]) {
     for argument in arguments {
         match argument {
             Argument::Element(element) => {

@@ -87,7 +87,7 @@ pub fn power(left: &Value, right: &Value) -> Result<Value, Fault> {
 }
 
 /// `-a` (MLS §10.6.1)
-pub fn negate(value: &Value) -> Result<Value, Fault> {
+pub(crate) fn negate(value: &Value) -> Result<Value, Fault> {
     let negated = |value: i64| value.checked_neg().ok_or_else(|| overflow("-", 0, value));
     match value {
         Value::Real(value) => Ok(Value::Real(-value)),

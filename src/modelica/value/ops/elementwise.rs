@@ -13,7 +13,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 /// `a .+ b`; also joins Strings.
-pub fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
     added(".+", left, right)
 }
 
@@ -27,18 +27,18 @@ pub fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> 
 }
 
 /// `a .- b`
-pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
     subtracted(".-", left, right)
 }
 
-pub fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_subtract, |a, b| {
         a.checked_sub(b).ok_or_else(|| overflow("-", a, b))
     })
 }
 
 /// `a .* b`
-pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
     multiplied(".*", left, right)
 }
 
@@ -49,7 +49,7 @@ pub fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fa
 }
 
 /// `a ./ b`, always Real.
-pub fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, Fault> {
     divided("./", left, right)
 }
 
@@ -58,7 +58,7 @@ pub fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault
 }
 
 /// `a .^ b`, always Real.
-pub fn elementwise_power(left: &Value, right: &Value) -> Result<Value, Fault> {
+pub(crate) fn elementwise_power(left: &Value, right: &Value) -> Result<Value, Fault> {
     real(".^", left, right, real_power)
 }
 

@@ -8,14 +8,15 @@ mod matrix;
 mod relation;
 mod scalar;
 
-pub use arithmetic::{add, divide, multiply, negate, plus, power, subtract};
-pub use elementwise::{
+pub use arithmetic::{add, divide, multiply, plus, power, subtract};
+
+pub(crate) use arithmetic::negate;
+pub(crate) use elementwise::{
     elementwise_add, elementwise_divide, elementwise_multiply, elementwise_power,
     elementwise_subtract,
 };
-pub use relation::{
-    and, equal, greater, greater_equal, less, less_equal, not, not_equal, or, order,
-};
+pub use relation::{and, equal, less, not, or, order};
+pub(crate) use relation::{greater, greater_equal, less_equal, not_equal};
 
 use super::Value;
 use super::errors::TYPE_MISMATCH;

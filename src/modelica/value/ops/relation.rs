@@ -14,17 +14,17 @@ pub fn less(left: &Value, right: &Value) -> Result<bool, Fault> {
 }
 
 /// `a <= b`
-pub fn less_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
+pub(crate) fn less_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
     Ok(order("<=", left, right)?.is_some_and(Ordering::is_le))
 }
 
 /// `a > b`
-pub fn greater(left: &Value, right: &Value) -> Result<bool, Fault> {
+pub(crate) fn greater(left: &Value, right: &Value) -> Result<bool, Fault> {
     Ok(order(">", left, right)? == Some(Ordering::Greater))
 }
 
 /// `a >= b`
-pub fn greater_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
+pub(crate) fn greater_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
     Ok(order(">=", left, right)?.is_some_and(Ordering::is_ge))
 }
 
@@ -34,7 +34,7 @@ pub fn equal(left: &Value, right: &Value) -> Result<bool, Fault> {
 }
 
 /// `a <> b`
-pub fn not_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
+pub(crate) fn not_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
     Ok(order("<>", left, right)? != Some(Ordering::Equal))
 }
 

@@ -4,20 +4,20 @@ use crate::diag::Fault;
 use crate::value::errors::{DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW};
 use crate::{bail, elementary, fault};
 
-pub fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
+pub(crate) fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
     representable("+", a, b, a + b)
 }
 
-pub fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
+pub(crate) fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
     representable("-", a, b, a - b)
 }
 
-pub fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
+pub(crate) fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
     representable("*", a, b, a * b)
 }
 
 /// `a / b` of two Reals; a fault if `b` is zero or the quotient exceeds the largest Real.
-pub fn real_divide(a: f64, b: f64) -> Result<f64, Fault> {
+pub(crate) fn real_divide(a: f64, b: f64) -> Result<f64, Fault> {
     if b == 0.0 {
         bail!(DIVISION_BY_ZERO, "division of {a:?} by zero");
     }
@@ -33,7 +33,7 @@ fn representable(symbol: &str, a: f64, b: f64, result: f64) -> Result<f64, Fault
 }
 
 /// `a ^ b` of two Reals; a fault where that is not a real number.
-pub fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
+pub(crate) fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
     if a == 0.0 && b < 0.0 {
         bail!(DIVISION_BY_ZERO, "zero to the negative power {b:?}");
     }

@@ -10,7 +10,8 @@ mod two_point;
 mod uniform;
 
 pub use fixed_points::{check_points, cross_adjacent};
-pub use own::{Own, SIGNATURE, cross_by};
+pub(crate) use own::SIGNATURE;
+pub use own::{Own, cross_by};
 
 use super::{Gene, Genomes, Mrg32k3a};
 use crate::diag::Fault;
@@ -44,7 +45,7 @@ pub trait Crossover: Send + Sync {
 }
 
 /// All ways of crossover.
-pub const CROSSOVERS: &[&Entry<dyn Crossover>] = &[
+pub(crate) const CROSSOVERS: &[&Entry<dyn Crossover>] = &[
     &sbx::ENTRY,
     &blend::ENTRY,
     &arithmetic::ENTRY,

@@ -9,7 +9,7 @@ use crate::registry::UserFunction;
 use std::sync::Arc;
 
 /// Its inputs and outputs.
-pub const SIGNATURE: Signature = Signature {
+pub(crate) const SIGNATURE: Signature = Signature {
     inputs: &[
         ("first", Size::Genes),
         ("second", Size::Genes),

@@ -6,7 +6,9 @@ mod own;
 mod polynomial;
 mod uniform;
 
-pub use own::{Own, SIGNATURE, mutate_by};
+pub use own::{Own, mutate_by};
+
+pub(crate) use own::SIGNATURE;
 pub use uniform::{check_factor, mutate_uniform};
 
 use super::{Gene, Mrg32k3a};
@@ -71,5 +73,5 @@ impl Course {
 }
 
 /// All ways of mutation.
-pub const MUTATIONS: &[&Entry<dyn Mutation>] =
+pub(crate) const MUTATIONS: &[&Entry<dyn Mutation>] =
     &[&polynomial::ENTRY, &gaussian::ENTRY, &uniform::ENTRY, &non_uniform::ENTRY];

@@ -9,7 +9,7 @@ use crate::registry::UserFunction;
 use std::sync::Arc;
 
 /// Its inputs and outputs; `progress` is 0 at the beginning of the run and 1 at its end.
-pub const SIGNATURE: Signature = Signature {
+pub(crate) const SIGNATURE: Signature = Signature {
     inputs: &[
         ("genes", Size::Genes),
         ("minimum", Size::Genes),

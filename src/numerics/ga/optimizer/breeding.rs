@@ -32,7 +32,7 @@ pub fn take(
 
 /// Crossover and mutation of a method.
 #[derive(Clone)]
-pub struct Breeding {
+pub(crate) struct Breeding {
     crossover: Arc<dyn Crossover>,
     /// How likely a pair is crossed; without a number every pair is, and none is drawn.
     pub(super) probability: Option<f64>,
@@ -46,7 +46,10 @@ pub struct Breeding {
 impl Breeding {
     /// Simulated binary crossover of nine pairs in ten and polynomial mutation of one gene in each
     /// individual, unless others are chosen.
-    pub fn on_real_genes(options: &mut Options, chosen: &mut Chosen) -> Result<Breeding, Fault> {
+    pub(crate) fn on_real_genes(
+        options: &mut Options,
+        chosen: &mut Chosen,
+    ) -> Result<Breeding, Fault> {
         let (crossover, probability) = match options.take_choice("crossover") {
             Some(choice) => crossover(choice, 0.9, chosen)?,
             None => {
@@ -68,7 +71,10 @@ impl Breeding {
     }
 
     /// The crossover and the mutation of the paper, unless others are chosen.
-    pub fn of_the_paper(options: &mut Options, chosen: &mut Chosen) -> Result<Breeding, Fault> {
+    pub(crate) fn of_the_paper(
+        options: &mut Options,
+        chosen: &mut Chosen,
+    ) -> Result<Breeding, Fault> {
         let (crossover, probability) = match options.take_choice("crossover") {
             Some(choice) => crossover(choice, 1.0, chosen)?,
             None => {

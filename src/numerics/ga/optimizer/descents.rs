@@ -147,7 +147,7 @@ impl Pool {
     }
 
     /// Where the best descent stands.
-    pub fn best_place(&self) -> Option<&[f64]> {
+    pub(crate) fn best_place(&self) -> Option<&[f64]> {
         self.best().map(|best| self.descents[best].places()[1])
     }
 
@@ -179,7 +179,7 @@ impl Pool {
 
     /// Whether further descents are not worth their cost: the best minimum was reached often enough,
     /// and few others can be expected; or none comes to a minimum.
-    pub fn is_enough(&self) -> bool {
+    pub(crate) fn is_enough(&self) -> bool {
         self.is_reached_often() || self.is_stuck()
     }
 

@@ -56,7 +56,7 @@ impl Scale {
 
 /// Pairs of genes, those of the most similar ranges first, and how far they were tried from a place.
 #[derive(Debug, Clone, Default)]
-pub struct Exchanges {
+pub(crate) struct Exchanges {
     scales: Vec<Scale>,
     pairs: Vec<[usize; 2]>,
     from: Vec<f64>,

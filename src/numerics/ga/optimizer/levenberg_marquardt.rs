@@ -32,10 +32,10 @@ pub const ENTRY: Entry<dyn Method> = Entry {
 /// within a thousandth of their standard errors.
 pub const MINIMUM: f64 = 1e-3;
 /// Relative offset at which the best descent stops: parameters to 1e-7 of their standard errors.
-pub const FINE: f64 = 1e-7;
+pub(crate) const FINE: f64 = 1e-7;
 /// Relative offset at which the others stop. Problems with large residuals converge slowly from here
 /// (ENSO takes as many steps again).
-pub const COARSE: f64 = 3e-4;
+pub(crate) const COARSE: f64 = 3e-4;
 /// A minimum whose residuals come near to the errors of the simulation can be told to this offset at
 /// best (Lanczos1: residuals of 1e-13).
 const COARSEST: f64 = 0.02;
@@ -176,7 +176,7 @@ impl Descent {
     }
 
     /// Whether a finer goal is open to it.
-    pub fn can_be_refined(&self) -> bool {
+    pub(crate) fn can_be_refined(&self) -> bool {
         self.end == Some(DescentEnd::Minimum) && self.goal > FINE
     }
 
@@ -377,7 +377,7 @@ pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) 
 
 impl Descent {
     /// What the next question wants to know.
-    pub fn wants_now(&self) -> Wants {
+    pub(crate) fn wants_now(&self) -> Wants {
         match self.asked {
             Asked::Start | Asked::Jacobian => Wants::Jacobians,
             Asked::Probe | Asked::Trial => Wants::Residuals,
@@ -385,7 +385,7 @@ impl Descent {
     }
 
     /// Asks for one individual; for none when it has ended or its steps are used up.
-    pub fn ask_next(&self, batch: &mut Genomes) {
+    pub(crate) fn ask_next(&self, batch: &mut Genomes) {
         if self.end.is_some() || self.left == 0 && self.asked != Asked::Jacobian {
             return;
         }

@@ -26,7 +26,7 @@ const ON_BOUND: f64 = 1e-13;
 const AT: f64 = 1e-3;
 
 /// The model at a point.
-pub struct LinearModel {
+pub(crate) struct LinearModel {
     /// R, at most as many rows as columns.
     factor: DMatrix<f64>,
     /// Qᵀr.
@@ -71,7 +71,7 @@ pub struct Offset {
     /// Genes held by bounds.
     pub held: usize,
     /// Whether a derivative is not known.
-    pub blind: bool,
+    pub(crate) blind: bool,
     /// Genes whose derivatives all vanish.
     pub flat: usize,
 }

@@ -7,7 +7,8 @@ mod sobol;
 mod uniform;
 
 pub use latin_hypercube::latin_hypercube;
-pub use own::{Own, SIGNATURE, sample_by};
+pub(crate) use own::SIGNATURE;
+pub use own::{Own, sample_by};
 pub use sobol::sobol;
 
 use super::{Gene, Genomes, Mrg32k3a};
@@ -25,7 +26,7 @@ pub trait Sampling: Send + Sync {
 }
 
 /// All ways of sampling.
-pub const SAMPLINGS: &[&Entry<dyn Sampling>] =
+pub(crate) const SAMPLINGS: &[&Entry<dyn Sampling>] =
     &[&latin_hypercube::ENTRY, &uniform::ENTRY, &sobol::ENTRY, &halton::ENTRY];
 
 /// Individuals of the unit cube in the ranges of the genes.

@@ -19,7 +19,7 @@ pub const ENTRY: Entry<dyn Sampling> = Entry {
 };
 
 /// Genes that the sequence is made for; further ones are those of a Latin hypercube.
-pub const SOBOL_GENES: usize = 1 + POLYNOMIALS.len();
+pub(crate) const SOBOL_GENES: usize = 1 + POLYNOMIALS.len();
 
 /// For the second gene and the ones behind it: degree and inner coefficients of a primitive
 /// polynomial, and the first direction numbers.

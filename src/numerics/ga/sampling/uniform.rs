@@ -25,7 +25,7 @@ impl Sampling for Uniform {
 }
 
 /// `count` individuals: gene j is minⱼ + (maxⱼ − minⱼ) u, numbers drawn individual by individual.
-pub fn sample_uniform(genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes {
+pub(crate) fn sample_uniform(genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes {
     let mut genomes = Genomes::with_capacity(genes.len(), count);
     let mut genome = vec![0.0; genes.len()];
     for _ in 0..count {

@@ -8,7 +8,9 @@ mod stochastic_universal;
 mod tournament;
 mod truncation;
 
-pub use own::{Own, SIGNATURE, select_by};
+pub use own::{Own, select_by};
+
+pub(crate) use own::SIGNATURE;
 pub use tournament::tournament;
 pub use truncation::check_sizes;
 
@@ -39,7 +41,7 @@ pub trait Selection: Send + Sync {
 }
 
 /// All ways of selection.
-pub const SELECTIONS: &[&Entry<dyn Selection>] = &[
+pub(crate) const SELECTIONS: &[&Entry<dyn Selection>] = &[
     &tournament::ENTRY,
     &truncation::ENTRY,
     &roulette::ENTRY,

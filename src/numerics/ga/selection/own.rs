@@ -11,7 +11,7 @@ use crate::registry::UserFunction;
 use std::sync::Arc;
 
 /// Its inputs and outputs; rank 1 is the best.
-pub const SIGNATURE: Signature = Signature {
+pub(crate) const SIGNATURE: Signature = Signature {
     inputs: &[("fitness", Size::One), ("rank", Size::One), ("individuals", Size::One)],
     outputs: &[("weight", Size::One)],
 };

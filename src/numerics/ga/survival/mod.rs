@@ -7,7 +7,8 @@ mod own;
 mod plus;
 
 pub use elitism::elites_first;
-pub use own::{Own, SIGNATURE, survivors_by};
+pub(crate) use own::SIGNATURE;
+pub use own::{Own, survivors_by};
 
 use super::{Gene, Genomes};
 use crate::diag::Fault;
@@ -91,7 +92,7 @@ pub trait Survival: Send + Sync {
 }
 
 /// All ways of survival.
-pub const SURVIVALS: &[&Entry<dyn Survival>] =
+pub(crate) const SURVIVALS: &[&Entry<dyn Survival>] =
     &[&elitism::ENTRY, &generational::ENTRY, &plus::ENTRY, &crowding::ENTRY];
 
 impl Brood<'_> {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Its inputs and outputs; rank 1 is the best of all `individuals`, the old and the offspring;
 /// `age` counts the generations that one has survived, 0 for offspring.
-pub const SIGNATURE: Signature = Signature {
+pub(crate) const SIGNATURE: Signature = Signature {
     inputs: &[
         ("fitness", Size::One),
         ("rank", Size::One),

@@ -24,7 +24,7 @@ pub struct Parsed {
 
 /// Where the cells of a column are.
 #[derive(Clone, Copy)]
-pub struct Cells<'r, 'a> {
+pub(crate) struct Cells<'r, 'a> {
     pub rows: &'r [Record<'a>],
     pub column: usize,
     pub name: &'r str,
@@ -246,7 +246,7 @@ impl<'r> Cells<'r, '_> {
 }
 
 /// The decimal mark of which the columns leave no doubt, if they agree.
-pub fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
+pub(crate) fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
     let mut usual = None;
     for row in rows {
         for cell in row.cells.iter().take(columns) {

@@ -29,7 +29,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
 
 /// The text with `\n` at the ends of lines; an empty file, a page of the web and binary data are
 /// not tables.
-pub fn lines_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
+pub(crate) fn lines_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
     let text = decode(bytes);
     if text.trim().is_empty() {
         bail!(BAD_TABLE, "the file is empty"; help: "write the column names in the first line");

@@ -80,7 +80,7 @@ pub fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
 /// # Errors
 ///
 /// As [`read_text`]; faults name the cell.
-pub fn read_rows(rows: Vec<(usize, Vec<String>)>) -> Result<MatFile, Fault> {
+pub(crate) fn read_rows(rows: Vec<(usize, Vec<String>)>) -> Result<MatFile, Fault> {
     let record = |(line, cells): (usize, Vec<String>)| Record {
         line,
         cells: cells.into_iter().map(Cow::Owned).collect(),

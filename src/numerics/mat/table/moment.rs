@@ -13,7 +13,7 @@ const DAY: i64 = 86_400 * SECOND;
 
 /// A date, a time of day, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Moment {
+pub(crate) struct Moment {
     date: Option<Date>,
     /// Nanoseconds, and whether the seconds are written.
     clock: Option<(i64, bool)>,

@@ -33,12 +33,12 @@ pub fn split(head: &str) -> (Option<&str>, Option<String>) {
 }
 
 /// The unit of a cell in a row of units; none where it does not convert.
-pub fn of_cell(cell: &str) -> Option<String> {
+pub(crate) fn of_cell(cell: &str) -> Option<String> {
     known(without_brackets(cell))
 }
 
 /// Whether a cell of the row below the names may be a unit.
-pub fn is_unit(cell: &str) -> bool {
+pub(crate) fn is_unit(cell: &str) -> bool {
     let inner = without_brackets(cell);
     OTHER.contains(&inner) || inner.len() < cell.len() || known(inner).is_some()
 }
@@ -56,7 +56,7 @@ fn known(text: &str) -> Option<String> {
 }
 
 /// `[V]`, `(V)` and `<I>` without the brackets.
-pub fn without_brackets(text: &str) -> &str {
+pub(crate) fn without_brackets(text: &str) -> &str {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(inner) = text.strip_prefix(open).and_then(|rest| rest.strip_suffix(close)) {
             return inner.trim();

@@ -13,7 +13,7 @@ use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
 
 /// The coefficients of a method.
-pub struct Tableau {
+pub(crate) struct Tableau {
     /// cᵢ
     pub(super) nodes: &'static [f64],
     /// aᵢⱼ, j < i
@@ -26,7 +26,7 @@ pub struct Tableau {
 
 /// What a method with variable step knows besides. The last of the seven derivatives is the one at the
 /// end of the step.
-pub struct Embedded {
+pub(crate) struct Embedded {
     /// Order of the method the error is measured against.
     pub(super) order: i32,
     /// Error = h Σ eᵢ kᵢ
@@ -39,7 +39,7 @@ pub struct Embedded {
 const MOST_FACTOR: f64 = 5.0;
 
 /// An explicit method with its workspace.
-pub struct ExplicitRungeKutta {
+pub(crate) struct ExplicitRungeKutta {
     tableau: &'static Tableau,
     t: f64,
     t_old: f64,

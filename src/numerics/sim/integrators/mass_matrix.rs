@@ -6,7 +6,7 @@ use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 /// s M − J for a Jacobian that is kept, columns scaled by nominal values.
 #[derive(Default)]
-pub struct ShiftedMatrix {
+pub(crate) struct ShiftedMatrix {
     pattern: Pattern,
     factors: Option<Factorization>,
     jacobian: Vec<f64>,

@@ -20,7 +20,7 @@ use std::sync::atomic::Ordering;
 pub(super) use without_unknowns::WithoutUnknowns;
 
 /// The methods a script may ask for.
-pub const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
+pub(crate) const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
     &bdf::ENTRY,
     &rodas::ENTRY,
     &radau::ENTRY,
@@ -91,7 +91,7 @@ pub struct Problem<'a> {
     /// How many steps it may take.
     pub budget: StepBudget,
     /// When the clock of the time budget ends the simulation.
-    pub deadline: Option<f64>,
+    pub(crate) deadline: Option<f64>,
 }
 
 impl Problem<'_> {

@@ -29,7 +29,7 @@ static TABLEAU: Tableau = Tableau {
     embedded: None,
 };
 
-pub const ORDER_2: Entry<dyn Integrator> = Entry {
+pub(crate) const ORDER_2: Entry<dyn Integrator> = Entry {
     name: "rkfix2",
     aliases: &["heun"],
     summary: "Heun's explicit Runge-Kutta method, order 2, fixed step",
@@ -40,7 +40,7 @@ pub const ORDER_2: Entry<dyn Integrator> = Entry {
 static HEUN: Tableau =
     Tableau { nodes: &[0.0, 1.0], stages: &[&[], &[1.0]], weights: &[0.5, 0.5], embedded: None };
 
-pub const ORDER_3: Entry<dyn Integrator> = Entry {
+pub(crate) const ORDER_3: Entry<dyn Integrator> = Entry {
     name: "rkfix3",
     aliases: &[],
     summary: "Kutta's explicit Runge-Kutta method, order 3, fixed step",

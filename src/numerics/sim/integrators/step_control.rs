@@ -17,7 +17,7 @@ pub const SAFETY: f64 = 0.9;
 /// its own length is not reliable.
 const LEAST_FACTOR: f64 = 0.2;
 /// Where a step fails without an estimate of its error, the next attempt has this part of its length.
-pub const FAILURE_FACTOR: f64 = 0.25;
+pub(crate) const FAILURE_FACTOR: f64 = 0.25;
 /// A step that ends this near to the limit, relative to its length, is stretched to it: what remained
 /// would be of the size of rounding errors in t.
 const STRETCH: f64 = 1.0 + 1e-9;
@@ -56,7 +56,7 @@ impl Attempt {
 
 /// The length of the next step of a one-step method.
 #[derive(Debug, Default)]
-pub struct StepControl {
+pub(crate) struct StepControl {
     /// s
     h: f64,
     /// Below this a step does not change t noticeably.
@@ -91,12 +91,12 @@ impl StepControl {
     }
 
     /// Takes the step as one of which an attempt was rejected.
-    pub fn be_cautious(&mut self) {
+    pub(crate) fn be_cautious(&mut self) {
         self.is_cautious = true;
     }
 
     /// Whether an attempt of this step was rejected.
-    pub fn is_cautious(&self) -> bool {
+    pub(crate) fn is_cautious(&self) -> bool {
         self.is_cautious
     }
 
@@ -115,7 +115,7 @@ impl StepControl {
     }
 
     /// An attempt had too large an error: the next one has `factor` times its length.
-    pub fn reject(
+    pub(crate) fn reject(
         &mut self,
         problem: &mut Problem,
         attempt: Attempt,
@@ -146,14 +146,14 @@ impl StepControl {
 
 /// How many times longer a step may be so that its error, relative to the tolerance, becomes one.
 /// `order` is that of the estimate. An error that is not a number shortens most.
-pub fn error_factor(error: f64, order: i32, safety: f64, largest: f64) -> f64 {
+pub(crate) fn error_factor(error: f64, order: i32, safety: f64, largest: f64) -> f64 {
     let exponent = -1.0 / f64::from(order + 1);
     (safety * elementary::powf(error, exponent)).max(LEAST_FACTOR).min(largest)
 }
 
 /// The safety factor after so many of at most `most` iterations of Newton's method: many of them say
 /// that a longer step may not converge.
-pub fn newton_safety(iterations: usize, most: usize) -> f64 {
+pub(crate) fn newton_safety(iterations: usize, most: usize) -> f64 {
     let budget = 2.0 * most as f64 + 1.0;
     SAFETY * budget / (budget - 1.0 + iterations as f64)
 }

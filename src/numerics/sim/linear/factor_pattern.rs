@@ -4,17 +4,17 @@
 pub(super) struct Shape<'a> {
     pub rows: &'a [u32],
     pub columns: &'a [u32],
-    pub entry_starts: &'a [u32],
+    pub(crate) entry_starts: &'a [u32],
     pub entries: &'a [(u32, u32)],
     pub lower: &'a Rows,
     pub upper: &'a Rows,
     /// Rows with sparse pivots.
-    pub n_sparse: usize,
+    pub(crate) n_sparse: usize,
 }
 
 impl Shape<'_> {
     /// Column of the permuted matrix and position in the values of the entries of row i.
-    pub fn row_entries(&self, i: usize) -> &[(u32, u32)] {
+    pub(crate) fn row_entries(&self, i: usize) -> &[(u32, u32)] {
         &self.entries[row(self.entry_starts, i)]
     }
 

@@ -43,7 +43,7 @@ pub(super) use self::shares::{attract, balanced};
 pub(super) use self::slide::{Contact, Surface};
 
 /// The most surfaces at once: every one doubles the number of fields.
-pub const MOST_SURFACES: usize = 5;
+pub(crate) const MOST_SURFACES: usize = 5;
 
 type Evaluated = Result<(), Failure>;
 

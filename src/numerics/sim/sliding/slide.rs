@@ -83,7 +83,7 @@ impl Slide {
 }
 
 /// The mode with the largest weight.
-pub fn nearest_mode(shares: &[f64]) -> usize {
+pub(crate) fn nearest_mode(shares: &[f64]) -> usize {
     let sides = shares.iter().enumerate();
     sides.filter(|(_, share)| **share > 0.5).map(|(bit, _)| 1 << bit).sum()
 }
@@ -98,7 +98,7 @@ pub fn weight(mode: usize, shares: &[f64]) -> f64 {
 }
 
 /// The derivative of a weight by a share.
-pub fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
+pub(crate) fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
     let factor = |(bit, share): (usize, &f64)| match (bit == by, mode >> bit & 1) {
         (true, 1) => 1.0,
         (true, _) => -1.0,
@@ -109,7 +109,7 @@ pub fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
 }
 
 /// Where a component of y stands in the y within.
-pub fn inner_place(place: usize, at: usize, k: usize) -> Option<usize> {
+pub(crate) fn inner_place(place: usize, at: usize, k: usize) -> Option<usize> {
     match place {
         place if place < at => Some(place),
         place if place < at + k => None,

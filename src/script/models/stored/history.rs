@@ -24,7 +24,7 @@ impl History {
     }
 
     /// A name was searched for, and a file was loaded or not.
-    pub fn note_search(&mut self, name: Ident, is_loaded: bool) {
+    pub(crate) fn note_search(&mut self, name: Ident, is_loaded: bool) {
         self.searches.push((name, is_loaded));
     }
 

@@ -52,7 +52,7 @@ impl Reads {
     }
 
     /// A text was read from a file.
-    pub fn note_text(&self, source: SourceId, path: &Path) {
+    pub(crate) fn note_text(&self, source: SourceId, path: &Path) {
         self.notes().files.insert(source, path.to_owned());
     }
 
@@ -67,7 +67,7 @@ impl Reads {
     }
 
     /// An environment variable was read.
-    pub fn note_variable(&self, name: &str, content: Option<&str>) {
+    pub(crate) fn note_variable(&self, name: &str, content: Option<&str>) {
         self.note(Question::Variable(name.to_owned()), of_content(content));
     }
 

@@ -42,7 +42,7 @@ pub(super) struct Built {
     /// What should be known of the data.
     pub notes: Vec<Note>,
     /// What the file says about the parameters of the model.
-    pub calibration: Option<Calibration>,
+    pub(crate) calibration: Option<Calibration>,
     /// Inputs of which it is not known how they continue between samples.
     pub undecided: Vec<Undecided>,
 }

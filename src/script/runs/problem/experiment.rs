@@ -34,7 +34,7 @@ pub(super) struct Built {
     pub experiment: Experiment,
     pub series: Vec<Series>,
     /// Whether its model has states, so that its results have the error of an integrator.
-    pub has_states: bool,
+    pub(crate) has_states: bool,
     /// Its compiled model.
     pub program: Arc<Program>,
     /// Inputs of which it is not known how they continue between samples.

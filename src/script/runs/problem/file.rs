@@ -87,7 +87,7 @@ pub(super) struct ParameterTable {
     pub initial: bool,
     /// Every experiment has its own.
     #[serde(default)]
-    pub per_experiment: bool,
+    pub(crate) per_experiment: bool,
     /// What is known of it without the data.
     pub prior: Option<PriorEntry>,
 }
@@ -106,7 +106,7 @@ pub(super) struct ExperimentEntry {
     #[serde(default)]
     pub inputs: IndexMap<String, Column>,
     /// The column of time for the inputs; that of X unless given.
-    pub input_time: Option<String>,
+    pub(crate) input_time: Option<String>,
     /// Values of parameters in this experiment.
     #[serde(default)]
     pub set: IndexMap<String, ValueEntry>,
@@ -119,7 +119,7 @@ pub(super) struct ExperimentEntry {
     pub validation: bool,
     /// Before it all derivatives were zero.
     #[serde(default)]
-    pub steady_state: bool,
+    pub(crate) steady_state: bool,
     /// When its simulation begins, in seconds; its initial values are those of this time.
     pub start_time: Option<f64>,
     pub stop_time: Option<f64>,
@@ -130,7 +130,7 @@ pub(super) struct ExperimentEntry {
     /// Steps after which a simulation is given up.
     pub max_steps: Option<u64>,
     /// Seconds on the clock after which a simulation is given up.
-    pub max_seconds: Option<f64>,
+    pub(crate) max_seconds: Option<f64>,
     /// Where its entries are written.
     #[serde(skip)]
     pub places: ExperimentPlaces,

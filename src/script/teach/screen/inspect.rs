@@ -49,7 +49,7 @@ fn kept(screen: &Screen, k: usize) -> Option<&[f64]> {
 }
 
 /// Whether the curve of an individual is known from a simulation alone.
-pub fn must_simulate(screen: &Screen, k: usize) -> bool {
+pub(crate) fn must_simulate(screen: &Screen, k: usize) -> bool {
     kept(screen, k).is_none() && screen.walk.generation().failure(k).is_none()
 }
 

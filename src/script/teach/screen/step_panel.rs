@@ -15,7 +15,7 @@ const BEFORE: u16 = 18;
 const NUMBER: u16 = 11;
 
 /// Columns of the population with its genes as numbers.
-pub fn width_of_numbers(screen: &Screen) -> u16 {
+pub(crate) fn width_of_numbers(screen: &Screen) -> u16 {
     let n = u16::try_from(screen.walk.generation().n_genes).unwrap_or(u16::MAX);
     NUMBER.saturating_mul(n).saturating_add(BEFORE)
 }

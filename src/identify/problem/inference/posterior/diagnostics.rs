@@ -8,7 +8,7 @@ use crate::problem::distributions::normal_quantile;
 
 /// The larger of rank-normalized split R-hat and that of the folded draws; 1 where the chains
 /// cannot be distinguished. NaN for chains that never moved or of fewer than 4 draws.
-pub fn r_hat(chains: &[Vec<f64>]) -> f64 {
+pub(crate) fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let halves = split(chains);
     if halves.iter().any(|half| half.len() < 2) {
         return f64::NAN;
@@ -22,12 +22,12 @@ pub fn r_hat(chains: &[Vec<f64>]) -> f64 {
 }
 
 /// Effective number of independent draws for the centre of the distribution.
-pub fn bulk_ess(chains: &[Vec<f64>]) -> f64 {
+pub(crate) fn bulk_ess(chains: &[Vec<f64>]) -> f64 {
     effective(&rank_normalized(&split(chains)))
 }
 
 /// Effective number for the 5 % and 95 % quantiles, the smaller of both.
-pub fn tail_ess(chains: &[Vec<f64>]) -> f64 {
+pub(crate) fn tail_ess(chains: &[Vec<f64>]) -> f64 {
     let mut all: Vec<f64> = chains.concat();
     all.sort_by(f64::total_cmp);
     let below = |p: f64| {

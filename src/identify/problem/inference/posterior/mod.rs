@@ -65,7 +65,7 @@ pub struct Posterior {
     /// Draws of each.
     pub draws: usize,
     /// Share of the steps that moved.
-    pub acceptance: f64,
+    pub(crate) acceptance: f64,
     /// Whether all chains agree and hold enough independent draws.
     pub converged: bool,
     /// For each parameter.
@@ -87,11 +87,11 @@ pub struct Sampled {
     /// 2.5 %, 25 %, 50 %, 75 % and 97.5 %.
     pub quantiles: [f64; 5],
     /// Rank-normalized split R-hat.
-    pub r_hat: Option<f64>,
+    pub(crate) r_hat: Option<f64>,
     /// Effective sample size of the bulk.
-    pub bulk_ess: Option<f64>,
+    pub(crate) bulk_ess: Option<f64>,
     /// Effective sample size of the tails.
-    pub tail_ess: Option<f64>,
+    pub(crate) tail_ess: Option<f64>,
     /// The ends of the search range that cut the posterior: its density does not vanish there.
     #[serde(default)]
     pub cut: [Option<f64>; 2],

@@ -45,7 +45,7 @@ pub(in super::super) struct Drawn {
     /// Draws, one row each.
     pub draws: Vec<Vec<f64>>,
     /// Logarithms of the density there.
-    pub densities: Vec<f64>,
+    pub(crate) densities: Vec<f64>,
     /// After each round: draws, and steps that moved.
     pub rounds: Vec<(usize, u64)>,
 }
@@ -63,7 +63,7 @@ impl Drawn {
     }
 
     /// Share of the steps that moved.
-    pub fn acceptance(&self) -> f64 {
+    pub(crate) fn acceptance(&self) -> f64 {
         let (tried, accepted) = self.rounds.last().copied().unwrap_or_default();
         accepted as f64 / tried.max(1) as f64
     }

@@ -28,7 +28,7 @@ const SLOWEST: f64 = 0.7;
 
 impl Bdf {
     /// Weights of the tested derivatives, direction by direction.
-    pub fn set_direction_weights(&mut self, problem: &Problem, tolerance: f64) {
+    pub(crate) fn set_direction_weights(&mut self, problem: &Problem, tolerance: f64) {
         let (n, tested) = (self.n, self.weights.len());
         self.magnitudes.resize(problem.system.n_directions(), 1.0);
         if self.magnitudes.is_empty() {
@@ -47,14 +47,18 @@ impl Bdf {
 
     /// The largest norm of the derivatives along one direction in a vector of all unknowns, of each
     /// the first `tested`.
-    pub fn norm_of_directions(&self, vector: &[f64], tested: usize) -> f64 {
+    pub(crate) fn norm_of_directions(&self, vector: &[f64], tested: usize) -> f64 {
         let weights = self.direction_weights.chunks_exact(self.weights.len().max(1));
         let blocks = vector[self.n..].chunks_exact(self.n.max(1)).zip(weights);
         blocks.map(|(s, weights)| weighted_rms(s, &weights[..tested])).fold(0.0, f64::max)
     }
 
     /// First differences of the derivatives of the states.
-    pub fn start_directions(&mut self, problem: &mut Problem, t: f64) -> Result<(), SimErrorKind> {
+    pub(crate) fn start_directions(
+        &mut self,
+        problem: &mut Problem,
+        t: f64,
+    ) -> Result<(), SimErrorKind> {
         let n = self.n;
         if self.rhs.len() == n {
             return Ok(());
@@ -70,7 +74,7 @@ impl Bdf {
     }
 
     /// Solves the corrector for all s at `t_new`, where y is.
-    pub fn correct_directions(
+    pub(crate) fn correct_directions(
         &mut self,
         problem: &mut Problem,
         t_new: f64,
