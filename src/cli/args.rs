@@ -74,7 +74,7 @@ pub(super) enum Command {
     Help(HelpArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
-    /// Check Modelica files, or one model including its causalization (BLT)
+    /// Check every class of Modelica files, and models including their causalization (BLT)
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),

@@ -59,7 +59,7 @@ pub(super) struct FlattenArgs {
     pub limits: Limits,
 }
 
-/// Checks all models of the files, or one down to its sorted equations.
+/// Checks all classes of the files, or one; models down to their sorted equations.
 pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
     let _watch = match limits::enforce(&arguments.limits) {
         Ok(watch) => watch,
@@ -141,20 +141,36 @@ fn check_script(session: &mut Session, path: &Path) -> bool {
 }
 
 fn check_one(session: &mut Session, model: &str) -> ExitCode {
-    match simulation::translate(session, model) {
+    session.output.report_once();
+    let translated = simulation::translate(session, model);
+    let is_right = match translated {
         Ok(translated) => {
             let report = checking::report(session, &translated);
             session.print(&report);
-            ExitCode::SUCCESS
+            true
         }
         Err(errors) => match component(session, model, &errors) {
             Some(balance) => {
                 session.print(&format!("{balance}\n"));
-                ExitCode::SUCCESS
+                true
             }
-            None => session::failed(session, errors),
+            None => {
+                session::failed(session, errors);
+                false
+            }
         },
-    }
+    };
+    let class = model.split('(').next().unwrap_or(model).trim();
+    let is_class_right = check_class(session, &Name::parse(class));
+    if is_right && is_class_right { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Checks the text of a class and the names in it, whatever is made of it; whether nothing is wrong.
+fn check_class(session: &mut Session, class: &Name) -> bool {
+    let found = session.examine_class(class);
+    let is_right = !found.iter().any(Diagnostic::is_error);
+    found.into_iter().for_each(|found| session.report(found));
+    is_right
 }
 
 /// The balance of a component that is no system by itself, such as a resistor with open pins.
@@ -164,39 +180,52 @@ fn component(session: &mut Session, model: &str, errors: &[Diagnostic]) -> Optio
 }
 
 fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
-    session.output.report_warnings_once();
-    let (models, classes) = checking::models(session, loaded);
-    let mut wrong = 0;
-    for model in &models {
-        match simulation::translate(session, &model.to_string()) {
-            Ok(translated) => {
-                let summary = checking::summary(session, &translated);
-                session.print(&format!("{model}: {summary}\n"));
-            }
-            Err(errors) => {
-                if let Some(balance) = component(session, &model.to_string(), &errors) {
-                    session.print(&format!("{balance}\n"));
-                    continue;
-                }
-                if let Some(missing) = values_left_open(&errors) {
-                    session.print(&format!("{model}: {missing} where it is used\n"));
-                    continue;
-                }
-                wrong += 1;
-                session::failed(session, errors);
-            }
+    session.output.report_once();
+    let classes = checking::classes(session, loaded);
+    let (mut models, mut wrong) = (0, 0);
+    for class in &classes {
+        let mut is_right = check_class(session, class);
+        if checking::is_model(session, class) {
+            models += 1;
+            is_right &= check_model(session, class);
         }
+        wrong += usize::from(!is_right);
     }
-    let classes = match classes {
+    let classes = match classes.len() {
         1 => "1 class".to_owned(),
         n => format!("{n} classes"),
     };
-    let models = match models.len() {
+    let models = match models {
         1 => "1 model".to_owned(),
         n => format!("{n} models"),
     };
     session.print(&format!("{classes}, {models}, {wrong} with errors\n"));
     if wrong > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// Checks a model down to its sorted equations; whether nothing is wrong.
+fn check_model(session: &mut Session, model: &Name) -> bool {
+    let errors = match simulation::translate(session, &model.to_string()) {
+        Ok(translated) => {
+            let summary = checking::summary(session, &translated);
+            session.print(&format!("{model}: {summary}\n"));
+            return true;
+        }
+        Err(errors) => errors,
+    };
+    if let Some(balance) = component(session, &model.to_string(), &errors) {
+        session.print(&format!("{balance}\n"));
+        return true;
+    }
+    if let Some(missing) = values_left_open(&errors) {
+        session.print(&format!("{model}: {missing} where it is used\n"));
+        return true;
+    }
+    if errors.iter().all(|error| session.output.has_reported(error)) {
+        session.print(&format!("{model}: has the errors reported above\n"));
+    }
+    session::failed(session, errors);
+    false
 }
 
 /// What is missing if only values of parameters are, which whoever uses the class gives.

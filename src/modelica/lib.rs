@@ -8,7 +8,7 @@
 //! - [`syntax`], [`mod@format`]: the grammar of classes and scripts, trees, printing, layout;
 //! - [`value`], [`functions`], [`external`], [`eval`]: values, the functions and operators of the
 //!   language, `external` functions of libraries, the interpreter;
-//! - [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
+//! - `names`: the lookup of names; [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
 //!   equations;
 //! - [`symbolic`], [`causalize`]: scalar expressions; index reduction, block lower triangular form,
 //!   tearing;
@@ -36,6 +36,7 @@ pub mod flatten;
 pub mod format;
 pub mod functions;
 pub mod lower;
+mod names;
 pub mod runtime;
 pub mod symbolic;
 pub mod syntax;

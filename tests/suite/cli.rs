@@ -308,6 +308,30 @@ fn a_lone_component_is_balanced() {
     assert_eq!(gapi(&here, &["check", "Resistor.mo"]).0, 0);
 }
 
+/// Names are looked up in functions and partial classes too, and in branches that are not taken; what is
+/// wrong with a class is said once, though models are made of it.
+#[test]
+fn every_class_is_checked() {
+    let text = "package P
+          function f input Real u; output Real y; algorithm y := k*u; end f;
+          partial model A Real x; equation x = missing; end A;
+          model B extends A; end B;
+          model C parameter Boolean on = false annotation(Evaluate = true);
+            Real x = if on then absent else 1; end C;
+        end P;";
+    let here = folder(&[("P.mo", text), ("Right.mo", "partial model Right end Right;")]);
+    let (code, out, err) = gapi(&here, &["check", "P.mo"]);
+    for name in ["k", "missing", "absent"] {
+        assert_eq!(err.matches(&format!("`{name}` is not declared")).count(), 1, "{err}");
+    }
+    assert!(code == 1 && out.contains("P.B: has the errors reported above"), "{out}");
+    assert!(out.contains("5 classes, 2 models, 4 with errors"), "{out}");
+    let (code, _, err) = gapi(&here, &["check", "P.mo", "P.C"]);
+    assert!(code == 1 && err.contains("`absent` is not declared"), "{err}");
+    let (code, out, _) = gapi(&here, &["check", "Right.mo"]);
+    assert!(code == 0 && out.contains("1 class, 0 models, 0 with errors"), "{out}");
+}
+
 /// A component whose parameters are given values where it is used is no error by itself.
 #[test]
 fn parameters_may_be_left_to_the_user_of_a_class() {

@@ -10,6 +10,7 @@ mod assertions;
 mod bad_input;
 mod c_functions;
 mod chattering;
+mod checking;
 mod checks;
 mod cli;
 mod clocks;

@@ -35,6 +35,7 @@ mod record_values;
 mod shapes;
 mod types;
 mod units;
+mod unknown;
 mod variables;
 
 pub use balance::LocalBalance;

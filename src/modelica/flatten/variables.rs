@@ -17,7 +17,7 @@ use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::picked;
 use crate::flatten::ids::{NodeId, ScopeId};
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::flatten::instantiate::tree::ATTRIBUTES;
+use crate::flatten::lookup::types::ATTRIBUTES;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use rustc_hash::FxHashMap;

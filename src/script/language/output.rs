@@ -18,7 +18,7 @@ pub struct Output {
     pub transcript: Option<Transcript>,
     /// Statements and answers so far, for `savelog`.
     log: Log,
-    /// Warnings reported, where each is reported once.
+    /// Diagnostics reported, where each is reported once.
     reported: Option<HashSet<(Span, String)>>,
     /// Commands whose lack of effect without a window was reported.
     windowless: BTreeSet<&'static str>,
@@ -69,10 +69,9 @@ impl Output {
             overheard.push(diagnostic.clone());
         }
         let is_error = diagnostic.is_error();
-        let reported = self.reported.as_mut().filter(|_| !is_error);
         let place = || (diagnostic.span(), diagnostic.message.clone());
-        if reported.is_some_and(|reported| !reported.insert(place())) {
-            return false;
+        if self.reported.as_mut().is_some_and(|reported| !reported.insert(place())) {
+            return is_error;
         }
         let plain = render::render(&diagnostic, sources, false);
         match (quiet && !is_error, screen.colour()) {
@@ -88,9 +87,16 @@ impl Output {
         is_error
     }
 
-    /// From here on a warning at the same place is reported once, however many models it concerns.
-    pub fn report_warnings_once(&mut self) {
+    /// From here on an error or a warning at the same place is reported once, however many classes it
+    /// concerns.
+    pub fn report_once(&mut self) {
         self.reported.get_or_insert_default();
+    }
+
+    /// Whether an error or a warning was reported where each is reported once.
+    pub fn has_reported(&self, diagnostic: &Diagnostic) -> bool {
+        let place = (diagnostic.span(), diagnostic.clone().shortened().message.clone());
+        self.reported.as_ref().is_some_and(|reported| reported.contains(&place))
     }
 
     /// Whether it is the first time that this command has no effect.

@@ -45,16 +45,15 @@ pub fn component_balance(session: &mut Session, problem: &str) -> Option<String>
     Some(format!("{}: {balance}", flattened.model.name))
 }
 
-/// The classes that can be simulated among these and all in them: models and blocks that are not
-/// partial, in order of loading; and how many classes there are.
-pub fn models(session: &mut Session, loaded: &[Name]) -> (Vec<Name>, usize) {
+/// These classes and all in them, in order of loading.
+pub fn classes(session: &mut Session, loaded: &[Name]) -> Vec<Name> {
     let library = session.library();
-    let all: Vec<Name> = loaded.iter().flat_map(|name| library.all_in(name)).collect();
-    let count = all.len();
-    let is_model = |name: &Name| {
-        library.definition(name).is_some_and(|class| {
-            matches!(class.restriction, Restriction::Model | Restriction::Block) && !class.partial
-        })
-    };
-    (all.into_iter().filter(is_model).collect(), count)
+    loaded.iter().flat_map(|name| library.all_in(name)).collect()
+}
+
+/// Whether a class can be simulated: a model or a block that is not partial.
+pub fn is_model(session: &mut Session, class: &Name) -> bool {
+    session.library().definition(class).is_some_and(|class| {
+        matches!(class.restriction, Restriction::Model | Restriction::Block) && !class.partial
+    })
 }

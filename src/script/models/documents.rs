@@ -162,9 +162,12 @@ impl Session {
         }
     }
 
-    /// What is wrong with a class by its text and the names in it.
+    /// What is wrong with a class by its text and the names in it; what is wrong with the text of a class
+    /// that it needs comes first.
     pub fn examine_class(&mut self, class: &Name) -> Vec<Diagnostic> {
-        self.ask(|library| flatten::check(library, class))
+        let found = self.ask(|library| flatten::check(library, class));
+        let problems = self.library().take_problems();
+        if problems.is_empty() { found } else { problems }
     }
 
     /// The work of finding out what is wrong with a model, for any thread. The libraries that the loaded

@@ -58,6 +58,27 @@ fn malformed_messages_do_not_end_the_server() {
 }
 
 #[test]
+fn names_in_functions_and_partial_models_are_looked_up() {
+    let here = folder(&[]);
+    let mut client = Client::start(here.path());
+    let path = here.path().join("Parts.mo");
+    let text = "package Parts
+  function f input Real u; output Real y = k*u; end f;
+  partial model A Real x; Missing m; equation x = f(v = 1); end A;
+end Parts;
+";
+    client.open(&path, text);
+    let found = client.diagnostics(&path, 1);
+    let codes =
+        ["unknown-name: `k`", "unknown-class: there is no class `Missing`", "wrong-arguments"];
+    for code in codes {
+        assert_eq!(found.iter().filter(|one| one.contains(code)).count(), 1, "{code}: {found:?}");
+    }
+    assert_eq!(found.len(), codes.len(), "{found:?}");
+    assert_eq!(client.shut_down(), 0);
+}
+
+#[test]
 fn diagnostics_follow_what_is_typed() {
     let here = folder(&[]);
     let mut client = Client::start(here.path());

@@ -1,10 +1,10 @@
 //! Where equations and statements may stand (MLS §4.5, §8.3, §9.1, §9.4.1, §11.2, §12.2).
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::MISPLACED;
 use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;

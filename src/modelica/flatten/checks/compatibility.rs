@@ -1,8 +1,8 @@
 //! Whether a class can stand where another one is expected (MLS §6.4), as both are declared. Where
 //! a class is not wholly known, it can.
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
+use crate::flatten::declared::classes::Type;
 use crate::flatten::library::ClassId;
 use crate::name::Ident;
 use crate::syntax::ast::{ClassSpecifier, Restriction, Visibility};

@@ -1,10 +1,10 @@
 //! What `connect` equations name (MLS §9.1, §9.3): connectors whose variables of one name have the
 //! same variability and both a direction or both none.
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::INVALID_CONNECTION;
 use crate::flatten::library::LegacyConstruct;
 use crate::source::Span;

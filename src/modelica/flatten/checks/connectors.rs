@@ -1,9 +1,9 @@
 //! What a connector class must hold together (MLS §9.3.1, §9.4, §15.1).
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::CLASS_RESTRICTION;
 use crate::name::Ident;
 use crate::syntax::ast::{

@@ -2,7 +2,8 @@
 //!
 //! [`check`] follows a class to all classes that take part in it and checks each by its text and by
 //! what the names in it mean, before anything is instantiated. What depends on modifications is
-//! left to instantiation. Where a name means nothing, nothing is said here.
+//! left to instantiation. Names that mean nothing are reported by [`check_class`] alone: instantiation
+//! finds those of what it makes.
 
 mod access;
 mod behaviour;
@@ -14,7 +15,6 @@ mod elements;
 mod imports;
 mod inherited_classes;
 mod lineage;
-pub(super) mod lookup;
 mod modifications;
 mod names;
 mod operators;
@@ -23,6 +23,7 @@ mod prefixes;
 mod restrictions;
 pub(super) mod scope;
 mod types;
+mod unknown;
 mod usage;
 mod variability;
 mod visible_elements;
@@ -42,10 +43,13 @@ pub fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     judged(library, errors)
 }
 
-/// What is wrong with one class, whatever takes part in it.
+/// What is wrong with one class, whatever takes part in it, names that mean nothing included.
 pub fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
-    check_one(Scope { library, class }, &mut errors);
+    let class = Scope { library, class };
+    unknown::check(class, &mut errors);
+    check_rules(class, &mut errors);
+    types::check_with_values(class, &mut errors);
     judged(library, errors)
 }
 
@@ -58,6 +62,12 @@ fn judged(library: &Library, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    check_rules(class, errors);
+    types::check(class, errors);
+}
+
+/// The rules that are the same for a class by itself and for one that takes part in a model.
+fn check_rules(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     elements::check(class, errors);
     restrictions::check(class, errors);
     connectors::check(class, errors);
@@ -70,7 +80,6 @@ fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     modifications::check(class, errors);
     inherited_classes::check(class, errors);
     usage::check(class, errors);
-    types::check(class, errors);
 }
 
 /// A restriction as the messages call it.

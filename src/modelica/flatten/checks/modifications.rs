@@ -1,11 +1,11 @@
 //! What modifications may reach, and which classes may be replaced (MLS §4.1, §7.3.1).
 
 use super::compatibility::{Lack, dimensions, lack};
-use super::lookup::Type;
 use super::scope::Scope;
 use super::visible_elements::{element, protected};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::ILLEGAL_REDECLARATION;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};

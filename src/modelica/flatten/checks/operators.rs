@@ -1,9 +1,9 @@
 //! Operators of operator records (MLS ch. 14).
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::ILLEGAL_OPERATOR;
 use crate::flatten::lookup::types::Predefined;
 use crate::name::Ident;

@@ -1,10 +1,10 @@
 //! Which components may have which type prefixes (MLS §4.4.2.2, §9.1.3, §9.3,
 //! §15.1).
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::ILLEGAL_PREFIX;
 use crate::flatten::lookup::types::Predefined;
 use crate::source::Span;

@@ -1,7 +1,7 @@
 //! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
 
 use super::lineage::Lineage;
-use super::lookup::Type;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::library::{ClassId, Library, Question};
 use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};

@@ -1,11 +1,11 @@
 //! Types of scalar expressions, as far as a class tells by itself: conditions are Boolean, and both
-//! sides of a relation have one type (MLS §3.5, §4.9.5, §8.3.4, §8.3.7). Bindings and equations are
-//! left to flattening, which knows all types and sizes.
+//! sides of a relation have one type (MLS §3.5, §4.9.5, §8.3.4, §8.3.7). Of a model, bindings and equations
+//! are left to flattening, which knows all types and sizes.
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
 use crate::flatten::lookup::types::Predefined;
@@ -33,7 +33,17 @@ enum Kind {
 
 /// Checks the conditions and relations that a class itself writes.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
-    let mut walk = Walk { class, loops: Vec::new(), operations: RefCell::default(), errors };
+    check_as(class, false, errors);
+}
+
+/// Checks the values that a class itself gives to its variables as well.
+pub fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    check_as(class, true, errors);
+}
+
+fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
+    let operations = RefCell::default();
+    let mut walk = Walk { class, with_values, loops: Vec::new(), operations, errors };
     for component in class.components() {
         walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
@@ -54,6 +64,8 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 
 struct Walk<'a, 'e> {
     class: Scope<'a>,
+    /// Whether bindings, equations and assignments are checked.
+    with_values: bool,
     /// The loop variables met; what they are is not looked at.
     loops: Vec<Ident>,
     /// The types of the operations of the class, by where these are in memory: each term of a long sum
@@ -89,9 +101,33 @@ impl Walk<'_, '_> {
         let (Some(declared), Some(found)) = (kind_of(component), self.kind(value)) else { return };
         let has_enumeration =
             [declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)));
-        if has_enumeration && !self.same(declared, found) {
+        if (has_enumeration || self.with_values) && !self.same(declared, found) {
             let name = component.name();
             self.mismatch(value, &format!("`{name}` is {}", self.name(declared)), found);
+        }
+    }
+
+    /// A value that a statement assigns. Old libraries compute with enumerations.
+    fn assigned(&mut self, target: &ComponentReference, value: &Expression) {
+        let kinds = (self.kind_of_reference(target), self.kind(value));
+        if let (Some(declared), Some(found)) = kinds
+            && self.with_values
+            && ![declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)))
+            && declared != found
+        {
+            let message = format!("`{}` is {}", target.name(), self.name(declared));
+            self.mismatch(value, &message, found);
+        }
+    }
+
+    /// The sides of an equation.
+    fn equated(&mut self, left: &Expression, right: &Expression) {
+        if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
+            && self.with_values
+            && !self.same(a, b)
+        {
+            let message = format!("the other side of the equation is {}", self.name(a));
+            self.mismatch(right, &message, b);
         }
     }
 
@@ -299,6 +335,7 @@ impl Visit for Walk<'_, '_> {
             EquationKind::For { indices, .. } => {
                 self.loops.extend(indices.iter().map(|index| index.name.node));
             }
+            EquationKind::Equal { left, right } => self.equated(left, right),
             EquationKind::Call(call) => self.assertion(call),
             _ => {}
         }
@@ -311,6 +348,7 @@ impl Visit for Walk<'_, '_> {
                 branches.iter().for_each(|(condition, _)| self.condition(condition));
             }
             StatementKind::While { condition, .. } => self.condition(condition),
+            StatementKind::Assign { target, value } => self.assigned(target, value),
             StatementKind::For { indices, .. } => {
                 self.loops.extend(indices.iter().map(|index| index.name.node));
             }

@@ -1,11 +1,11 @@
 //! What expressions may say in which class: `time`, conditional components and the operators that
 //! ask for arguments of a kind (MLS §3.6.7, §3.7, §4.4.5, §12.2, §15.2).
 
-use super::lookup::Type;
 use super::scope::{Component, Scope};
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::{CONDITIONAL_COMPONENT, ILLEGAL_ACCESS, ILLEGAL_ARGUMENT, MISPLACED};
 use crate::flatten::lookup::types::Predefined;
 use crate::functions::{self, Builtin};

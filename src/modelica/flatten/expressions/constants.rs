@@ -17,12 +17,68 @@ use crate::flatten::lookup::modification::Bound;
 use crate::flatten::lookup::types::Type;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
+use crate::names::Names;
 use crate::source::Span;
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ReferencePart, Restriction, VariabilityPrefix,
+    ComponentReference, Expression, ExpressionKind, ImportKind, ReferencePart, Restriction,
+    VariabilityPrefix,
 };
 use crate::value::{ArrayValue, Value};
 use std::sync::Arc;
+
+/// The constants and literals that a reference may mean, looked up by its first part and followed to
+/// the end.
+struct Constants<'i, 'a, 'r> {
+    instantiation: &'i mut Instantiation<'a>,
+    reference: &'r ComponentReference,
+    context: ScopeId,
+    local: &'r Local,
+}
+
+impl Constants<'_, '_, '_> {
+    fn inside_class(&mut self, found: Option<Type>) -> Result<Option<Expression>, Diagnostic> {
+        let Constants { instantiation, reference, context, local } = self;
+        let rest = &reference.parts[1..];
+        instantiation.inside_class(found, rest, reference, *context, local).map(Some)
+    }
+}
+
+impl Names for Constants<'_, '_, '_> {
+    type Class = ScopeId;
+    type Meaning = Expression;
+    type Fault = Diagnostic;
+
+    fn element(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Expression>, Diagnostic> {
+        let Constants { instantiation, reference, context, local } = self;
+        if scope != *context && instantiation.classes.has_component(scope, name)? {
+            let found = instantiation.enclosing_constant(scope, reference, *context, local);
+            return found.map(Some);
+        }
+        match instantiation.classes.element(scope, name)? {
+            Some(found) => self.inside_class(Some(found)),
+            None => Ok(None),
+        }
+    }
+
+    fn imports(&self, scope: ScopeId) -> &[ImportKind] {
+        self.instantiation.classes.imports(scope)
+    }
+
+    fn around(&self, scope: ScopeId) -> Option<ScopeId> {
+        self.instantiation.classes.around(scope)
+    }
+
+    fn top(&mut self, name: Ident) -> Result<Option<Expression>, Diagnostic> {
+        let found = self.instantiation.classes.lookup(ScopeId::TOP, &Name::from(name))?;
+        self.inside_class(found)
+    }
+
+    fn global(&mut self, name: &Name) -> Result<Option<Expression>, Diagnostic> {
+        let Constants { instantiation, reference, context, local } = self;
+        let name = Name { global: true, ..name.clone() };
+        instantiation.imported_constant(&name, reference, *context, local)
+    }
+}
 
 impl Instantiation<'_> {
     /// The value of an expression that shapes the model; the parameters that it needs are marked.
@@ -180,32 +236,12 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let first = reference.parts[0].name;
-        let mut scope = if reference.global { ScopeId::TOP } else { context };
-        while scope != ScopeId::TOP {
-            if scope != context && self.classes.has_component(scope, first)? {
-                return self.enclosing_constant(scope, reference, context, local);
-            }
-            if let Some(nested) = self.classes.find_class(scope, first)? {
-                let found = if nested.outer {
-                    self.classes.lookup_simple(scope, first)?
-                } else {
-                    Some(self.classes.instance(&nested)?)
-                };
-                return self.inside_class(found, &reference.parts[1..], reference, context, local);
-            }
-            for name in self.classes.imported_names(scope, first) {
-                if let Some(found) = self.imported_constant(&name, reference, context, local)? {
-                    return Ok(found);
-                }
-            }
-            if self.classes.is_encapsulated(scope) {
-                break;
-            }
-            scope = self.classes.scope(scope).parent.unwrap_or(ScopeId::TOP);
+        let scope = Some(context).filter(|scope| !reference.global && *scope != ScopeId::TOP);
+        let mut constants = Constants { instantiation: self, reference, context, local };
+        match constants.simple(scope, reference.parts[0].name)? {
+            Some(found) => Ok(found),
+            None => Err(self.classes.unknown_name(reference, context)),
         }
-        let found = self.classes.lookup(ScopeId::TOP, &Name::from(first))?;
-        self.inside_class(found, &reference.parts[1..], reference, context, local)
     }
 
     /// A component of an enclosing class, which must be a constant.
@@ -293,7 +329,7 @@ impl Instantiation<'_> {
                 let local = self.as_of_class(scope, part.name, reference, local)?;
                 return self.walk(node, &path[at..], reference, context, &local);
             }
-            found = self.classes.lookup_inside(found, &[part.name])?;
+            found = self.classes.inside(class, part.name)?;
             if at + 1 == path.len()
                 && let Some(function) = self.function_reference(found, reference.span)?
             {

@@ -1,7 +1,7 @@
 //! References followed through the components of instances, to variables, to the elements of arrays
 //! of components, and to records as a whole (MLS §5.3.2, §10.5).
 
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{
     CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH,
@@ -16,6 +16,7 @@ use crate::flatten::instantiate::instance::NodeKind;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::lookup::classes::Classes;
+use crate::flatten::unknown;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -96,12 +97,7 @@ impl Instantiation<'_> {
         if let NodeKind::Variable(_) = self.classes.tree.nodes[id.0].kind {
             if let Some(next) = rest.first() {
                 let path = &self.classes.tree.nodes[id.0].path;
-                return Err(fault!(
-                    UNKNOWN_NAME,
-                    "`{path}` is a variable and has no component `{}`",
-                    next.name
-                )
-                .at(whole.span));
+                return Err(unknown::component_of_variable(path, next.name, whole.span));
             }
             let subscripts = self.subscripts(&part.subscripts, context, local)?;
             return self.variable_reference(id, subscripts, whole.span, local);
@@ -447,11 +443,6 @@ impl Classes<'_> {
         let Some(text) = text else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
         };
-        let class = &text.name;
-        let known = self.tree.component_names(node);
-        let known = known.iter().map(|known| known.as_str());
-        fault!(UNKNOWN_NAME, "`{class}` has no component `{name}`")
-            .help_if(suggest::did_you_mean(name.as_str(), known))
-            .at(span)
+        unknown::component(&text.name, name, &self.tree.component_names(node), span)
     }
 }

@@ -1,10 +1,10 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{
-    CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
+    CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE,
 };
 use crate::flatten::expressions::comprehensions::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
@@ -12,7 +12,7 @@ use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::classes::Classes;
-use crate::name::Ident;
+use crate::flatten::unknown;
 use crate::source::Span;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
@@ -385,12 +385,8 @@ impl Instantiation<'_> {
 impl Classes<'_> {
     /// The diagnostic for a name that is neither a component nor a constant.
     pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
-        let name = reference.name();
         let known = self.tree.component_names(self.node_of(context));
-        let first = name.first().map_or("", Ident::as_str);
-        fault!(UNKNOWN_NAME, "`{name}` is not declared")
-            .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))
-            .at(reference.span)
+        unknown::name(&reference.name(), &known, reference.span)
     }
 }
 

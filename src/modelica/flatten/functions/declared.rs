@@ -20,6 +20,7 @@ use crate::flatten::lookup::scope::Text;
 use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
 use crate::name::{Ident, Name};
+use crate::names::Names as _;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Annotation, Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference,
@@ -33,6 +34,12 @@ use std::sync::Arc;
 
 /// Packages of the standard library whose functions the language has under bare names too.
 const INTRINSIC_PACKAGES: &[&str] = &["Modelica.Math"];
+
+/// Whether a name with dots is one of a function that the language has under its bare name too.
+pub fn is_intrinsic(name: &Name) -> bool {
+    let package = Name::new(name.parent().parts).to_string();
+    INTRINSIC_PACKAGES.contains(&package.as_str())
+}
 
 impl Library {
     /// The function that a name means at the top level, with the functions that it calls; `None`
@@ -114,7 +121,7 @@ impl Instantiation<'_> {
                         );
                     }
                     let found = Some(Type::Class(scope));
-                    return match self.classes.lookup_inside(found, &name.parts[at..])? {
+                    return match self.classes.followed(found, &name.parts[at..])? {
                         Some(Type::Class(id)) => self.function(id),
                         _ => Ok(None),
                     };
@@ -126,9 +133,8 @@ impl Instantiation<'_> {
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.
     fn intrinsic_name(&self, name: &Name) -> Name {
-        let package = Name::new(name.parent().parts).to_string();
         match name.last() {
-            Some(last) if INTRINSIC_PACKAGES.contains(&package.as_str()) => Name::from(last),
+            Some(last) if is_intrinsic(name) => Name::from(last),
             _ => name.clone(),
         }
     }

@@ -5,7 +5,7 @@ pub mod declared;
 pub mod defaults;
 mod outer_names;
 mod partial_derivative;
-mod printing;
+pub(crate) mod printing;
 pub(crate) mod specialization;
 pub mod table;
 mod unrolled;

@@ -3,14 +3,15 @@
 use super::instance::{
     Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeKind,
 };
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{TOO_LARGE, UNKNOWN_ELEMENT};
+use crate::flatten::errors::TOO_LARGE;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::Expanded;
 use crate::flatten::lookup::modification::Modifier;
-use crate::flatten::{BaseType, Variability, Variable};
+use crate::flatten::lookup::types::ATTRIBUTES;
+use crate::flatten::{BaseType, Variability, Variable, unknown};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{CausalityPrefix, VariabilityPrefix};
@@ -22,20 +23,6 @@ use std::sync::Arc;
 /// states, and heat flows between them, has two million and one.
 const MAX_SCALARS: usize = 5_000_000;
 pub(crate) const MAX_INSTANCES: usize = 1_000_000;
-
-/// The attributes of the predefined types (MLS §4.9).
-pub const ATTRIBUTES: [&str; 10] = [
-    "quantity",
-    "unit",
-    "displayUnit",
-    "min",
-    "max",
-    "start",
-    "fixed",
-    "nominal",
-    "unbounded",
-    "stateSelect",
-];
 
 /// Begins the path of a package's instance; no component can be named so.
 const PACKAGE_MARK: char = '.';
@@ -286,13 +273,8 @@ fn stricter(outer: Option<Variability>, own: Option<Variability>) -> Option<Vari
 fn check_attributes(declared: &Declaration, modifier: &Modifier) -> Result<(), Diagnostic> {
     for (name, modifier) in &modifier.elements {
         if !ATTRIBUTES.contains(&name.as_str()) {
-            return Err(fault!(
-                UNKNOWN_ELEMENT,
-                "`{}` has no attribute `{name}` to modify",
-                declared.name
-            )
-            .help_if(suggest::did_you_mean(name.as_str(), ATTRIBUTES))
-            .at(modifier.span.unwrap_or(declared.span)));
+            let span = modifier.span.unwrap_or(declared.span);
+            return Err(unknown::attribute(declared.name, *name, span));
         }
     }
     Ok(())

@@ -36,6 +36,8 @@ pub(in crate::flatten) enum Question {
     Content,
     /// Which has more than a package may have?
     NoPackage,
+    /// Which may have elements that no declaration shows?
+    Open,
 }
 
 impl Library {

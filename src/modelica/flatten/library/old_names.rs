@@ -4,7 +4,9 @@
 use super::conversion_rules::Conversions;
 use super::{Class, ClassId, Library};
 use crate::name::{Ident, Name};
+use crate::names::Names;
 use crate::syntax::ast::{ClassSpecifier, Extends, ImportKind};
+use std::convert::Infallible;
 
 /// The deepest chain of classes that stand for each other that is followed.
 const MAX_DEPTH: usize = 20;
@@ -25,6 +27,56 @@ pub(super) struct OldNames<'a> {
     pub(super) conversions: &'a Conversions,
 }
 
+/// The classes at a depth of the search.
+struct OldClasses<'a> {
+    names: OldNames<'a>,
+    /// The class whose inherited elements do not count: its base classes are looked up.
+    own: Option<ClassId>,
+    depth: usize,
+}
+
+impl Names for OldClasses<'_> {
+    type Class = ClassId;
+    type Meaning = Meaning;
+    type Fault = Infallible;
+
+    fn element(&mut self, class: ClassId, name: Ident) -> Result<Option<Meaning>, Infallible> {
+        Ok(self.names.member(class, name, self.own != Some(class), self.depth))
+    }
+
+    fn imports(&self, class: ClassId) -> &[ImportKind] {
+        &self.names.class(class).imports
+    }
+
+    fn around(&self, class: ClassId) -> Option<ClassId> {
+        let class = self.names.class(class);
+        class.parent.filter(|_| !class.definition.encapsulated)
+    }
+
+    fn top(&mut self, name: Ident) -> Result<Option<Meaning>, Infallible> {
+        if self.names.conversions.iter().any(|(library, _)| *library == name) {
+            return Ok(Some(Meaning::Old(name.into())));
+        }
+        Ok(self.names.library.roots.get(&name).copied().map(Meaning::Own))
+    }
+
+    fn inside(&mut self, of: Meaning, name: Ident) -> Result<Option<Meaning>, Infallible> {
+        Ok(match of {
+            Meaning::Old(package) => Some(Meaning::Old(package.child(name))),
+            Meaning::Own(class) => self.names.member(class, name, true, self.depth + 1),
+        })
+    }
+
+    fn global(&mut self, name: &Name) -> Result<Option<Meaning>, Infallible> {
+        Ok(self.names.found(None, name, true, self.depth + 1))
+    }
+
+    fn from_package(&mut self, package: &Name, name: Ident) -> Result<Option<Meaning>, Infallible> {
+        let full = package.child(name);
+        if self.names.is_known(&full) { self.global(&full) } else { Ok(None) }
+    }
+}
+
 impl<'a> OldNames<'a> {
     fn class(self, id: ClassId) -> &'a Class {
         self.library.read(id)
@@ -35,6 +87,7 @@ impl<'a> OldNames<'a> {
         self.found(Some(scope), name, true, 0)
     }
 
+    /// What a name means in a class; what that class itself inherits counts if `inherited`.
     fn found(
         self,
         scope: Option<ClassId>,
@@ -42,41 +95,13 @@ impl<'a> OldNames<'a> {
         inherited: bool,
         depth: usize,
     ) -> Option<Meaning> {
-        let (first, rest) = name.parts.split_first()?;
-        if depth > MAX_DEPTH {
-            return None;
-        }
-        let mut scope = scope.filter(|_| !name.global);
-        let mut inherited = inherited;
-        while let Some(at) = scope {
-            let class = self.class(at);
-            if let Some(member) = self.member(at, *first, inherited, depth) {
-                return self.inner(member, rest, depth);
-            }
-            if let Some(full) = self.imported(class, *first) {
-                return self.found(None, &joined(&full, rest), true, depth + 1);
-            }
-            inherited = true;
-            scope = class.parent.filter(|_| !class.definition.encapsulated);
-        }
-        if self.conversions.iter().any(|(library, _)| library == first) {
-            return Some(Meaning::Old(Name::new(name.parts.iter().copied())));
-        }
-        let root = self.library.roots.get(first).copied()?;
-        self.inner(Meaning::Own(root), rest, depth)
-    }
-
-    /// What an import of a class brings under a name.
-    fn imported(self, class: &Class, name: Ident) -> Option<Name> {
-        class.imports.iter().find_map(|import| match import {
-            ImportKind::Qualified(full) => (full.last() == Some(name)).then(|| full.clone()),
-            ImportKind::Renaming(alias, full) => (*alias == name).then(|| full.clone()),
-            ImportKind::Group(package, names) => names.contains(&name).then(|| package.child(name)),
-            ImportKind::Unqualified(package) => {
-                let full = package.child(name);
-                self.is_known(&full).then_some(full)
-            }
-        })
+        let (first, rest) = name.parts.split_first().filter(|_| depth <= MAX_DEPTH)?;
+        let scope = scope.filter(|_| !name.global);
+        let own = scope.filter(|_| !inherited);
+        let mut classes = OldClasses { names: self, own, depth };
+        let Ok(found) = classes.simple(scope, *first);
+        let Ok(found) = classes.followed(found, rest);
+        found
     }
 
     /// Whether there is a class of a full name, converted where that must be; rules may also be about
@@ -114,16 +139,6 @@ impl<'a> OldNames<'a> {
                 self.is_known(&full).then_some(Meaning::Old(full))
             }
         })
-    }
-
-    fn inner(self, mut found: Meaning, path: &[Ident], depth: usize) -> Option<Meaning> {
-        for part in path {
-            found = match found {
-                Meaning::Old(package) => Meaning::Old(package.child(*part)),
-                Meaning::Own(id) => self.member(id, *part, true, depth + 1)?,
-            };
-        }
-        Some(found)
     }
 
     /// What a class extends or is short for.
@@ -202,8 +217,4 @@ impl<'a> OldNames<'a> {
                     Meaning::Old(_) => false,
                 })
     }
-}
-
-fn joined(name: &Name, rest: &[Ident]) -> Name {
-    Name::new(name.parts.iter().chain(rest).copied())
 }

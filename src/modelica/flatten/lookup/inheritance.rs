@@ -3,9 +3,9 @@
 
 use super::elements::Elements;
 use super::modification::{Modifier, Redeclaration, Replacement};
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{CYCLIC_CLASS, TYPE_MISMATCH, UNKNOWN_ELEMENT};
+use crate::flatten::errors::{CYCLIC_CLASS, TYPE_MISMATCH};
 use crate::flatten::ids::ScopeId;
 use crate::flatten::library::ClassId;
 use crate::flatten::lookup::classes::Classes;
@@ -13,6 +13,7 @@ use crate::flatten::lookup::elements::MAX_BASES;
 use crate::flatten::lookup::scope::Nested;
 use crate::flatten::lookup::scope::Stage;
 use crate::flatten::lookup::types::Type;
+use crate::flatten::unknown;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{ClassSpecifier, Element, Extends, Restriction, TypeSpecifier};
@@ -270,10 +271,7 @@ impl Classes<'_> {
             return Ok(());
         }
         let known: Vec<Ident> = elements.names().collect();
-        let known = known.iter().map(|known| known.as_str());
-        Err(fault!(UNKNOWN_ELEMENT, "`{}` has no component `{name}` to modify", self.text(id).name)
-            .help_if(suggest::did_you_mean(name.as_str(), known))
-            .at(span))
+        Err(unknown::element(&self.text(id).name, name, &known, span))
     }
 }
 

@@ -1,10 +1,10 @@
-//! Looking up names of classes: simple (MLS §5.3.1), composite (§5.3.2), global (§5.3.3) and
-//! imported ones (§5.3.4, §13.2).
+//! Names of classes in instances (MLS §5.3): with the modifiers and redeclarations that reach what they
+//! mean.
 
 use super::modification::{Modifier, Redeclaration, Replacement};
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{FINAL_OVERRIDE, UNKNOWN_CLASS};
+use crate::flatten::errors::FINAL_OVERRIDE;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::library::ClassId;
 use crate::flatten::lookup::classes::Classes;
@@ -12,11 +12,48 @@ use crate::flatten::lookup::scope::Nested;
 use crate::flatten::lookup::scope::Text;
 use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
+use crate::flatten::unknown;
 use crate::name::{Ident, Name};
+use crate::names::{self, Names};
 use crate::source::Span;
 use crate::syntax::ast::{ClassSpecifier, Constraint, ImportKind, TypeSpecifier};
 use std::cell::Cell;
 use std::rc::Rc;
+
+impl Names for Classes<'_> {
+    type Class = ScopeId;
+    type Meaning = Type;
+    type Fault = Diagnostic;
+
+    fn element(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        let Some(nested) = self.find_class(scope, name)? else { return Ok(None) };
+        match nested.outer {
+            true => self.inner_class(scope, name, &nested).map(Some),
+            false => self.instance(&nested).map(Some),
+        }
+    }
+
+    fn imports(&self, scope: ScopeId) -> &[ImportKind] {
+        let class = self.scope(scope).text.as_ref().and_then(|text| text.id);
+        class.map_or(&[], |class| self.library.class(class).imports())
+    }
+
+    fn around(&self, scope: ScopeId) -> Option<ScopeId> {
+        let around = self.scope(scope).parent.filter(|around| *around != ScopeId::TOP);
+        around.filter(|_| !self.is_encapsulated(scope))
+    }
+
+    fn top(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        let predefined = || Predefined::named(name).map(Type::Predefined);
+        Ok(self.root(name)?.or_else(predefined))
+    }
+
+    fn inside(&mut self, of: Type, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        let Type::Class(scope) = of else { return Ok(None) };
+        let Some(nested) = self.find_class(scope, name)? else { return Ok(None) };
+        self.instance(&nested).map(Some)
+    }
+}
 
 impl Classes<'_> {
     /// What a type specifier means in a scope; an error with suggestions if nothing.
@@ -39,29 +76,10 @@ impl Classes<'_> {
             return Ok(Some(Type::Predefined(reserved)));
         }
         let found = match name.global {
-            true => self.root(*first)?,
+            true => self.top(*first)?,
             false => self.lookup_simple(scope, *first)?,
         };
-        if let (None, Some(predefined)) = (&found, predefined) {
-            return Ok(Some(Type::Predefined(predefined)));
-        }
-        self.lookup_inside(found, rest)
-    }
-
-    /// The class of a path of names inside a class.
-    pub(crate) fn lookup_inside(
-        &mut self,
-        mut found: Option<Type>,
-        path: &[Ident],
-    ) -> Result<Option<Type>, Diagnostic> {
-        for part in path {
-            let Some(Type::Class(scope)) = found else { return Ok(None) };
-            found = match self.find_class(scope, *part)? {
-                Some(nested) => Some(self.instance(&nested)?),
-                None => None,
-            };
-        }
-        Ok(found)
+        self.followed(found, rest)
     }
 
     /// A simple name: declared, inherited or imported by the class or by one that encloses it.
@@ -73,33 +91,12 @@ impl Classes<'_> {
         if let Some(known) = self.found.get(&(scope, name)) {
             return Ok(*known);
         }
-        let searched = self.search_simple(scope, name)?;
+        let searched = self.simple(Some(scope).filter(|scope| *scope != ScopeId::TOP), name)?;
         // While base classes are looked up, inherited names are not seen.
         if self.searching == 0 {
             self.found.insert((scope, name), searched);
         }
         Ok(searched)
-    }
-
-    fn search_simple(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Type>, Diagnostic> {
-        let mut scope = scope;
-        while scope != ScopeId::TOP {
-            if let Some(nested) = self.find_class(scope, name)? {
-                return if nested.outer {
-                    self.inner_class(scope, name, &nested).map(Some)
-                } else {
-                    self.instance(&nested).map(Some)
-                };
-            }
-            if let Some(found) = self.imported(scope, name)? {
-                return Ok(Some(found));
-            }
-            if self.is_encapsulated(scope) {
-                break;
-            }
-            scope = self.scope(scope).parent.unwrap_or(ScopeId::TOP);
-        }
-        self.root(name)
     }
 
     /// The class that an `outer` class means (MLS §5.4): that of the nearest enclosing instance.
@@ -294,34 +291,6 @@ impl Classes<'_> {
         }))
     }
 
-    fn imported(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Type>, Diagnostic> {
-        for target in self.imported_names(scope, name) {
-            if let Some(found) = self.lookup(ScopeId::TOP, &target)? {
-                return Ok(Some(found));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The full names that imports of a class give to a name, the named imports first.
-    pub(crate) fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
-        let Some(class) = self.scope(scope).text.as_ref().and_then(|text| text.id) else {
-            return Vec::new();
-        };
-        let imports = self.library.class(class).imports();
-        let named = imports.iter().filter_map(|import| match import {
-            ImportKind::Qualified(target) if target.last() == Some(name) => Some(target.clone()),
-            ImportKind::Renaming(own, target) if *own == name => Some(target.clone()),
-            ImportKind::Group(package, names) if names.contains(&name) => Some(package.child(name)),
-            _ => None,
-        });
-        let unqualified = imports.iter().filter_map(|import| match import {
-            ImportKind::Unqualified(package) => Some(package.child(name)),
-            _ => None,
-        });
-        named.chain(unqualified).map(|name| Name { global: true, ..name }).collect()
-    }
-
     /// A class at the top level.
     pub fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
         if let Some(known) = self.roots.get(&name) {
@@ -348,8 +317,7 @@ impl Classes<'_> {
 
     /// The diagnostic for a class that is not there.
     fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
-        let suggestion = self.suggestion(scope, name);
-        fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
+        unknown::class(name, self.suggestion(scope, name), span)
     }
 
     /// The diagnostic for a function that is not there.
@@ -359,31 +327,20 @@ impl Classes<'_> {
         name: &Name,
         span: Span,
     ) -> Diagnostic {
-        let builtin = || suggest::did_you_mean(&name.to_string(), crate::functions::names());
-        let suggestion = self.suggestion(scope, name).or_else(builtin);
-        fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)
+        unknown::function(name, self.suggestion(scope, name), span)
     }
 
     fn suggestion(&mut self, scope: ScopeId, name: &Name) -> Option<String> {
-        let wanted = name.last().map_or("", Ident::as_str);
-        let (package, candidates) = self.siblings(scope, name);
-        if candidates.is_empty() && name.parts.len() > 1 {
-            // The package is not there either.
-            return self.suggestion(scope, &name.parent());
-        }
-        suggest::nearest(wanted, candidates.iter().map(|c| c.as_str()))
-            .map(|near| format!("did you mean `{}`?", package.child(Ident::new(near))))
+        names::suggestion(name, |package| self.candidates(scope, package))
     }
 
-    /// The names among which the last part of a name was looked up, and the package they lie in.
-    fn siblings(&mut self, scope: ScopeId, name: &Name) -> (Name, Vec<Ident>) {
-        let package = name.parent();
+    /// The names of the classes in a package; for no package, of those in scope.
+    fn candidates(&mut self, scope: ScopeId, package: &Name) -> Vec<Ident> {
         if !package.parts.is_empty() {
-            let names = match self.lookup(scope, &package) {
+            return match self.lookup(scope, package) {
                 Ok(Some(Type::Class(id))) => self.own_classes(id),
                 _ => Vec::new(),
             };
-            return (package, names);
         }
         let mut names: Vec<Ident> = ["Real", "Integer", "Boolean", "String"].map(Ident::new).into();
         let mut scope = Some(scope);
@@ -392,7 +349,7 @@ impl Classes<'_> {
             scope = self.scope(id).parent;
         }
         names.extend(self.library.roots());
-        (Name::default(), names)
+        names
     }
 
     fn own_classes(&self, scope: ScopeId) -> Vec<Ident> {

@@ -50,3 +50,17 @@ impl Predefined {
         matches!(self, Real | Integer | Boolean | String)
     }
 }
+
+/// The attributes of the predefined types (MLS §4.9).
+pub const ATTRIBUTES: [&str; 10] = [
+    "quantity",
+    "unit",
+    "displayUnit",
+    "min",
+    "max",
+    "start",
+    "fixed",
+    "nominal",
+    "unbounded",
+    "stateSelect",
+];

@@ -1,14 +1,18 @@
 //! What the names in classes mean as the classes are declared (MLS §5.3), without an instance: what
 //! an editor shows of a text. Redeclarations and modifications from outside are not known here.
 
-use super::checks::lookup::Type;
+pub(super) mod classes;
+
 use super::checks::scope::{Component, Scope};
 use super::library::{ClassId, Library};
 use crate::name::{Ident, Name};
+use crate::names::{self, Names};
 use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentClause, ComponentDeclaration, ImportKind, Visibility,
 };
+pub(super) use classes::Type;
 use std::collections::BTreeSet;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// What a name means.
@@ -24,6 +28,16 @@ pub enum Declared {
     Predefined(Ident),
 }
 
+impl Declared {
+    /// What the name of a type means.
+    fn of(found: Type, name: Ident) -> Declared {
+        match found {
+            Type::Class(class) => Declared::Class(class),
+            Type::Predefined(_) => Declared::Predefined(name),
+        }
+    }
+}
+
 /// An element of a class, its own or inherited.
 #[derive(Debug, Clone, Copy)]
 pub struct Member {
@@ -33,6 +47,38 @@ pub struct Member {
     pub declared: Declared,
     /// Whether it is protected.
     pub protected: bool,
+}
+
+/// The elements of the classes of a library: components, classes and literals.
+struct Elements<'a> {
+    library: &'a Library,
+}
+
+impl Names for Elements<'_> {
+    type Class = ClassId;
+    type Meaning = Declared;
+    type Fault = Infallible;
+
+    fn element(&mut self, class: ClassId, name: Ident) -> Result<Option<Declared>, Infallible> {
+        Ok(self.library.element(class, name))
+    }
+
+    fn imports(&self, class: ClassId) -> &[ImportKind] {
+        self.library.class(class).imports()
+    }
+
+    fn around(&self, class: ClassId) -> Option<ClassId> {
+        self.library.around(class)
+    }
+
+    fn top(&mut self, name: Ident) -> Result<Option<Declared>, Infallible> {
+        let found = self.library.meaning(None, &Name::from(name));
+        Ok(found.map(|found| Declared::of(found, name)))
+    }
+
+    fn inside(&mut self, of: Declared, name: Ident) -> Result<Option<Declared>, Infallible> {
+        Ok(self.library.element_of(of, name))
+    }
 }
 
 impl Library {
@@ -69,71 +115,33 @@ impl Library {
     pub fn parts_of_type(&self, scope: Option<ClassId>, name: &Name) -> Vec<Option<Declared>> {
         let Some(first) = name.first() else { return Vec::new() };
         let simple = Name { global: name.global, parts: vec![first] };
-        let found = match self.meaning(scope, &simple) {
-            Some(Type::Class(class)) => Some(Declared::Class(class)),
-            Some(Type::Predefined(_)) => Some(Declared::Predefined(first)),
-            None => None,
-        };
-        self.followed(found, &name.parts)
+        let found = self.meaning(scope, &simple).map(|found| Declared::of(found, first));
+        self.each_part(found, &name.parts)
+    }
+
+    /// What the parts of the name of a base class mean in a class, without what that class inherits.
+    pub(super) fn parts_of_base(&self, class: ClassId, name: &Name) -> Vec<Option<Declared>> {
+        let Some(first) = name.first() else { return Vec::new() };
+        let simple = Name { global: name.global, parts: vec![first] };
+        let found = self.meaning_of_base(class, &simple).map(|found| Declared::of(found, first));
+        self.each_part(found, &name.parts)
     }
 
     /// What the parts of a name in an expression mean in a class, or at the top level.
     pub fn parts_of_reference(&self, scope: Option<ClassId>, name: &Name) -> Vec<Option<Declared>> {
         let Some(first) = name.first() else { return Vec::new() };
-        let found = match scope.filter(|_| !name.global) {
-            Some(scope) => self.visible(scope, first),
-            None => self.at_top(first),
-        };
-        self.followed(found, &name.parts)
+        let mut elements = Elements { library: self };
+        let Ok(found) = elements.simple(scope.filter(|_| !name.global), first);
+        self.each_part(found, &name.parts)
     }
 
-    fn followed(&self, first: Option<Declared>, parts: &[Ident]) -> Vec<Option<Declared>> {
+    fn each_part(&self, first: Option<Declared>, parts: &[Ident]) -> Vec<Option<Declared>> {
         let mut found = vec![first];
         for part in &parts[1..] {
             let last = found.last().copied().flatten();
             found.push(last.and_then(|last| self.element_of(last, *part)));
         }
         found
-    }
-
-    fn at_top(&self, name: Ident) -> Option<Declared> {
-        match self.meaning(None, &Name::from(name))? {
-            Type::Class(class) => Some(Declared::Class(class)),
-            Type::Predefined(_) => Some(Declared::Predefined(name)),
-        }
-    }
-
-    /// A simple name: an element of the class or of one that encloses it, or imported.
-    fn visible(&self, scope: ClassId, name: Ident) -> Option<Declared> {
-        let mut at = Some(scope);
-        while let Some(class) = at {
-            let found = self.element(class, name).or_else(|| self.imported_element(class, name));
-            if found.is_some() {
-                return found;
-            }
-            let scope = self.scope_of(class);
-            at = if scope.definition().encapsulated { None } else { self.enclosing(class) };
-        }
-        self.at_top(name)
-    }
-
-    fn imported_element(&self, class: ClassId, name: Ident) -> Option<Declared> {
-        let global = |name: &Name| self.parts_of_reference(None, name).pop().flatten();
-        let imports = || self.class(class).imports().iter();
-        let named = imports().find_map(|import| match import {
-            ImportKind::Qualified(target) if target.last() == Some(name) => global(target),
-            ImportKind::Renaming(own, target) if *own == name => global(target),
-            ImportKind::Group(package, names) if names.contains(&name) => {
-                global(&package.child(name))
-            }
-            _ => None,
-        });
-        named.or_else(|| {
-            imports().find_map(|import| match import {
-                ImportKind::Unqualified(package) => global(&package.child(name)),
-                _ => None,
-            })
-        })
     }
 
     /// The element of a name of a class, or of the class of a component.
@@ -233,6 +241,33 @@ impl Library {
             }
         }
         found
+    }
+
+    /// The names of the components of a class, inherited ones included.
+    pub(super) fn component_names(&self, class: ClassId) -> Vec<Ident> {
+        let members = self.members(class).into_iter();
+        let components = members.filter(|one| matches!(one.declared, Declared::Component(..)));
+        components.map(|component| component.name).collect()
+    }
+
+    /// The class whose name is nearest to one that means nothing in a class.
+    pub(super) fn suggestion(&self, scope: Option<ClassId>, name: &Name) -> Option<String> {
+        names::suggestion(name, |package| self.candidates(scope, package))
+    }
+
+    /// The names of the classes in a package; for no package, of those in scope.
+    fn candidates(&self, scope: Option<ClassId>, package: &Name) -> Vec<Ident> {
+        let own = |class: ClassId| self.class(class).children().map(|(name, _)| name);
+        if !package.parts.is_empty() {
+            return match self.meaning(scope, package) {
+                Some(Type::Class(class)) => own(class).collect(),
+                _ => Vec::new(),
+            };
+        }
+        let mut names: Vec<Ident> = ["Real", "Integer", "Boolean", "String"].map(Ident::new).into();
+        names.extend(std::iter::successors(scope, |class| self.enclosing(*class)).flat_map(own));
+        names.extend(self.roots());
+        names
     }
 
     /// The names that the import clauses of a class give to something, with what they mean.

@@ -1,0 +1,231 @@
+//! Called functions and the names and numbers of their arguments (MLS §12.4.1).
+
+use super::Walk;
+use super::certainty::is_certain;
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::flatten::checks::scope::{Component, Scope};
+use crate::flatten::checks::usage;
+use crate::flatten::declared::Declared;
+use crate::flatten::functions::declared::is_intrinsic;
+use crate::flatten::functions::printing::PRINT;
+use crate::flatten::lookup::types::Predefined;
+use crate::flatten::unknown;
+use crate::functions::{self, errors::WRONG_ARGUMENTS};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    Arguments, CausalityPrefix, ClassSpecifier, ComponentReference, NamedArgument, Restriction,
+    Visibility,
+};
+
+/// The operators of overconstrained connections are functions of this name (MLS §9.4).
+const CONNECTIONS: &str = "Connections";
+
+/// What a call may give to a function.
+struct Inputs<'a> {
+    function: Scope<'a>,
+    inputs: Vec<Component<'a>>,
+    /// Whether modifications may give inputs a default.
+    is_modified: bool,
+}
+
+impl<'a> Walk<'a, '_> {
+    pub(super) fn call(&mut self, function: &ComponentReference, arguments: &Arguments) {
+        let name = function.name();
+        let Some(called) = self.function(&name, function.span) else {
+            self.builtin_call(function, arguments);
+            return;
+        };
+        let is_reduction = !arguments.iterators.is_empty();
+        if called.is_open() || is_reduction {
+            return;
+        }
+        if is_record(called) {
+            self.errors.extend(unknown_component(called, &arguments.named));
+        } else if let Some(inputs) = Inputs::of(called) {
+            let count = arguments.positional.len();
+            let wrong = inputs.excess(count, function.span);
+            let wrong = wrong.or_else(|| inputs.unknown(&arguments.named));
+            let wrong = wrong.or_else(|| inputs.missing(count, &arguments.named, function.span));
+            self.errors.extend(wrong);
+        }
+    }
+
+    pub(super) fn partial_application(
+        &mut self,
+        function: &Name,
+        named: &[NamedArgument],
+        span: Span,
+    ) {
+        if let Some(called) = self.function(function, span)
+            && !called.is_open()
+            && let Some(inputs) = Inputs::of(called)
+        {
+            self.errors.extend(inputs.unknown(named));
+        }
+    }
+
+    /// The class that a call means, if nothing replaces it; says so if it means nothing.
+    fn function(&mut self, name: &Name, span: Span) -> Option<Scope<'a>> {
+        let first = name.first()?;
+        if self.is_loop_variable(name, first) {
+            return None;
+        }
+        let scope = self.scope.map(|scope| scope.class);
+        let parts = self.library.parts_of_reference(scope, name);
+        let Some(at) = parts.iter().position(Option::is_none) else {
+            return match parts.last().copied().flatten()? {
+                Declared::Class(class) if is_certain(self.library, &parts) => {
+                    Some(Scope { library: self.library, class })
+                }
+                _ => None,
+            };
+        };
+        let is_predefined = matches!(parts[0], Some(Declared::Predefined(_)));
+        let is_known = at == 0 && self.is_of_language(name) || is_predefined;
+        if !is_known && !self.may_be_undeclared(&parts, at) && self.is_first_of_package(name, at) {
+            let suggestion = self.library.suggestion(scope, name);
+            self.errors.push(unknown::function(name, suggestion, span));
+        }
+        None
+    }
+
+    /// Whether a name that no class declares is one of a function or an operator of the language, or of
+    /// one that other tools have.
+    fn is_of_language(&self, name: &Name) -> bool {
+        let first = name.first().map_or("", Ident::as_str);
+        if name.parts.len() > 1 {
+            return first == CONNECTIONS || is_intrinsic(name);
+        }
+        let is_of_tools = first == PRINT || first == "classDirectory" && !self.library.is_strict();
+        functions::is_builtin(first) || first == "rooted" || is_of_tools
+    }
+
+    /// A call of a function of the language with another number of arguments than it takes.
+    fn builtin_call(&mut self, function: &ComponentReference, arguments: &Arguments) {
+        let Some(name) = function.as_ident() else { return };
+        let only_positional = arguments.named.is_empty() && arguments.iterators.is_empty();
+        let is_declared = || {
+            let scope = self.scope.map(|scope| scope.class);
+            self.library.parts_of_reference(scope, &name.into())[0].is_some()
+        };
+        if let Some(builtin) = functions::find(name.as_str())
+            && only_positional
+            && !is_declared()
+            && let Err(fault) = builtin.check_count(arguments.positional.len())
+        {
+            self.errors.push(fault.at(function.span));
+        }
+    }
+}
+
+/// Whether a call is of the constructor of a record without constructors of its own.
+fn is_record(class: Scope<'_>) -> bool {
+    class.restriction() == Restriction::Record
+        && class.lineage().all(|class| class.restriction() != Restriction::OperatorRecord)
+}
+
+/// A named argument of a constructor that is no component of the record.
+fn unknown_component(record: Scope<'_>, named: &[NamedArgument]) -> Option<Diagnostic> {
+    let argument = named.iter().find(|one| record.component(one.name.node).is_none())?;
+    let known = record.library.component_names(record.class);
+    Some(unknown::component(record.name(), argument.name.node, &known, argument.name.span))
+}
+
+impl<'a> Inputs<'a> {
+    /// The inputs of a function or of the constructor of an external object.
+    fn of(class: Scope<'a>) -> Option<Inputs<'a>> {
+        let function = match class.predefined() {
+            Some(Predefined::ExternalObject) => class.own_class(Ident::new("constructor"))?,
+            Some(_) => return None,
+            None => class,
+        };
+        if !matches!(function.restriction(), Restriction::Function { .. }) {
+            return None;
+        }
+        let mut inputs: Vec<Component<'a>> = Vec::new();
+        let mut is_modified = false;
+        for class in function.lineage() {
+            is_modified |= match &class.definition().specifier {
+                ClassSpecifier::Short(short) => !short.modification.is_empty(),
+                ClassSpecifier::Derivative(_) => return None,
+                _ => {
+                    let mut extends = class.library.class(class.class).extends.iter();
+                    extends.any(|one| !one.modification.is_empty() || !one.deselected.is_empty())
+                }
+            };
+            for component in class.components() {
+                let is_new = inputs.iter().all(|known| known.name() != component.name());
+                if is_input(&component) && is_new {
+                    inputs.push(component);
+                }
+            }
+        }
+        Some(Inputs { function, inputs, is_modified })
+    }
+
+    /// More positional arguments than inputs.
+    fn excess(&self, count: usize, span: Span) -> Option<Diagnostic> {
+        let most = self.inputs.len();
+        (count > most).then(|| {
+            fault!(WRONG_ARGUMENTS, "`{}` takes at most {most} arguments", self.function.name();
+                help: "its inputs are {}", self.names())
+            .at(span)
+        })
+    }
+
+    /// A named argument that is no input.
+    fn unknown(&self, named: &[NamedArgument]) -> Option<Diagnostic> {
+        let is_input = |name: Ident| self.inputs.iter().any(|input| input.name() == name);
+        let argument = named.iter().find(|argument| !is_input(argument.name.node))?;
+        let name = argument.name.node;
+        let known = self.inputs.iter().map(|input| input.name().as_str());
+        Some(
+            fault!(WRONG_ARGUMENTS, "`{}` has no input `{name}`", self.function.name())
+                .help_if(suggest::did_you_mean(name.as_str(), known))
+                .help(format!("its inputs are {}", self.names()))
+                .at(argument.name.span),
+        )
+    }
+
+    /// An input of a predefined type that no argument and no default gives.
+    fn missing(&self, count: usize, named: &[NamedArgument], span: Span) -> Option<Diagnostic> {
+        if self.is_modified || !self.function.library.declared_bases(self.function.class).is_empty()
+        {
+            // Which input is which depends on the order of inherited ones.
+            return None;
+        }
+        let is_given = |name: Ident| named.iter().any(|argument| argument.name.node == name);
+        let has_default = |input: &Component<'_>| {
+            let binding = input.declaration.modification.as_ref().map(|one| one.binding.is_some());
+            binding == Some(true) || usage::predefined(input).is_none()
+        };
+        let rest = self.inputs.iter().skip(count);
+        let mut open = rest.filter(|input| !is_given(input.name()) && !has_default(input));
+        let input = open.next()?.name();
+        Some(
+            fault!(WRONG_ARGUMENTS, "the input `{input}` of `{}` is missing and has no default",
+                self.function.name();
+                help: "its inputs are {}", self.names())
+            .at(span),
+        )
+    }
+
+    fn names(&self) -> String {
+        let names: Vec<String> =
+            self.inputs.iter().map(|input| format!("`{}`", input.name())).collect();
+        if names.is_empty() { "none".into() } else { names.join(", ") }
+    }
+}
+
+/// Whether a component of a function is an input by itself or by its type.
+fn is_input(component: &Component<'_>) -> bool {
+    let input = Some(CausalityPrefix::Input);
+    let of_type = || {
+        let class = component.class();
+        class.is_some_and(|class| class.unaliased().1.iter().any(|one| one.causality == input))
+    };
+    component.visibility == Visibility::Public
+        && (component.clause.type_prefixes.causality == input || of_type())
+}

@@ -1,0 +1,57 @@
+//! What is said of names that mean nothing (MLS §5.3, §7.2), by the checks of classes as they are declared
+//! and by instantiation alike.
+
+use super::errors::{UNKNOWN_CLASS, UNKNOWN_ELEMENT, UNKNOWN_NAME};
+use super::lookup::types::ATTRIBUTES;
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+
+/// A class that nothing declares.
+pub(crate) fn class(name: &Name, suggestion: Option<String>, span: Span) -> Diagnostic {
+    fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
+}
+
+/// A function that neither a class nor the language declares; without a suggestion one of the language.
+pub(crate) fn function(name: &Name, suggestion: Option<String>, span: Span) -> Diagnostic {
+    let builtin = || suggest::did_you_mean(&name.to_string(), crate::functions::names());
+    let suggestion = suggestion.or_else(builtin);
+    fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)
+}
+
+/// A name in an expression; `known` are the components that it could mean.
+pub(crate) fn name(name: &Name, known: &[Ident], span: Span) -> Diagnostic {
+    let first = name.first().map_or("", Ident::as_str);
+    fault!(UNKNOWN_NAME, "`{name}` is not declared").help_if(near(first, known)).at(span)
+}
+
+/// A component that a class with the components `known` does not have.
+pub(crate) fn component(class: &Name, name: Ident, known: &[Ident], span: Span) -> Diagnostic {
+    fault!(UNKNOWN_NAME, "`{class}` has no component `{name}`")
+        .help_if(near(name.as_str(), known))
+        .at(span)
+}
+
+/// A component of a variable.
+pub(crate) fn component_of_variable(variable: &str, name: Ident, span: Span) -> Diagnostic {
+    fault!(UNKNOWN_NAME, "`{variable}` is a variable and has no component `{name}`").at(span)
+}
+
+/// An element to modify that a class with the elements `known` does not have.
+pub(crate) fn element(class: &Name, name: Ident, known: &[Ident], span: Span) -> Diagnostic {
+    fault!(UNKNOWN_ELEMENT, "`{class}` has no component `{name}` to modify")
+        .help_if(near(name.as_str(), known))
+        .at(span)
+}
+
+/// An attribute to modify that no variable has.
+pub(crate) fn attribute(variable: Ident, name: Ident, span: Span) -> Diagnostic {
+    fault!(UNKNOWN_ELEMENT, "`{variable}` has no attribute `{name}` to modify")
+        .help_if(suggest::did_you_mean(name.as_str(), ATTRIBUTES))
+        .at(span)
+}
+
+fn near(name: &str, known: &[Ident]) -> Option<String> {
+    suggest::did_you_mean(name, known.iter().map(|known| known.as_str()))
+}

@@ -1,0 +1,67 @@
+package classes "names that mean nothing, in classes of every kind"
+  partial model Incomplete
+    Unknown.Type a;
+    Real x(start = missingStart);
+  equation
+    x = missingValue;
+  end Incomplete;
+
+  partial function Interface
+    input Real u = missingDefault;
+    output Real y;
+  end Interface;
+
+  function NeverCalled
+    input Real u;
+    output Real y;
+  algorithm
+    y := missingFactor*u;
+  end NeverCalled;
+
+  function Foreign
+    input Real u;
+    output Real y;
+  external "C" y = foreign(u, missingArgument);
+  end Foreign;
+
+  connector Pin
+    Real v;
+    flow MissingCurrent i;
+  end Pin;
+
+  record Values
+    Real a = missingConstant;
+    Real b[missingSize];
+  end Values;
+
+  type Length = MissingReal(unit = "m");
+
+  model Derived
+    extends MissingBase;
+    Real x = perhapsInherited;
+  end Derived;
+
+  partial package Constants
+    import Missing.Package.*;
+    constant Real c = missingOther;
+    replaceable partial function f
+      input Real u;
+      output Real y;
+    algorithm
+      y := missingDeep;
+    end f;
+    function derivative = der(missingFunction, u);
+  end Constants;
+
+  operator record Pair
+    Real a, b;
+    encapsulated operator '+'
+      function add
+        import classes.Pair;
+        input Pair x;
+        input Pair y;
+        output Pair z = Pair(x.a + y.c, missingSum);
+      end add;
+    end '+';
+  end Pair;
+end classes;
