@@ -29,8 +29,13 @@ const UNLIKE: f64 = 3.0;
 /// At a minimum the residuals are orthogonal to the derivatives by every parameter that is free to
 /// follow them: the limit of the test of a minimum, with room for the error of the simulation.
 const FOLLOWED: f64 = 0.01;
+/// A fit whose R² is below 0 by less than this is as good as a constant: it may be one.
+const AS_GOOD: f64 = 1e-6;
 /// So many equal values at an end of the data, and so many times as many as elsewhere, are no chance.
 const TIED: usize = 3;
+/// A fit that changes by so many standard deviations of the residuals across equal values does not
+/// follow them: noise would have made them differ.
+const CROSSES: f64 = 2.0;
 /// Rows that are listed.
 const LISTED: usize = 10;
 /// Outliers are farther from the fit than this many standard deviations of the others.
@@ -188,7 +193,7 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
     let r_squared = 1.0 - raw.iter().map(|r| r * r).sum::<f64>() / total;
     let n = y.len() as f64;
     let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
-    (total > 0.0 && y.len() > 2 && r_squared < 0.0).then(|| {
+    (total > 0.0 && y.len() > 2 && r_squared < -AS_GOOD).then(|| {
         let (severity, words) = match by_chance {
             true => (Severity::Information, "these data do not show that the model explains more"),
             false => (Severity::Serious, "the model does not describe these data"),
@@ -500,11 +505,22 @@ fn saturated(series: &super::Series, own: &Own<'_>, suspects: &mut Vec<usize>) -
         let usual = rest.len() as f64 / others.len().max(1) as f64;
         let beyond =
             -sign * tied.iter().map(|&j| own.residuals[j]).sum::<f64>() / tied.len() as f64;
-        let is_one =
-            tied.len() >= TIED && tied.len() as f64 >= TIED as f64 * usual && beyond > size;
+        // A fit that follows equal values on the average crosses them.
+        let (least, most) = tied.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |ends, &j| {
+            (ends.0.min(own.residuals[j]), ends.1.max(own.residuals[j]))
+        });
+        let crosses = most - least > CROSSES * size;
+        let is_one = tied.len() >= TIED
+            && tied.len() as f64 >= TIED as f64 * usual
+            && (beyond > size || crosses);
         is_one.then_some((
             tied,
-            if sign > 0.0 { ["largest", "above"] } else { ["smallest", "below"] },
+            match (beyond > size, sign > 0.0) {
+                (true, true) => ["largest", "lies above"],
+                (true, false) => ["smallest", "lies below"],
+                (false, true) => ["largest", "changes across"],
+                (false, false) => ["smallest", "changes across"],
+            },
         ))
     };
     let (tied, [which, where_fit]) = end(1.0).or_else(|| end(-1.0))?;
@@ -515,7 +531,7 @@ fn saturated(series: &super::Series, own: &Own<'_>, suspects: &mut Vec<usize>) -
     let listed: Vec<String> = rows.iter().take(LISTED).map(usize::to_string).collect();
     let more = if rows.len() > LISTED { ", ..." } else { "" };
     let sentence = format!(
-        "{} values of {} are equal to its {which} one, {} (rows {}{more}), and the fit lies \
+        "{} values of {} are equal to its {which} one, {} (rows {}{more}), and the fit \
          {where_fit} them: the sensor may be saturated there. Omit these rows; as they are, they \
          bias the estimates.",
         rows.len(),

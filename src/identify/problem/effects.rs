@@ -5,6 +5,7 @@
 //! derivative of zero nearly everywhere. Only finite changes over the whole range tell: the
 //! parameter is held at values there and the others are fitted anew, as for a profile.
 
+use super::failure::Failed;
 use super::profile::limit;
 use super::refit::Refit;
 use super::statistics::sensitivities;
@@ -23,6 +24,8 @@ const ERRORS: f64 = 10.0;
 /// Fits nearer to each other than this, as parts of the way to the limit and of the ranges, belong to
 /// the same step.
 const SAME_STEP: f64 = 1e-3;
+/// A derivative that accounts for less than this part of a change is that of a step, or an error.
+const SMOOTH: f64 = 1e-3;
 /// Steps whose standard errors are looked at.
 const STEPS: usize = 40;
 
@@ -100,18 +103,11 @@ pub fn effect(
     if !rows.iter().any(acts) {
         return Ok((Effect::None, simulations));
     }
-    let nearest = [0, places[0].len()].into_iter().filter_map(|first| rows.get(first));
-    let how = if statistics.cancelling.contains(&k) {
-        How::Cancelling
-    } else if nearest.into_iter().any(acts) {
-        How::Vanishing
-    } else {
-        How::InSteps
-    };
+    let all = Places { points: &both, rows: &rows, sides: [0, places[0].len()] };
+    let (how, took) = how((problem, evaluation), statistics, (values, simulated), &all, k);
+    simulations += took;
     let mut found = Finite { ends: [None; 2], how, within: Vec::new() };
-    let Some(mut scan) =
-        Scan::new((problem, evaluation), values, k, statistics.quantile_of_squares())?
-    else {
+    let Some(mut scan) = Scan::new((problem, evaluation), values, k, statistics)? else {
         return Ok((Effect::Finite(found), simulations));
     };
     for (end, places) in found.ends.iter_mut().zip(&places) {
@@ -132,6 +128,60 @@ pub fn effect(
     }
     found.within = within;
     Ok((Effect::Finite(found), simulations))
+}
+
+/// Points at which one parameter was changed, with their simulations.
+struct Places<'a> {
+    points: &'a [Vec<f64>],
+    rows: &'a [Result<Vec<f64>, Failed>],
+    /// Where those of each side begin, the nearest first.
+    sides: [usize; 2],
+}
+
+/// Why parameter `k` has no derivative to go by, and the simulations that it took.
+fn how(
+    (problem, evaluation): (&Problem, &Evaluation),
+    statistics: &Statistics,
+    (values, simulated): (&[f64], &[f64]),
+    places: &Places<'_>,
+    k: usize,
+) -> (How, u64) {
+    if statistics.cancelling.contains(&k) {
+        return (How::Cancelling, 0);
+    }
+    let acts = |row: &Result<Vec<f64>, Failed>| {
+        row.as_ref().map_or(true, |row| differs(problem, simulated, row))
+    };
+    if places.sides.iter().filter_map(|first| places.rows.get(*first)).any(acts) {
+        return (How::Vanishing, 0);
+    }
+    let mut beside = places.points.iter().zip(places.rows);
+    let Some((point, Ok(row))) = beside.find(|(_, row)| acts(row)) else {
+        return (How::InSteps, 0);
+    };
+    let mut simulations = 0;
+    let at = (values, simulated);
+    match is_smooth((problem, evaluation), at, (point, row), k, &mut simulations) {
+        true => (How::Vanishing, simulations),
+        false => (How::InSteps, simulations),
+    }
+}
+
+/// Whether parameter `k` has a derivative where it acts: steps have none, a transient that is over at
+/// the best values does.
+fn is_smooth(
+    (problem, evaluation): (&Problem, &Evaluation),
+    (values, simulated): (&[f64], &[f64]),
+    (point, row): (&[f64], &[f64]),
+    k: usize,
+    simulations: &mut u64,
+) -> bool {
+    let (jacobian, took) = sensitivities(problem, evaluation, point);
+    *simulations += took;
+    let most = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, |most: f64, own| most.max(own));
+    let derivative = most(&mut jacobian[k].iter().map(|derivative| derivative.abs()));
+    let change = most(&mut simulated.iter().zip(row).map(|(a, b)| (a - b).abs()));
+    derivative * (point[k] - values[k]).abs() > SMOOTH * change
 }
 
 impl Within {
@@ -197,15 +247,15 @@ impl<'a> Scan<'a> {
         (problem, evaluation): (&'a Problem, &'a Evaluation),
         values: &[f64],
         k: usize,
-        quantile: f64,
+        statistics: &Statistics,
     ) -> Result<Option<Scan<'a>>, Fault> {
-        let freedom = problem.n_points().saturating_sub(values.len());
-        let Some(mut refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
+        let scale = [statistics.freedom, statistics.quantile_of_squares()];
+        let Some(mut refit) = Refit::new(problem, evaluation).filter(|_| scale[0] >= 1.0) else {
             return Ok(None);
         };
         let Some((best, smallest)) = refit.from(values, Some(k))? else { return Ok(None) };
         let residuals = refit.plain_residuals(&best);
-        let limit = limit(problem, smallest, [freedom as f64, quantile], residuals.as_deref());
+        let limit = limit(problem, smallest, scale, residuals.as_deref());
         let within = vec![Within { values: best, left: 1.0, deviations: Vec::new() }];
         Ok(Some(Scan { refit, problem, k, smallest, limit, within }))
     }

@@ -238,7 +238,9 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
     for series in &run.problem.series {
         let place = first;
         first += series.x.len();
-        if series.x.len() != 1 || statistics.freedom < 1.0 {
+        // Priors are compared with the data elsewhere.
+        let is_prior = series.experiment == super::inference::PRIOR;
+        if series.x.len() != 1 || is_prior || statistics.freedom < 1.0 {
             continue;
         }
         let column = |column: &Vec<f64>| {

@@ -93,8 +93,9 @@ pub struct Known<'a> {
     /// Other minima: fits begin there too before a value is said not to fit, and those that fit as
     /// well have pieces of their own.
     pub others: &'a [Vec<f64>],
-    /// The root of the rise of the sum of squares within the 95 % limit, in units of the residual
-    /// variance.
+    /// Degrees of freedom of the residual variance.
+    pub freedom: f64,
+    /// The root of the rise of the sum of squares within the 95 % limit, in units of that variance.
     pub quantile: f64,
     /// Simulations that all profiles together may take.
     pub budget: u64,
@@ -122,8 +123,7 @@ pub fn profiles(
     known: &Known<'_>,
     which: &[usize],
 ) -> Result<Option<Profiles>, Fault> {
-    let freedom = problem.n_points().saturating_sub(known.best.len());
-    let Some(refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
+    let Some(refit) = Refit::new(problem, evaluation).filter(|_| known.freedom >= 1.0) else {
         return Ok(None);
     };
     let mut walk = Walk {
@@ -138,7 +138,7 @@ pub fn profiles(
     };
     let Some((best, smallest)) = walk.refit.from(known.best, None)? else { return Ok(None) };
     let residuals = walk.refit.plain_residuals(&best);
-    walk.limit = limit(problem, smallest, [freedom as f64, known.quantile], residuals.as_deref());
+    walk.limit = limit(problem, smallest, [known.freedom, known.quantile], residuals.as_deref());
     walk.starts.push(best.clone());
     walk.starts.extend(known.others.iter().cloned());
     let begun = walk.refit.simulations;
@@ -383,15 +383,15 @@ impl Walk<'_> {
         let root = |sum: f64| (sum - smallest).max(0.0).sqrt();
         for attempt in 0..JUMPING {
             let part = (root(self.limit) - root(inside.1)) / (root(outside.1) - root(inside.1));
-            // Where the same end is met again, the rise is no parabola.
-            let is_root = attempt < CROSSING && same_end < 2;
-            let part = if is_root { part.clamp(0.05, 0.95) } else { 0.5 };
-            let place = inside.0 + part * (outside.0 - inside.0);
+            let at = |part: f64| inside.0 + part.clamp(0.05, 0.95) * (outside.0 - inside.0);
             let jumps = outside.1 - inside.1 > JUMP * (self.limit - smallest);
             let is_located = (outside.0 - inside.0).abs() <= same;
             if attempt >= CROSSING && (!jumps || is_located) {
-                return Ok(place);
+                return Ok(at(part));
             }
+            // Where the same end is met again, the rise is no parabola.
+            let is_root = attempt < CROSSING && same_end < 2;
+            let place = at(if is_root { part } else { 0.5 });
             let mut there = values.to_vec();
             let sum = self.fit(free, k, place, &mut there, points, Care::OneStart)?;
             let Some(sum) = sum else { return Ok(place) };

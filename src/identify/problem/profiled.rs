@@ -181,6 +181,7 @@ impl Solution {
             reach: &reach,
             others: &others,
             is_shared: true,
+            freedom: self.grounds.freedom,
             quantile: self.grounds.quantile,
             budget: u64::MAX,
         };

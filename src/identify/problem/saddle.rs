@@ -8,6 +8,8 @@
 
 use super::{Best, Finding, FindingKind, Run, Severity};
 use crate::diag::Fault;
+use crate::elementary;
+use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::singular_values::SingularValues;
 use crate::table::significant;
 use nalgebra::DMatrix;
@@ -56,9 +58,17 @@ pub fn leave(run: &mut Run) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Whether the objective is a sum of squares of the errors of the simulation: other points are better
+/// by rounding only.
+fn is_exact(run: &Run, best: &Best) -> bool {
+    let without_model = vec![0.0; run.problem.n_points()];
+    let size = run.evaluation.objective(&run.problem, &without_model);
+    (0.0..=elementary::powi(FROM_THE_SOLVER * run.problem.noise, 2) * size).contains(&best.fitness)
+}
+
 /// The best of some points along the null directions, if it is better than the best of the run.
 fn lower_beside(run: &mut Run) -> Option<Best> {
-    let best = run.best.as_ref()?;
+    let best = run.best.as_ref().filter(|best| !is_exact(run, best))?;
     let directions = null_directions(run, &best.values)?;
     let free = &run.problem.parameters;
     let step = |direction: &Vec<f64>, size: f64| {

@@ -260,6 +260,8 @@ fn effects(
         statistics.simulations += simulations;
         effects.push((k, found));
     }
+    let count = effects.iter().filter(|(_, effect)| *effect == Effect::None).count();
+    statistics.release(&run.problem, &run.evaluation, (values, simulated), count);
     Ok(effects)
 }
 

@@ -1,6 +1,5 @@
 //! Sentences about single parameters. They say what the verdict says, and where it comes from.
 
-use super::statistics::BEYOND;
 use super::verdicts::{ByProfile, Judged};
 use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
 use crate::table::{ends, significant};
@@ -79,6 +78,10 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
     };
     let what = match parameter.open {
         [true, true] => format!("it can have any value in its whole search range, {min} to {max}"),
+        [false, false] if parameter.is_precise() => format!(
+            "it can have any value between {low} and {high}, where the search ranges of others, not \
+             the data, end the interval"
+        ),
         [false, false] => format!("it can have any value between {low} and {high}"),
         [false, true] => format!(
             "it is at least {low}; they do not bound it from above, up to the end {max} of its \
@@ -95,7 +98,7 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
 }
 
 /// That the optimum lies beyond the end of the range, where the linear model is true of it.
-fn beyond(parameter: &SolvedParameter, pull: f64) -> Finding {
+fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2]) -> Finding {
     let [min, max] = parameter.range;
     let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
     let end = significant(if upper { max } else { min }, 5);
@@ -109,7 +112,7 @@ fn beyond(parameter: &SolvedParameter, pull: f64) -> Finding {
         significant(pull, 2)
     );
     let finding = Finding::new(FindingKind::AtBound, sentence);
-    finding.parameters([name.as_str()]).statistic(pull, BEYOND)
+    finding.parameters([name.as_str()]).statistic(pull, limit)
 }
 
 fn nonlinear(parameter: &SolvedParameter, linear: [f64; 2]) -> Finding {

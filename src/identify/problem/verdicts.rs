@@ -16,7 +16,6 @@ use super::effects::{Effect, Finite};
 use super::grounds::Grounds;
 use super::non_identifiable::Form;
 use super::profile::{Known, Profile, profiles};
-use super::statistics::BEYOND;
 use super::{Free, Run, Solution, SolvedParameter, Statistics, Verdict};
 use crate::diag::Fault;
 use crate::elementary;
@@ -37,6 +36,8 @@ const NEARBY: f64 = 10.0;
 /// Where the logarithm of a parameter is searched, an interval wider than this factor says no more than
 /// its order of magnitude.
 const DECADE: f64 = 10.0;
+/// Values nearer to an end of a range than this, relative to it, are at that end.
+const ON_END: f64 = 1e-6;
 /// Simulations that the profiles of a verdict may take: so many times those of the search, and at least
 /// so many. A profile takes about 12 fits, each of 3 Jacobians or so. Formulas cost next to nothing.
 const OF_SEARCH: u64 = 2;
@@ -71,9 +72,9 @@ pub enum Judged {
 pub(crate) struct ByProfile {
     /// The linear interval that does not hold; `None` where there is none, or it does.
     pub linear: Option<[f64; 2]>,
-    /// How far the optimum lies beyond the end at which the parameter stands, in standard errors,
-    /// where the linear model is true of that.
-    pub pull: Option<f64>,
+    /// How far the optimum lies beyond the end at which the parameter stands, in standard errors, and
+    /// how far it may within the 95 % limit, where the linear model is true of that.
+    pub pull: Option<[f64; 2]>,
     /// Whether the objective still falls at the end at which the parameter stands.
     pub falls: bool,
 }
@@ -91,7 +92,8 @@ impl Solution {
         effects: &[(usize, Effect)],
     ) -> Result<Vec<Judged>, Fault> {
         let n = self.parameters.len();
-        self.grounds.quantile = statistics.quantile_of_squares();
+        (self.grounds.freedom, self.grounds.quantile) =
+            (statistics.freedom, statistics.quantile_of_squares());
         if statistics.uncertainty.is_none() {
             return Ok(vec![Judged::Nothing; n]);
         }
@@ -101,9 +103,9 @@ impl Solution {
         let mut judged: Vec<Judged> =
             (0..n).map(|k| self.judge_first(k, linear[k], statistics, effects)).collect();
         let pull = |k: usize| statistics.pull(k).zip(statistics.reach(k));
-        let quantile = self.grounds.quantile;
+        let Grounds { freedom, quantile, .. } = self.grounds;
         let pulls = (0..n).map(pull).collect();
-        self.grounds = Grounds { pulls, linear, quantile, ..Grounds::default() };
+        self.grounds = Grounds { pulls, linear, freedom, quantile, ..Grounds::default() };
         if is_without_noise(run, statistics) {
             self.judge_by_rank(&mut judged);
             return Ok(judged);
@@ -135,6 +137,8 @@ impl Solution {
         if groups.any(|group| in_group(&group.form) && group.parameters.contains(&k)) {
             own.verdict = Some(Verdict::StructurallyNonIdentifiable);
             own.determined = Some(false);
+            // What rounding leaves of a singular matrix is no standard error.
+            own.deviation = None;
             return Judged::Group;
         }
         let within = |(end, range): (&f64, &f64)| (end - range).abs() > 0.0;
@@ -214,6 +218,7 @@ impl Solution {
             reach: &reach,
             others: &others,
             is_shared: false,
+            freedom: self.grounds.freedom,
             quantile: self.grounds.quantile,
             budget,
         };
@@ -236,6 +241,7 @@ impl Solution {
                 true => Judged::Stopped,
                 false => self.adopt(k, &profile, budget),
             };
+            self.beware_of_ranges(k, &profile, statistics);
             if judged[k] == Judged::Stopped {
                 self.parameters[k].forget();
             }
@@ -246,10 +252,37 @@ impl Solution {
         Ok(())
     }
 
+    /// Among parameters whose changes cancel near the best values, an interval may end only where
+    /// another of them meets the end of its range: that is no statement of the data.
+    fn beware_of_ranges(&mut self, k: usize, profile: &Profile, statistics: &Statistics) {
+        if self.parameters[k].verdict != Some(Verdict::Identifiable) {
+            return;
+        }
+        let mut groups = statistics.non_identifiable.iter();
+        let Some(group) = groups.find(|group| group.parameters.contains(&k)) else { return };
+        let valley = profile.valley.iter();
+        let ends = [
+            valley.clone().min_by(|a, b| a[k].total_cmp(&b[k])),
+            valley.max_by(|a, b| a[k].total_cmp(&b[k])),
+        ];
+        let is_at_end = |values: &&Vec<f64>| {
+            let others = group.parameters.iter().filter(|other| **other != k);
+            others.clone().any(|&other| {
+                let own = &self.parameters[other];
+                own.range.iter().any(|end| (values[other] - end).abs() <= ON_END * end.abs())
+            })
+        };
+        if ends.iter().flatten().any(is_at_end) {
+            self.parameters[k].verdict = Some(Verdict::PracticallyNonIdentifiable);
+            self.parameters[k].determined = Some(false);
+        }
+    }
+
     /// Takes what the profile of a parameter shows, which was made with this budget.
     pub(super) fn adopt(&mut self, k: usize, profile: &Profile, budget: u64) -> Judged {
-        let (linear, pull) = (self.grounds.linear[k], self.grounds.pulls[k]);
-        self.parameters[k].adopt(profile, linear, pull, budget)
+        let Grounds { linear, pulls, quantile, .. } = &self.grounds;
+        let pull = pulls[k].map(|(pull, reach)| ([pull, *quantile], reach));
+        self.parameters[k].adopt(profile, linear[k], pull, budget)
     }
 
     /// Those of these parameters whose linear interval does not hold.
@@ -330,14 +363,18 @@ impl Solution {
 }
 
 impl SolvedParameter {
+    /// Whether the interval says more than an order of magnitude.
+    pub(super) fn is_precise(&self) -> bool {
+        let [low, high] = self.interval.unwrap_or(self.range);
+        !self.logarithmic || (high / low).max(low / high) <= DECADE
+    }
+
     /// Takes the ends of the values that these data admit; `None` where the range ends before.
     fn take(&mut self, ends: [Option<f64>; 2]) {
         let [low, high] = ends;
         self.interval = Some([low.unwrap_or(self.range[0]), high.unwrap_or(self.range[1])]);
         self.open = [low.is_none(), high.is_none()];
-        let [low, high] = self.interval.unwrap_or(self.range);
-        let is_precise = !self.logarithmic || (high / low).max(low / high) <= DECADE;
-        let is_bounded = self.open == [false; 2] && is_precise;
+        let is_bounded = self.open == [false; 2] && self.is_precise();
         self.determined = Some(is_bounded);
         self.verdict = Some(match is_bounded {
             true => Verdict::Identifiable,
@@ -357,7 +394,7 @@ impl SolvedParameter {
         &mut self,
         profile: &Profile,
         linear: Option<[f64; 2]>,
-        pull: Option<(f64, [f64; 2])>,
+        pull: Option<([f64; 2], [f64; 2])>,
         budget: u64,
     ) -> Judged {
         let [min, max] = self.range;
@@ -378,7 +415,7 @@ impl SolvedParameter {
             [Some(low), None] => (self.value - low) / reach[0],
             _ => f64::INFINITY,
         };
-        let falls = pull.is_some_and(|(pull, _)| pull > BEYOND);
+        let falls = pull.is_some_and(|([pull, limit], _)| pull > limit);
         let is_linear = |reach| (FACTOR.recip()..=FACTOR).contains(&inner(reach));
         let beyond = pull.filter(|(_, reach)| falls && is_linear(*reach)).map(|(pull, _)| pull);
         if let Some(pull) = beyond {

@@ -31,12 +31,17 @@ pub fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
         if let Some(variance) = variances[prior.parameter] {
             let posterior = variance.sqrt() / unit;
             if posterior > DOMINATES * sd {
-                let sentence = format!(
-                    "The estimate of {name} comes mainly from its prior: the data reduce the \
-                     standard deviation of {what} only from {} to {}.",
-                    significant(sd, 3),
-                    significant(posterior, 3)
-                );
+                let [before, after] = [sd, posterior].map(|own| significant(own, 3));
+                let sentence = match before == after {
+                    true => format!(
+                        "The estimate of {name} comes only from its prior: the data do not reduce \
+                         the standard deviation {before} of {what}."
+                    ),
+                    false => format!(
+                        "The estimate of {name} comes mainly from its prior: the data reduce the \
+                         standard deviation of {what} only from {before} to {after}."
+                    ),
+                };
                 remarks.push(finding(sentence, name, posterior / sd, DOMINATES));
             }
         }

@@ -336,7 +336,7 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     let remarks = &found.findings;
     let begins = |k: usize, text: &str| remarks[k].sentence.starts_with(text);
     assert!(begins(0, "The data contradict the prior of p0: the estimate lies 3."), "{remarks:?}");
-    assert!(begins(1, "The estimate of p1 comes mainly from its prior"), "{remarks:?}");
+    assert!(begins(1, "The estimate of p1 comes only from its prior"), "{remarks:?}");
     assert_eq!(remarks.len(), 2);
     let solution = crate::problem::Solution::of(&run, "", Vec::new()).unwrap();
     assert_eq!(solution.series.len(), 1, "a prior is not data");

@@ -12,8 +12,6 @@
 use crate::{Uncertainty, uncertainty_given};
 use nalgebra::{DMatrix, DVector};
 
-/// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
-pub(in crate::problem) const BEYOND: f64 = 2.0;
 /// Sweeps over the parameters at ends; they converge linearly, and there are few.
 const SWEEPS: usize = 400;
 /// Doublings that bracket the end of an interval, and halvings that locate it.

@@ -27,7 +27,6 @@ use super::sensitivities::Sensitivities;
 use super::separable::Combination;
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::{Uncertainty, error_of_combination, uncertainty_given};
-pub(super) use at_bounds::BEYOND;
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
 
@@ -54,6 +53,9 @@ const AT_END: f64 = 0.01;
 const NEAR_END: f64 = 1e-3;
 /// Without a standard error, this fraction of the range.
 const ON_END: f64 = 1e-9;
+/// Sums of squares that are smaller by this factor than those from which they were computed are
+/// rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// What the data tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,8 +70,11 @@ pub struct Statistics {
     /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
     /// Student's distribution, or of the normal one where sigma is given.
     pub quantile: f64,
-    /// Points less parameters; equal series count once.
+    /// Points less the parameters that the data can determine; equal series count once.
     pub freedom: f64,
+    /// Parameters that take no degree of freedom: those without any effect, and in groups that act only
+    /// together those of which the others are made up for.
+    open: usize,
     /// Whether the deviations of the measurements are known and believed.
     pub believed: bool,
     /// v of the covariance v (JᵀJ)⁻¹ of the weighted sensitivities: 1 where sigma is believed, the
@@ -148,31 +153,20 @@ impl Statistics {
         let data = Data::at(problem, evaluation, simulated, &repeated);
         let (jacobian, simulations) = sensitivities(problem, evaluation, values);
         let columns = weighted(&jacobian, &data.scales);
-        let spread = Spread::of(problem, evaluation, &data, &columns);
-        let uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
-            true => uncertainty_given(&columns, spread.variance),
-            false => None,
-        };
-        let inward = inward(problem, values, uncertainty.as_ref());
-        let at_bounds = uncertainty.as_ref().and_then(|_| {
-            let plain = (!spread.robust).then(|| data.shared_residuals());
-            let variances = [spread.variance, spread.rise()];
-            AtBounds::of(&columns, plain.as_deref(), &inward, variances)
-        });
         let best = Sensitivities { values: values.to_vec(), columns };
         let rank_tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
-        let limit = data.square + spread.rise();
         let mut found = Statistics {
-            uncertainty,
-            at_bounds,
-            inward,
-            quantile: spread.quantile,
-            freedom: spread.freedom,
-            believed: spread.believed,
-            variance: spread.variance,
-            robust: spread.robust,
-            weights: data.weights,
-            residuals: data.residuals,
+            uncertainty: None,
+            at_bounds: None,
+            inward: Vec::new(),
+            quantile: f64::NAN,
+            freedom: 0.0,
+            open: 0,
+            believed: false,
+            variance: f64::NAN,
+            robust: false,
+            weights: data.weights.clone(),
+            residuals: data.residuals.clone(),
             repeated,
             condition: None,
             non_identifiable: Vec::new(),
@@ -180,11 +174,59 @@ impl Statistics {
             without_effect: Vec::new(),
             jacobian,
             simulations,
-            shares: data.shares,
+            shares: data.shares.clone(),
             rank_tolerance,
         };
+        found.estimate_errors(problem, evaluation, &data, &best);
+        let limit = data.square + elementary::powi(found.quantile, 2) * found.variance;
         found.find_rank(problem, evaluation, (&best, simulated), others, &data.scales, limit);
+        let groups = found.non_identifiable.iter().filter(|group| group.form != Form::Local);
+        found.open = groups.map(|group| group.excess).sum();
+        if found.open > 0 {
+            found.estimate_errors(problem, evaluation, &data, &best);
+        }
         found
+    }
+
+    /// Counts parameters that change nothing that was compared as open: they take no degree of freedom.
+    pub(super) fn release(
+        &mut self,
+        problem: &Problem,
+        evaluation: &Evaluation,
+        (values, simulated): (&[f64], &[f64]),
+        count: usize,
+    ) {
+        if count > 0 {
+            self.open += count;
+            let data = Data::at(problem, evaluation, simulated, &self.repeated);
+            let columns = weighted(&self.jacobian, &data.scales);
+            let best = Sensitivities { values: values.to_vec(), columns };
+            self.estimate_errors(problem, evaluation, &data, &best);
+        }
+    }
+
+    /// Estimates the variance of the measurements, and from it the standard errors.
+    fn estimate_errors(
+        &mut self,
+        problem: &Problem,
+        evaluation: &Evaluation,
+        data: &Data,
+        best: &Sensitivities,
+    ) {
+        let spread = Spread::of(problem, evaluation, data, (&best.columns, self.open));
+        self.uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
+            true => uncertainty_given(&best.columns, spread.variance),
+            false => None,
+        };
+        self.inward = inward(problem, &best.values, self.uncertainty.as_ref());
+        self.at_bounds = self.uncertainty.as_ref().and_then(|_| {
+            let plain = (!spread.robust).then(|| data.shared_residuals());
+            let variances = [spread.variance, spread.rise()];
+            AtBounds::of(&best.columns, plain.as_deref(), &self.inward, variances)
+        });
+        (self.quantile, self.freedom, self.variance) =
+            (spread.quantile, spread.freedom, spread.variance);
+        (self.believed, self.robust) = (spread.believed, spread.robust);
     }
 
     /// Finds which parameters have no effect, and which act only together, where the weighted sum of
@@ -309,9 +351,14 @@ struct Spread {
 }
 
 impl Spread {
-    /// From the residuals of a fit and the sensitivities.
-    fn of(problem: &Problem, evaluation: &Evaluation, data: &Data, columns: &[Vec<f64>]) -> Spread {
-        let freedom = data.shares.iter().sum::<f64>() - columns.len() as f64;
+    /// From the residuals of a fit and the sensitivities, of which some parameters are left open.
+    fn of(
+        problem: &Problem,
+        evaluation: &Evaluation,
+        data: &Data,
+        (columns, open): (&[Vec<f64>], usize),
+    ) -> Spread {
+        let freedom = data.shares.iter().sum::<f64>() - (columns.len() - open) as f64;
         let robust = problem.objectives.first().and_then(|(_, fitness)| {
             fitness.robustness(&data.residuals, freedom).filter(|_| freedom > 0.0)
         });
@@ -379,10 +426,19 @@ impl Statistics {
     }
 
     /// How far the linear fit would go beyond the end at which a parameter stands, in standard
-    /// errors; `None` where it stands at none.
+    /// errors of the fit there; `None` where it stands at none.
     pub(super) fn pull(&self, k: usize) -> Option<f64> {
         let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
-        ends.find(|end| end.parameter == k).map(|end| end.pull)
+        let pull = ends.find(|end| end.parameter == k)?.pull;
+        if self.believed || self.robust {
+            return Some(pull);
+        }
+        // Residuals at the end of a range contain the misfit that the end causes: an error estimated
+        // from them makes any distance one of less than the root of the degrees of freedom.
+        let pairs = self.residuals.iter().zip(&self.shares);
+        let square: f64 = pairs.map(|(r, share)| share * r * r).sum();
+        let left = square - pull * pull * self.variance;
+        Some(pull * (square / left.max(ROUNDING * square)).sqrt())
     }
 }
 
