@@ -9,7 +9,7 @@ use tempfile::TempDir;
 const REFERENCE: &str = "reference";
 
 /// The fenced blocks of a chapter: what stands behind the fence, and the lines.
-fn blocks(chapter: &str) -> Vec<(String, String)> {
+pub(crate) fn blocks(chapter: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open: Option<(String, String)> = None;
     for line in chapter.lines() {

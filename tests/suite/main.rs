@@ -12,6 +12,7 @@ mod c_functions;
 mod chattering;
 mod checking;
 mod checks;
+mod claims;
 mod cli;
 mod clocks;
 mod cluster;
