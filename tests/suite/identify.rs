@@ -31,8 +31,9 @@ fn value(result: &Value, name: &str) -> f64 {
 }
 
 /// The shipped problems with the best sums of squares that are known of their data.
-const SHIPPED: [(&str, f64); 4] = [
+const SHIPPED: [(&str, f64); 5] = [
     ("polarization", 2.462e-6),
+    ("ballard_mark_v", 0.813_911_703),
     ("bcs_500w", 0.011_697_780_7),
     ("sr12", 1.056_628_35),
     ("nedstack_ps6", 2.065_556_91),

@@ -32,6 +32,7 @@ mod flat_class;
 mod flattening;
 mod flattening_properties;
 mod formatting;
+mod fuel_cell_benchmark;
 mod fuel_cells;
 mod function_inverses;
 mod function_sizes;
