@@ -65,6 +65,7 @@ mod library_models;
 mod limits;
 mod linear_algebra;
 mod linear_loops;
+mod long_expressions;
 mod lsp;
 mod mat;
 mod measured_time;

@@ -146,8 +146,8 @@ fn compound(inner: BoxedStrategy<Expression>) -> impl Strategy<Value = Expressio
     let branches = prop::collection::vec((inner.clone(), inner.clone()), 1..3);
     let boxed = inner.clone().prop_map(Box::new);
     prop_oneof![
-        4 => (prop::sample::select(&BINARY[..]), boxed.clone(), boxed.clone()).prop_map(
-            |(operator, left, right)| ExpressionKind::Binary { operator, left, right }
+        4 => (prop::sample::select(&BINARY[..]), inner.clone(), inner.clone()).prop_map(
+            |(operator, left, right)| Expression::operation(operator, left, right, Span::NONE).kind
         ),
         2 => (prop::sample::select(&UNARY[..]), boxed.clone())
             .prop_map(|(operator, operand)| ExpressionKind::Unary { operator, operand }),

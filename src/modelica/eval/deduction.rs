@@ -98,10 +98,7 @@ impl Search {
                 self.expressions(named.iter().map(|named| &named.value));
             }
             ExpressionKind::Unary { operand, .. } => self.expression(operand),
-            ExpressionKind::Binary { left, right, .. } => {
-                self.expression(left);
-                self.expression(right);
-            }
+            ExpressionKind::Binary { .. } => self.expressions(expression.operands()),
             ExpressionKind::If { branches, otherwise } => {
                 for (condition, value) in branches {
                     self.expression(condition);

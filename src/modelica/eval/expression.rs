@@ -10,7 +10,7 @@ use crate::fault;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
-    BinaryOperator, Expression, ExpressionKind, NamedArgument, UnaryOperator,
+    BinaryOperator, Expression, ExpressionKind, NamedArgument, Operation, UnaryOperator,
 };
 use crate::value::construct::{self, Range};
 use crate::value::errors::{REAL_OVERFLOW, TYPE_MISMATCH};
@@ -60,8 +60,10 @@ impl Evaluator<'_> {
     fn composite(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
         let span = expression.span;
         match &expression.kind {
-            ExpressionKind::Binary { operator, left, right } => {
-                self.binary(*operator, left, right, span)
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = expression.chain();
+                let first = self.expression(first)?;
+                operations.iter().try_fold(first, |left, one| self.operation(left, one))
             }
             ExpressionKind::Unary { operator, operand } => self.unary(*operator, operand, span),
             ExpressionKind::Call { .. } => self.first_output(expression),
@@ -174,20 +176,14 @@ impl Evaluator<'_> {
         }
     }
 
-    fn binary(
-        &mut self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-        span: Span,
-    ) -> Result<Value, Diagnostic> {
-        let a = self.expression(left)?;
+    fn operation(&mut self, a: Value, one: &Operation<'_>) -> Result<Value, Diagnostic> {
+        let (operator, span) = (one.operator, one.whole.span);
         match (operator, &a) {
             (BinaryOperator::And, Value::Boolean(false)) => return Ok(a),
             (BinaryOperator::Or, Value::Boolean(true)) => return Ok(a),
             _ => {}
         }
-        let b = self.expression(right)?;
+        let b = self.expression(one.right)?;
         match apply(operator, &a, &b) {
             Err(e) if e.code == REAL_OVERFLOW && self.host.overflows() => {
                 infinite(operator, &a, &b).ok_or_else(|| e.at(span))

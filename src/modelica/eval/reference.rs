@@ -2,14 +2,16 @@
 //! array that they reach into.
 
 use super::Evaluator;
+
 use super::errors::{ASSIGN_BEFORE, NO_VALUE_YET, UNKNOWN_VARIABLE};
+use super::scalar::MAX_DEPTH;
 use super::variable::{Variable, named};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
+    BinaryOperator, ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
 };
 use crate::value::{Elements, Index, Step, Value};
 
@@ -333,7 +335,7 @@ impl Evaluator<'_> {
         let mut positions = Positions { values: [0; 4], count: 0 };
         for subscript in &part.subscripts {
             let Subscript::Index(expression) = subscript else { return Ok(None) };
-            let Some(position) = self.quick_integer(expression) else { return Ok(None) };
+            let Some(position) = self.quick_integer(expression, MAX_DEPTH) else { return Ok(None) };
             if positions.count == positions.values.len() {
                 return Ok(None);
             }
@@ -343,7 +345,7 @@ impl Evaluator<'_> {
         Ok(Some(positions))
     }
 
-    fn quick_integer(&self, expression: &Expression) -> Option<i64> {
+    fn quick_integer(&self, expression: &Expression, depth: usize) -> Option<i64> {
         match &expression.kind {
             ExpressionKind::Integer(value) => Some(*value),
             ExpressionKind::Reference(reference) => match self.scope.get(reference.as_ident()?)? {
@@ -351,8 +353,8 @@ impl Evaluator<'_> {
                 _ => None,
             },
             ExpressionKind::Binary { operator, left, right } => {
-                use crate::syntax::ast::BinaryOperator;
-                let (a, b) = (self.quick_integer(left)?, self.quick_integer(right)?);
+                let depth = depth.checked_sub(1)?;
+                let (a, b) = (self.quick_integer(left, depth)?, self.quick_integer(right, depth)?);
                 match operator {
                     BinaryOperator::Add => a.checked_add(b),
                     BinaryOperator::Subtract => a.checked_sub(b),

@@ -149,9 +149,10 @@ fn replace_end(e: &mut Expression, size: usize) {
     match &mut e.kind {
         ExpressionKind::End => e.kind = ExpressionKind::Integer(size as i64),
         ExpressionKind::Unary { operand, .. } => replace_end(operand, size),
-        ExpressionKind::Binary { left, right, .. } => {
-            replace_end(left, size);
-            replace_end(right, size);
+        ExpressionKind::Binary { .. } => {
+            let (first, operations) = e.chain_mut();
+            replace_end(first, size);
+            operations.into_iter().for_each(|one| replace_end(one.right, size));
         }
         ExpressionKind::Range { start, step, stop } => {
             replace_end(start, size);

@@ -130,9 +130,12 @@ impl Instantiation<'_> {
             | ExpressionKind::String(_) => Some(Vec::new()),
             ExpressionKind::Reference(reference) => self.reference_shape(reference),
             ExpressionKind::Unary { operand, .. } => self.shape_of(operand),
-            ExpressionKind::Binary { operator, left, right } => {
-                let (left, right) = (self.shape_of(left)?, self.shape_of(right)?);
-                binary_shape(*operator, left, right)
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = e.chain();
+                let first = self.shape_of(first)?;
+                operations.into_iter().try_fold(first, |left, one| {
+                    binary_shape(one.operator, left, self.shape_of(one.right)?)
+                })
             }
             ExpressionKind::If { branches, otherwise } => self.choice_shape(branches, otherwise),
             ExpressionKind::Array(elements) => {
@@ -354,11 +357,14 @@ impl Instantiation<'_> {
                 let inner = Arguments { positional, ..(**inner).clone() };
                 ExpressionKind::Call { function: function.clone(), arguments: Box::new(inner) }
             }
-            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
-                operator: *operator,
-                left: Box::new(self.substituted(arguments, left)),
-                right: Box::new(self.substituted(arguments, right)),
-            },
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = e.chain();
+                let first = self.substituted(arguments, first);
+                return operations.into_iter().fold(first, |left, one| {
+                    let right = self.substituted(arguments, one.right);
+                    Expression::operation(one.operator, left, right, one.whole.span)
+                });
+            }
             ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
                 operator: *operator,
                 operand: Box::new(self.substituted(arguments, operand)),

@@ -135,45 +135,24 @@ impl Types<'_> {
             },
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(BaseType::Boolean),
             ExpressionKind::Unary { operand, .. } => self.type_of(operand),
-            ExpressionKind::Binary { operator, left, right } => {
-                self.binary_type(*operator, left, right)
-            }
+            ExpressionKind::Binary { operator, .. } => match type_of_result(*operator) {
+                None => self.joined_type(e.operands_of(|one| type_of_result(one).is_none())),
+                known => known,
+            },
             ExpressionKind::If { branches, otherwise } => {
-                let mut values = branches.iter().map(|(_, value)| value).chain([&**otherwise]);
-                let first = self.type_of(values.next()?)?;
-                values.try_fold(first, |all, value| joined(all, self.type_of(value)?))
+                self.joined_type(branches.iter().map(|(_, value)| value).chain([&**otherwise]))
             }
-            ExpressionKind::Array(elements) => {
-                let mut types = elements.iter().map(|element| self.type_of(element));
-                let first = types.next()??;
-                types.try_fold(first, |all, one| joined(all, one?))
-            }
+            ExpressionKind::Array(elements) => self.joined_type(elements.iter()),
             ExpressionKind::Call { function, arguments } => self.call_type(function, arguments),
             _ => None,
         }
     }
 
-    fn binary_type(
-        &self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-    ) -> Option<BaseType> {
-        use BinaryOperator as Op;
-        match operator {
-            Op::Less
-            | Op::LessEqual
-            | Op::Greater
-            | Op::GreaterEqual
-            | Op::Equal
-            | Op::NotEqual
-            | Op::And
-            | Op::Or => Some(BaseType::Boolean),
-            Op::Divide | Op::ElementwiseDivide | Op::Power | Op::ElementwisePower => {
-                Some(BaseType::Real)
-            }
-            _ => joined(self.type_of(left)?, self.type_of(right)?),
-        }
+    /// The type that all have together.
+    fn joined_type<'e>(&self, all: impl Iterator<Item = &'e Expression>) -> Option<BaseType> {
+        let mut types = all.map(|one| self.type_of(one));
+        let first = types.next()??;
+        types.try_fold(first, |all, one| joined(all, one?))
     }
 
     fn call_type(&self, function: &ComponentReference, arguments: &Arguments) -> Option<BaseType> {
@@ -197,11 +176,7 @@ impl Types<'_> {
                 false => Some(BaseType::Boolean),
             },
             TypeRule::As(at) => self.type_of(arguments.positional.get(at)?),
-            TypeRule::Joined => {
-                let mut types = arguments.positional.iter().map(|argument| self.type_of(argument));
-                let first = types.next()??;
-                types.try_fold(first, |all, one| joined(all, one?))
-            }
+            TypeRule::Joined => self.joined_type(arguments.positional.iter()),
             TypeRule::Unknown => None,
         }
     }
@@ -225,8 +200,11 @@ impl Types<'_> {
             | ExpressionKind::String(_) => Some(0),
             ExpressionKind::Reference(reference) => self.reference_rank(reference),
             ExpressionKind::Unary { operand, .. } => self.rank_of(operand),
-            ExpressionKind::Binary { operator, left, right } => {
-                rank_of_operation(*operator, self.rank_of(left)?, self.rank_of(right)?)
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = e.chain();
+                operations.into_iter().try_fold(self.rank_of(first)?, |left, one| {
+                    rank_of_operation(one.operator, left, self.rank_of(one.right)?)
+                })
             }
             ExpressionKind::If { branches, otherwise } => {
                 self.rank_of(branches.first().map_or(otherwise, |(_, value)| value))
@@ -278,6 +256,25 @@ impl Types<'_> {
 }
 
 /// The number of dimensions of what an operation makes of such operands (MLS §10.6).
+/// The type of the result, where it is not that of the operands.
+fn type_of_result(operator: BinaryOperator) -> Option<BaseType> {
+    use BinaryOperator as Op;
+    match operator {
+        Op::Less
+        | Op::LessEqual
+        | Op::Greater
+        | Op::GreaterEqual
+        | Op::Equal
+        | Op::NotEqual
+        | Op::And
+        | Op::Or => Some(BaseType::Boolean),
+        Op::Divide | Op::ElementwiseDivide | Op::Power | Op::ElementwisePower => {
+            Some(BaseType::Real)
+        }
+        _ => None,
+    }
+}
+
 fn rank_of_operation(operator: BinaryOperator, left: usize, right: usize) -> Option<usize> {
     use BinaryOperator as Op;
     match (operator, left, right) {

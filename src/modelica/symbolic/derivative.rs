@@ -229,23 +229,23 @@ impl Derivatives<'_> {
 
     /// Appends the terms c u² of a sum of such, times a factor, as (c, u); whether it is one.
     fn squares(&self, e: Expr, factor: f64, found: &mut Vec<(f64, Expr)>) -> bool {
-        match *self.pool.node(e) {
-            Node::Add(a, b) => self.squares(a, factor, found) && self.squares(b, factor, found),
-            Node::Mul(a, b) if a == b => {
-                found.push((factor, a));
-                true
+        let mut open = vec![(e, factor)];
+        while let Some((e, factor)) = open.pop() {
+            match *self.pool.node(e) {
+                Node::Add(a, b) => open.extend([(b, factor), (a, factor)]),
+                Node::Mul(a, b) if a == b => found.push((factor, a)),
+                Node::Mul(a, b) => match (self.pool.as_constant(a), self.pool.as_constant(b)) {
+                    (Some(c), _) if c > 0.0 => open.push((b, factor * c)),
+                    (_, Some(c)) if c > 0.0 => open.push((a, factor * c)),
+                    _ => return false,
+                },
+                Node::Pow(u, exponent) if self.pool.as_constant(exponent) == Some(2.0) => {
+                    found.push((factor, u));
+                }
+                _ => return false,
             }
-            Node::Mul(a, b) => match (self.pool.as_constant(a), self.pool.as_constant(b)) {
-                (Some(c), _) if c > 0.0 => self.squares(b, factor * c, found),
-                (_, Some(c)) if c > 0.0 => self.squares(a, factor * c, found),
-                _ => false,
-            },
-            Node::Pow(u, exponent) if self.pool.as_constant(exponent) == Some(2.0) => {
-                found.push((factor, u));
-                true
-            }
-            _ => false,
         }
+        true
     }
 
     /// The product of the derivatives of a function and of what it is applied to: where one of them

@@ -3,7 +3,7 @@
 use super::function;
 use super::node::{Expr, Node, VarId};
 use super::pool::Pool;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// `coefficient * v + rest` with neither containing v.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -186,8 +186,9 @@ pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Optio
         (true, true) => (pool.sub(left, right), pool.constant(0.0)),
     };
     let mut moved = Solution { value: other, divisor: one, inverted: one, is_exact: true };
+    let (mut containing, mut may_be_linear) = (None, true);
     loop {
-        if let Some(fraction) = with_denominator(pool, side, variable) {
+        if may_be_linear && let Some(fraction) = with_denominator(pool, side, variable) {
             if pool.as_constant(fraction.coefficient) == Some(0.0) {
                 return None;
             }
@@ -197,30 +198,49 @@ pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Optio
             let divisor = pool.mul(moved.divisor, fraction.coefficient);
             return Some(Solution { value, divisor, ..moved });
         }
-        (side, moved) = peel(pool, side, moved, variable)?;
+        // A term of a sum is linear only where the sum is.
+        may_be_linear = !matches!(pool.node(side), Node::Neg(_) | Node::Add(..) | Node::Sub(..));
+        let containing = containing.get_or_insert_with(|| nodes_with(pool, side, variable));
+        (side, moved) = peel(pool, side, moved, containing)?;
     }
 }
 
+/// The nodes of an expression that contain a variable.
+fn nodes_with(pool: &Pool, expr: Expr, variable: VarId) -> FxHashSet<Expr> {
+    let mut found = FxHashSet::default();
+    for node in pool.reachable_with(&[expr], variable) {
+        let mut contains = pool.as_variable(node) == Some(variable);
+        pool.node(node).for_each_operand(|operand| contains |= found.contains(&operand));
+        if contains {
+            found.insert(node);
+        }
+    }
+    found
+}
+
 /// Moves the outermost operation of `side` to the other side, which is the value of `moved`.
-fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option<(Expr, Solution)> {
+fn peel(
+    pool: &mut Pool,
+    side: Expr,
+    moved: Solution,
+    containing: &FxHashSet<Expr>,
+) -> Option<(Expr, Solution)> {
     let other = moved.value;
-    let has = |pool: &Pool, a: Expr, b: Expr| {
-        (pool.depends_on(a, variable), pool.depends_on(b, variable))
-    };
+    let has = |a: Expr, b: Expr| (containing.contains(&a), containing.contains(&b));
     let (inner, value) = match *pool.node(side) {
         Node::Neg(a) => (a, pool.neg(other)),
-        Node::Add(a, b) => match has(pool, a, b) {
+        Node::Add(a, b) => match has(a, b) {
             (true, false) => (a, pool.sub(other, b)),
             (false, true) => (b, pool.sub(other, a)),
             _ => return None,
         },
-        Node::Sub(a, b) => match has(pool, a, b) {
+        Node::Sub(a, b) => match has(a, b) {
             (true, false) => (a, pool.add(other, b)),
             (false, true) => (b, pool.sub(a, other)),
             _ => return None,
         },
         Node::Mul(a, b) => {
-            let (inner, factor) = match has(pool, a, b) {
+            let (inner, factor) = match has(a, b) {
                 (true, false) => (a, b),
                 (false, true) => (b, a),
                 _ => return None,
@@ -228,7 +248,7 @@ fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option
             let divisor = pool.mul(moved.divisor, factor);
             return Some((inner, Solution { value: pool.div(other, factor), divisor, ..moved }));
         }
-        Node::Div(a, b) => match has(pool, a, b) {
+        Node::Div(a, b) => match has(a, b) {
             (true, false) => (a, pool.mul(other, b)),
             (false, true) => {
                 let inverted = pool.mul(moved.inverted, other);
@@ -243,7 +263,7 @@ fn peel(pool: &mut Pool, side: Expr, moved: Solution, variable: VarId) -> Option
             (arguments.first(), pool.function("exp", &[other]))
         }
         Node::Call { function, output: 0, arguments } => {
-            let (inner, value, is_exact) = inverted(pool, function, arguments, other, variable)?;
+            let (inner, value, is_exact) = inverted(pool, function, arguments, other, containing)?;
             let is_exact = moved.is_exact && is_exact;
             return Some((inner, Solution { value, is_exact, ..moved }));
         }
@@ -259,10 +279,10 @@ fn inverted(
     function: u32,
     arguments: Expr,
     value: Expr,
-    variable: VarId,
+    containing: &FxHashSet<Expr>,
 ) -> Option<(Expr, Expr, bool)> {
     let entries = pool.entries(arguments).to_vec();
-    let mut holding = (0..entries.len()).filter(|at| pool.depends_on(entries[*at], variable));
+    let mut holding = (0..entries.len()).filter(|at| containing.contains(&entries[*at]));
     let (at, None) = (holding.next()?, holding.next()) else { return None };
     let inverse = pool.inverse(function, u32::try_from(at).ok()?)?.clone();
     let given: Vec<Expr> = inverse

@@ -23,7 +23,7 @@ codes! {
         "## What it means\n\nA character is not allowed in Modelica code. Outside strings, comments and quoted identifiers, only the letters `a`-`z`, digits, `_` and the operators are allowed.\n\n## Example\n\n`a != b`\n\n## What to do\n\nWrite the Modelica form named in the message, or quote the identifier.",
     /// Brackets, blocks or operators inside each other beyond what is read.
     NESTING_TOO_DEEP = "nesting-too-deep":
-        "## What it means\n\nExpressions, brackets or blocks are nested more deeply than this program supports.\n\n## Example\n\nA sum of a thousand terms without parentheses or arrays.\n\n## What to do\n\nSplit the expression: assign parts of it to variables, or use `sum({...})`.",
+        "## What it means\n\nExpressions, brackets or blocks are nested more deeply than this program supports.\n\n## Example\n\nA thousand parentheses inside each other. A sum, a product or operands of `and` and `or` are a list, which may have any length.\n\n## What to do\n\nSplit the expression: assign parts of it to variables.",
     /// Data that carries the ending of a script.
     NOT_A_SCRIPT = "not-a-script":
         "## What it means\n\nThe file is a table of numbers (`#1`, `double name(rows,columns)`), as weather data has, not a script.\n\n## Example\n\n`RunScript(\"weather.mos\")`\n\n## What to do\n\nRead it as data, for instance with `readMatrix`, and run another file.",

@@ -128,10 +128,10 @@ fn powers_bind_tighter_than_signs() {
 
 #[test]
 fn hostile_nesting_is_an_error() {
-    for text in ["(".repeat(100_000), "{".repeat(300), "-".repeat(100_000), "1+".repeat(100_000)] {
+    for text in ["(".repeat(100_000), "{".repeat(300), "- ".repeat(100_000), "not ".repeat(600)] {
         assert!(parse_expression(SourceId::NONE, &format!("{text}1")).is_err());
     }
-    let sums = format!("{}1{}", "(".repeat(150), format!("{})", "+1".repeat(300)).repeat(150));
+    let sums = format!("{}1{}", "(".repeat(300), "+1*2)".repeat(300));
     assert!(parse_expression(SourceId::NONE, &sums).is_err());
     let list = format!("{{{}1}}", "a + (b * c), if x then y else z, ".repeat(2_000));
     assert!(parse_expression(SourceId::NONE, &list).is_ok());

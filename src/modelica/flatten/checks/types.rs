@@ -228,35 +228,24 @@ impl Walk<'_, '_> {
             ExpressionKind::String(_) => Some(Kind::String),
             ExpressionKind::Reference(reference) => self.kind_of_reference(reference),
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(Kind::Boolean),
-            ExpressionKind::Binary { operator, left, right } => {
-                let place = std::ptr::from_ref(expression);
-                let known = self.operations.borrow().get(&place).copied();
-                known.unwrap_or_else(|| {
-                    let kind = self.kind_of_operation(*operator, left, right);
-                    self.operations.borrow_mut().insert(place, kind);
-                    kind
-                })
+            ExpressionKind::Binary { .. } => {
+                let known = self.operations.borrow().get(&std::ptr::from_ref(expression)).copied();
+                known.unwrap_or_else(|| self.kind_of_chain(expression))
             }
             ExpressionKind::Call { function, .. } => self.kind_of_call(function),
             _ => None,
         }
     }
 
-    fn kind_of_operation(
-        &self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-    ) -> Option<Kind> {
-        let both = [self.kind(left)?, self.kind(right)?];
-        match operator {
-            _ if is_relation(operator) || is_logical(operator) => Some(Kind::Boolean),
-            BinaryOperator::Add
-            | BinaryOperator::Subtract
-            | BinaryOperator::Multiply
-            | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
-            _ => None,
-        }
+    fn kind_of_chain(&self, expression: &Expression) -> Option<Kind> {
+        let (first, operations) = expression.chain();
+        operations.into_iter().fold(self.kind(first), |left, one| {
+            let right = self.kind(one.right);
+            let kind =
+                left.zip(right).and_then(|both| kind_of_operation(one.operator, both.into()));
+            self.operations.borrow_mut().insert(std::ptr::from_ref(one.whole), kind);
+            kind
+        })
     }
 
     fn kind_of_call(&self, function: &ComponentReference) -> Option<Kind> {
@@ -302,11 +291,14 @@ impl Walk<'_, '_> {
 impl Visit for Walk<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
-            ExpressionKind::Binary { operator, left, right } if is_relation(*operator) => {
-                self.relation(left, right);
-            }
-            ExpressionKind::Binary { operator, left, right } => {
-                self.operands(*operator, [left, right]);
+            ExpressionKind::Binary { .. } => {
+                self.kind(expression);
+                for one in expression.chain().1 {
+                    match is_relation(one.operator) {
+                        true => self.relation(one.left, one.right),
+                        false => self.operands(one.operator, [one.left, one.right]),
+                    }
+                }
             }
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
@@ -391,4 +383,15 @@ fn is_relation(operator: BinaryOperator) -> bool {
 
 fn is_logical(operator: BinaryOperator) -> bool {
     matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+}
+
+fn kind_of_operation(operator: BinaryOperator, both: [Kind; 2]) -> Option<Kind> {
+    match operator {
+        _ if is_relation(operator) || is_logical(operator) => Some(Kind::Boolean),
+        BinaryOperator::Add
+        | BinaryOperator::Subtract
+        | BinaryOperator::Multiply
+        | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
+        _ => None,
+    }
 }

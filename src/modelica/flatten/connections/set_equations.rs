@@ -60,16 +60,9 @@ impl Instantiation<'_> {
 /// Parameters of connected connectors must be equal (MLS §9.2).
 fn equal_parameters(left: Expression, right: Expression, span: Span) -> Expression {
     let message = "connected connectors have different values of a parameter";
-    let condition = ExpressionKind::Binary {
-        operator: BinaryOperator::Equal,
-        left: Box::new(left),
-        right: Box::new(right),
-    };
+    let condition = Expression::operation(BinaryOperator::Equal, left, right, span);
     let arguments = Arguments {
-        positional: vec![
-            Expression::new(condition, span),
-            Expression::new(ExpressionKind::String(message.into()), span),
-        ],
+        positional: vec![condition, Expression::new(ExpressionKind::String(message.into()), span)],
         ..Arguments::default()
     };
     let function = ComponentReference::from_name(&Name::parse("assert"), span);
@@ -100,17 +93,12 @@ impl Tree {
         Equation { kind, comment: Default::default(), span }
     }
 
-    /// One after the other; long sums as sums of sums, since what reads expressions goes down into
-    /// them, and 1,281 breakers at one node would be as many levels.
+    /// One after the other; long sums as sums of sums, where fewer digits are lost.
     fn sum_of_flows(&self, sides: &[ConnectorSide], span: Span) -> Expression {
         if sides.len() > LONGEST_SUM {
             let (first, second) = sides.split_at(sides.len() / 2);
-            let kind = ExpressionKind::Binary {
-                operator: BinaryOperator::Add,
-                left: Box::new(self.sum_of_flows(first, span)),
-                right: Box::new(self.sum_of_flows(second, span)),
-            };
-            return Expression::new(kind, span);
+            let [first, second] = [first, second].map(|half| self.sum_of_flows(half, span));
+            return Expression::operation(BinaryOperator::Add, first, second, span);
         }
         let mut sum: Option<Expression> = None;
         for side in sides {
@@ -123,7 +111,7 @@ impl Tree {
                 },
                 (Some(sum), outside) => ExpressionKind::Binary {
                     operator: if outside { BinaryOperator::Subtract } else { BinaryOperator::Add },
-                    left: Box::new(sum),
+                    left: sum.into(),
                     right: Box::new(term),
                 },
             };

@@ -228,8 +228,7 @@ impl Tree {
 
 fn binary(operator: BinaryOperator, left: Expression, right: Expression) -> Expression {
     let span = left.span;
-    let kind = ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
-    Expression::new(kind, span)
+    Expression::operation(operator, left, right, span)
 }
 
 fn sum(so_far: Option<Expression>, term: Expression) -> Expression {

@@ -28,15 +28,18 @@ const MAX_ELEMENTS: usize = 100_000;
 
 /// `sum(e for i in 1:0)` of components of an array without elements, or a multiple of it: nothing tells
 /// the sizes of e (MLS §10.3.4.1), and added to an array it is that array of zeros.
-pub(crate) fn is_sum_of_nothing(e: &Expression) -> bool {
+pub(crate) fn is_sum_of_nothing(mut e: &Expression) -> bool {
+    while let ExpressionKind::Binary { operator: BinaryOperator::Multiply, left, right } = &e.kind {
+        if is_sum_of_nothing(right) {
+            return true;
+        }
+        e = left;
+    }
     match &e.kind {
         ExpressionKind::Call { function, arguments } => {
             function.as_ident().is_some_and(|name| name == "sum")
                 && arguments.iterators.is_empty()
                 && matches!(&arguments.positional[..], [array] if has_no_elements(array))
-        }
-        ExpressionKind::Binary { operator: BinaryOperator::Multiply, left, right } => {
-            is_sum_of_nothing(left) || is_sum_of_nothing(right)
         }
         _ => false,
     }
@@ -134,9 +137,7 @@ impl Instantiation<'_> {
                 return None;
             }
             let add = |left: Expression, right: &Expression| {
-                let (left, right) = (Box::new(left), Box::new(right.clone()));
-                let kind = ExpressionKind::Binary { operator: BinaryOperator::Add, left, right };
-                Expression::new(kind, span)
+                Expression::operation(BinaryOperator::Add, left, right.clone(), span)
             };
             return Some(rest.iter().fold(first.clone(), add));
         }

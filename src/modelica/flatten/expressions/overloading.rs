@@ -340,15 +340,14 @@ impl Types<'_> {
                 _ => None,
             },
             ExpressionKind::Unary { operand, .. } => self.value_type_of(operand, local),
-            ExpressionKind::Binary { operator, left, right } if is_arithmetic(*operator) => {
-                match (self.value_type_of(left, local)?, self.value_type_of(right, local)?) {
+            ExpressionKind::Binary { operator, .. } if is_arithmetic(*operator) => {
+                let mut types =
+                    e.operands_of(is_arithmetic).map(|one| self.value_type_of(one, local));
+                types.try_fold(ValueType::Integer, |all, one| match (all, one?) {
                     (ValueType::Integer, ValueType::Integer) => Some(ValueType::Integer),
-                    (
-                        ValueType::Real | ValueType::Integer,
-                        ValueType::Real | ValueType::Integer,
-                    ) => Some(ValueType::Real),
+                    (_, ValueType::Real | ValueType::Integer) => Some(ValueType::Real),
                     _ => None,
-                }
+                })
             }
             _ => self.type_of(e).map(plain),
         }

@@ -137,23 +137,18 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, span))
     }
 
-    /// A chain of operations that leans to the left, as the terms of a sum do: it is no deeper than
-    /// its operands.
+    /// A chain of operations is no deeper than its operands.
     fn chain(
         &mut self,
         e: &Expression,
         context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let (mut operations, mut first) = (Vec::new(), e);
-        while let ExpressionKind::Binary { operator, left, right } = &first.kind {
-            operations.push((*operator, &**right, first.span));
-            first = left;
-        }
+        let (first, operations) = e.chain();
         let mut resolved = self.resolve(first, context, local)?;
-        for (operator, right, span) in operations.into_iter().rev() {
-            let right = self.resolve(right, context, local)?;
-            resolved = self.binary(operator, (resolved, right), local, span)?;
+        for one in operations {
+            let right = self.resolve(one.right, context, local)?;
+            resolved = self.binary(one.operator, (resolved, right), local, one.whole.span)?;
         }
         Ok(resolved)
     }
@@ -176,10 +171,7 @@ impl Instantiation<'_> {
         Ok(match operator {
             BinaryOperator::Add | BinaryOperator::Subtract if is_sum_of_nothing(&right) => left,
             BinaryOperator::Add if is_sum_of_nothing(&left) => right,
-            _ => {
-                let (left, right) = (Box::new(left), Box::new(right));
-                Expression::new(ExpressionKind::Binary { operator, left, right }, span)
-            }
+            _ => Expression::operation(operator, left, right, span),
         })
     }
 

@@ -5,7 +5,8 @@ use crate::flatten::balance::path;
 use crate::functions;
 use crate::symbolic::function::UnitRule;
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Operation,
+    UnaryOperator,
 };
 use crate::units::Dimension;
 
@@ -37,8 +38,10 @@ impl Units {
             ExpressionKind::Reference(reference) => self.of_reference(reference),
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => None,
             ExpressionKind::Unary { operand, .. } => self.of_expression(operand),
-            ExpressionKind::Binary { operator, left, right } => {
-                self.of_binary(*operator, left, right)
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = e.chain();
+                let first = self.of_expression(first);
+                operations.iter().fold(first, |left, one| self.of_operation(left, one))
             }
             ExpressionKind::If { branches, otherwise } => {
                 self.same(branches.iter().map(|(_, value)| value).chain([&**otherwise]))
@@ -56,15 +59,15 @@ impl Units {
         all.all(|e| self.of_expression(e) == Some(first)).then_some(first)
     }
 
-    fn of_binary(
+    /// The dimension of an operation on a left operand of a known one.
+    pub(crate) fn of_operation(
         &self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
+        one: Option<Dimension>,
+        operation: &Operation<'_>,
     ) -> Option<Dimension> {
         use BinaryOperator as B;
-        let one = self.of_expression(left);
-        match operator {
+        let right = operation.right;
+        match operation.operator {
             // Whatever the other operand, it should measure the same.
             B::Add | B::Subtract | B::ElementwiseAdd | B::ElementwiseSubtract => {
                 let other = self.of_expression(right);

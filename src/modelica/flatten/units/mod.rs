@@ -112,9 +112,8 @@ impl Walk {
     }
 
     /// As [`Walk::compare`], of two expressions.
-    fn compare_sides(&mut self, left: &Expression, right: &Expression, span: Span, sides: &str) {
-        let both = (self.units.of_expression(left), self.units.of_expression(right));
-        if let (Some(one), Some(other)) = both
+    fn compare_sides(&mut self, both: [Option<Dimension>; 2], span: Span, sides: &str) {
+        if let [Some(one), Some(other)] = both
             && one != other
         {
             self.warn(
@@ -134,17 +133,23 @@ impl Walk {
 impl Visit for Walk {
     fn expression(&mut self, e: &Expression) {
         walk_expression(self, e);
-        if let ExpressionKind::Binary { operator, left, right } = &e.kind
-            && let Some(sides) = expression::compared(*operator)
-        {
-            self.compare_sides(left, right, e.span, sides);
+        if let ExpressionKind::Binary { .. } = &e.kind {
+            let (first, operations) = e.chain();
+            operations.iter().fold(self.units.of_expression(first), |left, one| {
+                if let Some(sides) = expression::compared(one.operator) {
+                    let both = [left, self.units.of_expression(one.right)];
+                    self.compare_sides(both, one.whole.span, sides);
+                }
+                self.units.of_operation(left, one)
+            });
         }
     }
 
     fn equation(&mut self, equation: &Equation) {
         walk_equation(self, equation);
         if let EquationKind::Equal { left, right } = &equation.kind {
-            self.compare_sides(left, right, equation.span, "sides of the equation");
+            let both = [left, right].map(|side| self.units.of_expression(side));
+            self.compare_sides(both, equation.span, "sides of the equation");
         }
     }
 

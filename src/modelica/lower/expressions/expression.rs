@@ -51,9 +51,7 @@ impl<T: Target> Lowering<'_, T> {
                     self.map_unary(super::Unary::Not, operand)
                 }
             },
-            ExpressionKind::Binary { operator, left, right } => {
-                return self.binary(*operator, left, right, e.span);
-            }
+            ExpressionKind::Binary { .. } => return self.binary(e),
             ExpressionKind::If { branches, otherwise } => {
                 return self.if_expression(branches, otherwise, e.span);
             }

@@ -12,8 +12,8 @@ pub(crate) fn message_text<T: Target>(
     let Some(e) = e else { return String::new() };
     let text = match &e.kind {
         ExpressionKind::String(text) => return text.to_string(),
-        ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } => {
-            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
+        ExpressionKind::Binary { operator: BinaryOperator::Add, .. } => {
+            return terms(e).map(|term| message_text(lowering, Some(term))).collect();
         }
         ExpressionKind::Call { function, .. }
             if function.as_ident().is_some_and(|name| name == "String") =>
@@ -27,6 +27,10 @@ pub(crate) fn message_text<T: Target>(
         Ok(Lowered::Text(text)) => text.to_string(),
         _ => UNKNOWN_TEXT.into(),
     }
+}
+
+fn terms(e: &Expression) -> impl Iterator<Item = &Expression> {
+    e.operands_of(|operator| operator == BinaryOperator::Add)
 }
 
 /// The parts of a message: what is known at translation, and how values that are not are written.
@@ -46,9 +50,8 @@ fn collect<T: Target>(
     e: &Expression,
     parts: &mut Vec<TextPart<T::Scalar>>,
 ) {
-    if let ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } = &e.kind {
-        collect(lowering, left, parts);
-        collect(lowering, right, parts);
+    if let ExpressionKind::Binary { operator: BinaryOperator::Add, .. } = &e.kind {
+        terms(e).for_each(|term| collect(lowering, term, parts));
         return;
     }
     let text = message_text(lowering, Some(e));

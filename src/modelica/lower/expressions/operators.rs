@@ -7,7 +7,7 @@ use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
-use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::syntax::ast::{BinaryOperator, Expression};
 use crate::value::check_length;
 use std::sync::Arc;
 
@@ -22,22 +22,12 @@ impl<T: Target> Lowering<'_, T> {
         a
     }
 
-    pub(super) fn binary(
-        &mut self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-        span: Span,
-    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        // A chain that leans to the left, as the terms of a sum do, is no deeper than its operands.
-        let (mut operations, mut first) = (vec![(operator, left, right, span)], left);
-        while let ExpressionKind::Binary { operator, left, right } = &first.kind {
-            operations.push((*operator, &**left, &**right, first.span));
-            first = left;
-        }
+    pub(super) fn binary(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let (first, operations) = e.chain();
         let mut lowered = self.lower(first)?;
-        for (operator, left, right, span) in operations.into_iter().rev() {
-            lowered = self.operation(operator, (lowered, left), right, span)?;
+        for one in operations {
+            let left = (lowered, one.left);
+            lowered = self.operation(one.operator, left, one.right, one.whole.span)?;
         }
         Ok(lowered)
     }

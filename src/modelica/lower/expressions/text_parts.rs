@@ -141,9 +141,13 @@ impl<T: Target> Lowering<'_, T> {
             }
             ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(ValueType::Boolean),
             ExpressionKind::Unary { operand, .. } => self.type_of(operand),
-            ExpressionKind::Binary { operator, left, right } => match operator {
-                BinaryOperator::Add | BinaryOperator::Subtract | BinaryOperator::Multiply => {
-                    both(self, left, right)
+            ExpressionKind::Binary { operator, .. } => match operator {
+                _ if is_of_numbers(*operator) => {
+                    let mut is_whole = true;
+                    for operand in e.operands_of(is_of_numbers) {
+                        is_whole &= self.type_of(operand)? == ValueType::Integer;
+                    }
+                    Some(if is_whole { ValueType::Integer } else { ValueType::Real })
                 }
                 BinaryOperator::Less
                 | BinaryOperator::LessEqual
@@ -193,4 +197,9 @@ impl<T: Target> Lowering<'_, T> {
             }
         }
     }
+}
+
+/// Whether the result is an Integer where both operands are.
+fn is_of_numbers(operator: BinaryOperator) -> bool {
+    matches!(operator, BinaryOperator::Add | BinaryOperator::Subtract | BinaryOperator::Multiply)
 }

@@ -1,5 +1,6 @@
 //! Expressions (MLS §A.2.7, ch. 3).
 
+use super::LeftOperand;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use std::sync::Arc;
@@ -51,8 +52,8 @@ pub enum ExpressionKind {
     Binary {
         /// The operator.
         operator: BinaryOperator,
-        /// Left operand.
-        left: Box<Expression>,
+        /// Left operand; [`Expression::chain`] lists those of a sum or a product.
+        left: LeftOperand,
         /// Right operand.
         right: Box<Expression>,
     },

@@ -2,10 +2,12 @@
 //!
 //! Printing a tree and reading it again gives the same tree, spans aside.
 
+mod chain;
 mod class;
 mod expression;
 mod script;
 
+pub use chain::{LeftOperand, Operation};
 pub use class::*;
 pub use expression::*;
 pub use script::*;

@@ -100,9 +100,7 @@ fn binary(parts: &mut Nodes<'_>, least: u8) -> Lowered<Expression> {
         parts.expect(Rule::binary_operator);
         let right = binary(parts, precedence + 1)?;
         let span = left.span.to(right.span);
-        let kind =
-            ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
-        left = Expression::new(kind, span);
+        left = Expression::operation(operator, left, right, span);
         // Relations and powers do not associate: `a < b < c` and `a ^ b ^ c` are no Modelica.
         ceiling = if matches!(precedence, RELATION | POWER) { precedence - 1 } else { precedence };
     }

@@ -3,7 +3,7 @@
 use super::Printer;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
-    NamedArgument, Subscript, UnaryOperator,
+    NamedArgument, Operation, Subscript, UnaryOperator,
 };
 
 /// How tightly a form binds; the order is that of MLS §3.2.
@@ -96,7 +96,7 @@ impl Printer {
                 self.word(")");
             }
             ExpressionKind::Unary { operator, operand } => self.unary(*operator, operand),
-            ExpressionKind::Binary { operator, left, right } => self.binary(*operator, left, right),
+            ExpressionKind::Binary { .. } => self.binary(expression),
             ExpressionKind::If { branches, otherwise } => self.conditional(branches, otherwise),
             ExpressionKind::Range { start, step, stop } => {
                 self.at_least(Level::Or, start);
@@ -205,19 +205,33 @@ impl Printer {
         }
     }
 
-    fn binary(&mut self, operator: BinaryOperator, left: &Expression, right: &Expression) {
-        let level = operator_level(operator);
-        let associates = !matches!(level, Level::Relation | Level::Power);
-        self.at_least(if associates { level } else { level.tighter() }, left);
-        let is_tight = matches!(
-            operator,
-            BinaryOperator::Multiply | BinaryOperator::Divide | BinaryOperator::Power
-        );
-        let blank = if self.dense && is_tight { "" } else { " " };
-        self.word(blank);
-        self.word(operator.symbol());
-        self.word(blank);
-        self.at_least(level.tighter(), right);
+    /// The operations of a chain one after the other; what is left of one that binds tighter is in
+    /// parentheses, all of which open before the first operand.
+    fn binary(&mut self, expression: &Expression) {
+        let (first, operations) = expression.chain();
+        let is_closed = |one: &Operation<'_>| {
+            let own = operator_level(one.operator);
+            let associates = !matches!(own, Level::Relation | Level::Power);
+            level(one.left) < if associates { own } else { own.tighter() }
+        };
+        for _ in operations.iter().filter(|one| is_closed(one)) {
+            self.word("(");
+        }
+        self.expression(first);
+        for one in operations {
+            if is_closed(&one) {
+                self.word(")");
+            }
+            let is_tight = matches!(
+                one.operator,
+                BinaryOperator::Multiply | BinaryOperator::Divide | BinaryOperator::Power
+            );
+            let blank = if self.dense && is_tight { "" } else { " " };
+            self.word(blank);
+            self.word(one.operator.symbol());
+            self.word(blank);
+            self.at_least(operator_level(one.operator).tighter(), one.right);
+        }
     }
 
     fn conditional(&mut self, branches: &[(Expression, Expression)], otherwise: &Expression) {

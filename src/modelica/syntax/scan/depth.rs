@@ -1,70 +1,46 @@
-//! How deep the tree of an expression will be, from its tokens.
+//! How deep expressions are nested, from their tokens.
 //!
-//! The terms of a sum and the factors of a product are a list in the grammar (MLS §A.2.7,
-//! `arithmetic_expression`), and generated code has long ones: the nesting counts such a list once. The
-//! tree has a level for each of them, since it leans to the left; its levels are limited as well.
+//! The operands of `or` and `and`, the terms of a sum and the factors of a product are lists in the
+//! grammar (MLS §A.2.7), and generated code has long ones: such a list is one level, however long
+//! ([`Expression::chain`](crate::syntax::ast::Expression::chain)).
 
 use super::tokens::{Token, TokenKind};
 
 /// Nesting that is still read: later stages walk trees by recursion.
 const MAX_NESTING: usize = 500;
 
-/// Levels of the tree that are still read: measured in a debug build with stacks of 256 MB, as the
-/// commands have them.
-const MAX_LEVELS: usize = if cfg!(target_family = "wasm") { MAX_NESTING } else { 5_000 };
-
-/// How deep a part is.
-#[derive(Debug, Clone, Copy, Default)]
-struct Height {
-    /// With a list of terms or factors as one.
-    nesting: usize,
-    /// With every operator.
-    levels: usize,
-}
-
-impl Height {
-    fn max(self, other: Height) -> Height {
-        Height { nesting: self.nesting.max(other.nesting), levels: self.levels.max(other.levels) }
-    }
-
-    /// Under a list of so many operators.
-    fn under(self, operators: usize) -> Height {
-        let nesting = self.nesting + usize::from(operators > 0);
-        Height { nesting, levels: self.levels + operators }
-    }
-}
+const OR: u8 = 1;
+const AND: u8 = 2;
+const RELATION: u8 = 4;
+const PRODUCT: u8 = 8;
+const POWER: u8 = 16;
 
 /// The tokens of one bracket, or of one statement outside brackets.
 #[derive(Debug, Clone, Copy, Default)]
 struct Level {
     /// Operators since the last separator that each make the tree one deeper.
     operators: usize,
-    /// `+` and `-` since the last separator.
-    sums: usize,
-    /// `*` and `/` since the last `+`, `-` or separator.
-    products: usize,
-    /// The deepest term before the last `+` or `-`.
-    term: Height,
+    /// A bit for each precedence of operators since the last separator: lists of operands are within
+    /// lists of operators that bind less tightly, and so the tree is at most one deeper for each.
+    lists: u8,
+    /// `+`, `-` and `not` in a row, until now and at most: all but the first are signs of signs.
+    signs: usize,
+    most_signs: usize,
     /// The deepest bracket since then.
-    inner: Height,
+    inner: usize,
     /// The deepest part before the last separator.
-    before: Height,
+    before: usize,
 }
 
 impl Level {
-    fn term(self) -> Height {
-        self.term.max(self.inner.under(self.products))
+    fn nesting(self) -> usize {
+        let lists = self.lists.count_ones() as usize;
+        self.before.max(self.inner + self.operators + lists + self.most_signs)
     }
 
-    fn height(self) -> Height {
-        let Height { nesting, levels } = self.term().under(self.sums);
-        let part = Height { nesting: nesting + self.operators, levels: levels + self.operators };
-        self.before.max(part)
-    }
-
-    fn add(&mut self) {
-        let term = self.term();
-        *self = Level { sums: self.sums + 1, products: 0, term, inner: Height::default(), ..*self };
+    fn sign(&mut self) {
+        self.signs += 1;
+        self.most_signs = self.most_signs.max(self.signs);
     }
 }
 
@@ -87,31 +63,44 @@ impl Depth {
 
     /// Takes a token into account; whether the tree so far is shallow enough.
     pub(super) fn take(&mut self, token: &Token<'_>) -> bool {
+        let is_sign = matches!(token.text, "+" | "-" | ".+" | ".-" | "not");
+        if is_sign {
+            self.innermost().sign();
+        } else {
+            self.innermost().signs = 0;
+        }
         match token.kind {
             TokenKind::Open => self.levels.push(Level::default()),
             TokenKind::Close if self.levels.len() > 1 => {
-                let closed = self.levels.pop().map_or(Height::default(), Level::height);
-                let closed = Height { nesting: closed.nesting + 1, levels: closed.levels + 1 };
+                let closed = 1 + self.levels.pop().map_or(0, Level::nesting);
                 let level = self.innermost();
                 level.inner = level.inner.max(closed);
             }
             TokenKind::Separator => {
                 let level = self.innermost();
-                *level = Level { before: level.height(), ..Level::default() };
+                *level = Level { before: level.nesting(), ..Level::default() };
             }
             TokenKind::Operator => match token.text {
                 "." | ":" | "=" => {}
-                "+" | "-" | ".+" | ".-" => self.innermost().add(),
-                "*" | "/" | ".*" | "./" => self.innermost().products += 1,
+                _ if is_sign => {}
+                "*" | "/" | ".*" | "./" => self.list(PRODUCT),
+                "^" | ".^" => self.list(POWER),
+                "<" | "<=" | ">" | ">=" | "==" | "<>" => self.list(RELATION),
                 _ => self.innermost().operators += 1,
             },
-            TokenKind::Word if matches!(token.text, "and" | "or" | "not" | "if") => {
-                self.innermost().operators += 1;
-            }
+            TokenKind::Word => match token.text {
+                "or" => self.list(OR),
+                "and" => self.list(AND),
+                "if" => self.innermost().operators += 1,
+                _ => {}
+            },
             _ => {}
         }
-        let Height { nesting, levels } = self.innermost().height();
-        nesting <= MAX_NESTING && levels <= MAX_LEVELS
+        self.innermost().nesting() <= MAX_NESTING
+    }
+
+    fn list(&mut self, precedence: u8) {
+        self.innermost().lists |= precedence;
     }
 
     fn innermost(&mut self) -> &mut Level {

@@ -7,7 +7,7 @@ use crate::syntax::ast::{
 
 /// Reads a tree. Comments and annotations are not visited.
 pub trait Visit {
-    /// An expression, before its parts.
+    /// An expression, before its parts; of a chain of operations the whole, and then the operands.
     fn expression(&mut self, expression: &Expression) {
         walk_expression(self, expression);
     }
@@ -48,9 +48,8 @@ pub fn walk_expression<V: Visit + ?Sized>(visitor: &mut V, expression: &Expressi
             named.iter().for_each(|argument| visitor.expression(&argument.value));
         }
         ExpressionKind::Unary { operand, .. } => visitor.expression(operand),
-        ExpressionKind::Binary { left, right, .. } => {
-            visitor.expression(left);
-            visitor.expression(right);
+        ExpressionKind::Binary { .. } => {
+            expression.operands().for_each(|operand| visitor.expression(operand));
         }
         ExpressionKind::If { branches, otherwise } => {
             for (condition, value) in branches {

@@ -39,6 +39,18 @@ pub trait Rewrite {
 
 /// Rewrites the parts of an expression.
 pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mut Expression) {
+    let (first, operations) = expression.chain_mut();
+    if operations.is_empty() {
+        return rewrite_operand(rewriter, first);
+    }
+    rewriter.expression(first);
+    for one in operations {
+        rewriter.expression(one.right);
+        rewriter.span(one.span);
+    }
+}
+
+fn rewrite_operand<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mut Expression) {
     rewriter.span(&mut expression.span);
     match &mut expression.kind {
         ExpressionKind::Real(_)
@@ -47,7 +59,8 @@ pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mu
         | ExpressionKind::String(_)
         | ExpressionKind::TypeName(_)
         | ExpressionKind::Code(_)
-        | ExpressionKind::End => {}
+        | ExpressionKind::End
+        | ExpressionKind::Binary { .. } => {}
         ExpressionKind::Reference(reference) => rewriter.reference(reference),
         ExpressionKind::Call { function, arguments } => {
             rewriter.reference(function);
@@ -55,10 +68,6 @@ pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mu
         }
         ExpressionKind::PartialApplication { named, .. } => named_arguments(rewriter, named),
         ExpressionKind::Unary { operand, .. } => rewriter.expression(operand),
-        ExpressionKind::Binary { left, right, .. } => {
-            rewriter.expression(left);
-            rewriter.expression(right);
-        }
         ExpressionKind::If { branches, otherwise } => {
             for (condition, value) in branches {
                 rewriter.expression(condition);

@@ -50,14 +50,39 @@ impl Numbers<'_> {
         variable.is_some_and(|variable| variable.base == BaseType::Real)
     }
 
+    /// The operands of each operation on numbers are Reals where the result or one of them is.
+    fn convert_chain(self, e: &mut Expression) {
+        let (first, operations) = e.chain();
+        let mut is_real = self.is_real(first);
+        let mut convert = Vec::with_capacity(operations.len());
+        for one in operations {
+            let of_operands = is_real || self.is_real(one.right);
+            let is_divided = matches!(one.operator, BinaryOperator::Divide | BinaryOperator::Power);
+            let is_number = !matches!(one.operator, BinaryOperator::And | BinaryOperator::Or);
+            is_real = is_divided || (of_operands && is_of_operands(one.operator));
+            convert.push(is_number && (is_real || of_operands));
+        }
+        let (first, operations) = e.chain_mut();
+        let mut is_inner = false;
+        for (one, convert) in operations.into_iter().zip(convert).rev() {
+            is_inner = convert || (is_inner && is_of_operands(one.operator));
+            if is_inner {
+                make_real(one.right);
+            }
+        }
+        if is_inner {
+            make_real(first);
+        }
+    }
+
     fn is_real(&self, e: &Expression) -> bool {
         match &e.kind {
             ExpressionKind::Real(_) => true,
             ExpressionKind::Reference(reference) => self.is_real_reference(reference),
-            ExpressionKind::Binary { operator, left, right } => match operator {
+            ExpressionKind::Binary { operator, .. } => match operator {
                 BinaryOperator::Divide | BinaryOperator::Power => true,
-                BinaryOperator::Add | BinaryOperator::Subtract | BinaryOperator::Multiply => {
-                    self.is_real(left) || self.is_real(right)
+                _ if is_of_operands(*operator) => {
+                    e.operands_of(is_of_operands).any(|operand| self.is_real(operand))
                 }
                 _ => false,
             },
@@ -89,13 +114,7 @@ impl Rewrite for Numbers<'_> {
         rewrite_expression(self, e);
         let is_real = self.is_real(e);
         match &mut e.kind {
-            ExpressionKind::Binary { operator, left, right } => {
-                let is_number = !matches!(operator, BinaryOperator::And | BinaryOperator::Or);
-                if is_number && (is_real || self.is_real(left) || self.is_real(right)) {
-                    make_real(left);
-                    make_real(right);
-                }
-            }
+            ExpressionKind::Binary { .. } => self.convert_chain(e),
             ExpressionKind::If { branches, otherwise } if is_real => {
                 branches.iter_mut().for_each(|(_, value)| make_real(value));
                 make_real(otherwise);
@@ -127,6 +146,11 @@ impl Rewrite for Numbers<'_> {
     }
 }
 
+/// Whether the result is a Real where an operand is.
+fn is_of_operands(operator: BinaryOperator) -> bool {
+    matches!(operator, BinaryOperator::Add | BinaryOperator::Subtract | BinaryOperator::Multiply)
+}
+
 /// An Integer literal, perhaps with a sign, as a Real.
 fn make_real(e: &mut Expression) {
     match &mut e.kind {
@@ -137,12 +161,15 @@ fn make_real(e: &mut Expression) {
             branches.iter_mut().for_each(|(_, value)| make_real(value));
             make_real(otherwise);
         }
-        ExpressionKind::Binary { operator, left, right } => {
-            use BinaryOperator as Op;
-            if matches!(operator, Op::Add | Op::Subtract | Op::Multiply) {
-                make_real(left);
-                make_real(right);
+        ExpressionKind::Binary { .. } => {
+            let (first, operations) = e.chain_mut();
+            for one in operations.into_iter().rev() {
+                if !is_of_operands(one.operator) {
+                    return;
+                }
+                make_real(one.right);
             }
+            make_real(first);
         }
         _ => {}
     }

@@ -41,7 +41,7 @@ impl Parts {
 /// How many operators and operands an expression has, at least.
 fn nodes(e: &Expression) -> usize {
     let inner = match &e.kind {
-        ExpressionKind::Binary { left, right, .. } => nodes(left) + nodes(right),
+        ExpressionKind::Binary { .. } => e.operands().map(|operand| 1 + nodes(operand)).sum(),
         ExpressionKind::Unary { operand, .. } => nodes(operand),
         ExpressionKind::If { branches, otherwise } => {
             let branch = |(condition, value): &(_, _)| nodes(condition) + nodes(value);
@@ -83,8 +83,7 @@ pub(super) fn operation(operator: BinaryOperator, a: Expression, b: Expression) 
         }
     }
     let span = a.span;
-    let kind = ExpressionKind::Binary { operator, left: Box::new(a), right: Box::new(b) };
-    Expression::new(kind, span)
+    Expression::operation(operator, a, b, span)
 }
 
 pub(super) fn binary(operator: BinaryOperator, a: Parts, b: Parts) -> Option<Parts> {
@@ -115,6 +114,7 @@ pub(super) fn binary(operator: BinaryOperator, a: Parts, b: Parts) -> Option<Par
 /// for every element, rows for every column, and columns for every row.
 fn is_small(operator: BinaryOperator, a: &Parts, b: &Parts) -> bool {
     let (of_a, of_b) = match (a.dims.as_slice(), b.dims.as_slice()) {
+        ([], []) => return true,
         ([], _) => (b.scalars.len(), 1),
         (_, []) => (1, a.scalars.len()),
         _ if operator == BinaryOperator::Multiply => {

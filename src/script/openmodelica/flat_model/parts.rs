@@ -56,8 +56,11 @@ impl Apart<'_> {
                 };
                 Some(self.parts(operand)?.map(rebuilt))
             }
-            ExpressionKind::Binary { operator, left, right } => {
-                binary(*operator, self.parts(left)?, self.parts(right)?)
+            ExpressionKind::Binary { .. } => {
+                let (first, operations) = e.chain();
+                operations.into_iter().try_fold(self.parts(first)?, |left, one| {
+                    binary(one.operator, left, self.parts(one.right)?)
+                })
             }
             ExpressionKind::If { branches, otherwise } => self.chosen(branches, otherwise, e),
             ExpressionKind::Call { function, arguments } => self.call(function, arguments, e),

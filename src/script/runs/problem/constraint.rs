@@ -12,12 +12,22 @@ use crate::syntax::ast::{
 use crate::syntax::{parse_expression, print};
 use crate::{bail, fault};
 
+/// The longest constraint: its terms are evaluated by recursion.
+const MAX_LENGTH: usize = 10_000;
+
 /// Reads an inequality of these parameters.
 ///
 /// # Errors
 ///
 /// Anything else.
 pub(super) fn constraint(text: &str, parameters: &[String]) -> Result<Constraint, Fault> {
+    if text.len() > MAX_LENGTH {
+        bail!(
+            BAD_OPTION,
+            "a constraint has {} characters, {MAX_LENGTH} are the most", text.len();
+            help: "make it several constraints"
+        );
+    }
     let read = parse_expression(SourceId::NONE, text);
     let read = read.map_err(|error| {
         fault!(BAD_OPTION, "the constraint `{text}` cannot be read: {}", error.message)

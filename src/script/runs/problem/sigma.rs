@@ -91,16 +91,19 @@ fn value(tree: &Expression, name: &str, y: f64) -> Option<f64> {
         }
         ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => Some(-of(operand)?),
         ExpressionKind::Unary { operator: UnaryOperator::Plus, operand } => of(operand),
-        ExpressionKind::Binary { operator, left, right } => {
-            let (a, b) = (of(left)?, of(right)?);
-            match operator {
-                BinaryOperator::Add => Some(a + b),
-                BinaryOperator::Subtract => Some(a - b),
-                BinaryOperator::Multiply => Some(a * b),
-                BinaryOperator::Divide => Some(a / b),
-                BinaryOperator::Power => Some(elementary::powf(a, b)),
-                _ => None,
-            }
+        ExpressionKind::Binary { .. } => {
+            let (first, operations) = tree.chain();
+            operations.into_iter().try_fold(of(first)?, |a, one| {
+                let b = of(one.right)?;
+                match one.operator {
+                    BinaryOperator::Add => Some(a + b),
+                    BinaryOperator::Subtract => Some(a - b),
+                    BinaryOperator::Multiply => Some(a * b),
+                    BinaryOperator::Divide => Some(a / b),
+                    BinaryOperator::Power => Some(elementary::powf(a, b)),
+                    _ => None,
+                }
+            })
         }
         ExpressionKind::Tuple(parts) => match &parts[..] {
             [Some(inner)] => of(inner),
