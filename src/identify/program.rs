@@ -6,6 +6,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::runtime::System;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
 use crate::source::noting_sources;
+use rustc_hash::FxHashSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Output points where the `experiment` annotation gives no interval.
@@ -85,10 +86,11 @@ impl Model for CompiledModel {
             tunable: true,
             top_level: parameter.top_level,
         });
+        // A table in a model has a parameter for each of its entries.
+        let known: FxHashSet<&str> = tunable.iter().map(|parameter| &*parameter.name).collect();
         let variables = self.program.variables().iter();
         let fixed = variables
-            .filter(|variable| variable.is_known())
-            .filter(|variable| !tunable.iter().any(|parameter| parameter.name == variable.name))
+            .filter(|variable| variable.is_known() && !known.contains(&*variable.name))
             .map(|variable| Parameter {
                 name: variable.name.to_string(),
                 unit: variable.unit.to_string(),

@@ -1,6 +1,7 @@
 //! A function of one variable through the points of a table.
 
 use super::spline::Spline;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How points are connected; the order of `Modelica.Blocks.Types.Smoothness`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,10 +60,10 @@ pub enum Place {
 
 /// Places `u` among abscissae that do not decrease; `None` where extrapolation is refused. An
 /// abscissa belongs to the interval that it begins; the last one to the last interval.
-pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<Place> {
+pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64, near: &Near) -> Option<Place> {
     let (Some(first), Some(last)) = (x.first().copied(), x.last().copied()) else { return None };
     let inside = |u: f64| {
-        let interval = x.partition_point(|x| *x <= u).saturating_sub(1);
+        let interval = near.last_up_to(x, u);
         Place::Inside(interval.min(x.len().saturating_sub(2)), u)
     };
     if (first..=last).contains(&u) {
@@ -77,6 +78,30 @@ pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<Place> {
         Extrapolation::Refused => None,
         _ if u < first => Some(Place::Before(u)),
         _ => Some(Place::Behind(u)),
+    }
+}
+
+/// The interval that was asked for last: in simulations the next one is mostly the same or the one
+/// after it, and no search is needed.
+#[derive(Debug, Default)]
+pub(super) struct Near(AtomicUsize);
+
+impl Near {
+    /// The position of the last of ascending abscissas that is not beyond `u`, 0 if all are.
+    fn last_up_to(&self, x: &[f64], u: f64) -> usize {
+        let is_it = |at: usize| {
+            x.get(at).is_some_and(|x| *x <= u) && x.get(at + 1).is_none_or(|next| u < *next)
+        };
+        let known = self.0.load(Ordering::Relaxed);
+        if is_it(known) {
+            return known;
+        }
+        let found = match is_it(known + 1) {
+            true => known + 1,
+            false => x.partition_point(|x| *x <= u).saturating_sub(1),
+        };
+        self.0.store(found, Ordering::Relaxed);
+        found
     }
 }
 
@@ -146,6 +171,29 @@ impl Curve {
                     d0 + s * (2.0 * c2 + 3.0 * s * c3),
                     2.0 * c2 + 6.0 * s * c3,
                 ]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever was asked for before, the interval is the one that a search finds.
+        #[test]
+        fn the_interval_does_not_depend_on_the_one_before(
+            mut x in proptest::collection::vec(-5i8..5, 1..12),
+            asked in proptest::collection::vec(-12i8..12, 1..40),
+        ) {
+            x.sort_unstable();
+            let x: Vec<f64> = x.into_iter().map(f64::from).collect();
+            let near = Near::default();
+            for u in asked.into_iter().map(|u| f64::from(u) / 2.0) {
+                let found = x.partition_point(|x| *x <= u).saturating_sub(1);
+                prop_assert_eq!(near.last_up_to(&x, u), found);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! `CombiTable1D`: several functions of one variable.
 
-use super::curve::{Curve, Extrapolation, Place, Smoothness, place};
+use super::curve::{Curve, Extrapolation, Near, Place, Smoothness, place};
 use super::source::{Matrix, Source};
 use crate::diag::Fault;
 use crate::elementary;
@@ -13,6 +13,7 @@ pub(crate) struct Table1D {
     pub(super) curves: Vec<Curve>,
     pub(super) smoothness: Smoothness,
     pub(super) extrapolation: Extrapolation,
+    near: Near,
 }
 
 impl Table1D {
@@ -48,7 +49,7 @@ impl Table1D {
             }
             curves.push(Curve::new(&x, matrix.column(*column as usize - 1), smoothness));
         }
-        Ok(Table1D { x, curves, smoothness, extrapolation })
+        Ok(Table1D { x, curves, smoothness, extrapolation, near: Near::default() })
     }
 
     /// The curve of a column, from 1.
@@ -63,7 +64,7 @@ impl Table1D {
         if u.is_nan() {
             return Err(call.fault("the abscissa is not a number"));
         }
-        place(&self.x, self.extrapolation, u).ok_or_else(|| {
+        place(&self.x, self.extrapolation, u, &self.near).ok_or_else(|| {
             let (first, last) = (self.x[0], self.x[self.x.len() - 1]);
             call.fault(format!("{u} is outside the table range {first} to {last}"))
         })

@@ -163,7 +163,8 @@ impl TimeTable {
         }
         // Instants that differ by rounding are one.
         let slack = 1e-12 * u.abs().max(time.abs()).max(period);
-        let later = (0..x.len()).filter(|at| x[*at] > u + slack).find(|at| self.has_event(*at));
+        let after = x.partition_point(|abscissa| *abscissa <= u + slack);
+        let later = (after..x.len()).find(|at| self.has_event(*at));
         match later {
             Some(at) => x[at] + offset,
             None if periodic => {

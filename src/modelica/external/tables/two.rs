@@ -3,7 +3,7 @@
 //! The first column holds the abscissae of the first variable, the first row those of the second.
 //! Piecewise constant, bilinear, or smooth by Akima's bivariate interpolation.
 
-use super::curve::{Extrapolation, Place, Smoothness, place};
+use super::curve::{Extrapolation, Near, Place, Smoothness, place};
 use super::one::ordered;
 use super::source::Source;
 use super::spline::Spline;
@@ -91,7 +91,7 @@ impl Table2D {
         if u.is_nan() {
             return Err(call.fault("an abscissa is not a number"));
         }
-        let place = place(x, self.extrapolation, u).ok_or_else(|| {
+        let place = place(x, self.extrapolation, u, &Near::default()).ok_or_else(|| {
             call.fault(format!("{u} is outside the table range {} to {}", x[0], x[n - 1]))
         })?;
         let (interval, end) = match place {
