@@ -3,9 +3,13 @@
 
 use gapilib::diag::render::render;
 use gapilib::flatten::{Library, check};
-use gapilib::source::SourceMap;
-use gapilib::syntax::ast::StoredDefinition;
+use gapilib::source::{SourceMap, Span};
+use gapilib::syntax::ast::{
+    ClassDefinition, ClassSpecifier, ComponentReference, Element, Modification, Section,
+    StoredDefinition,
+};
 use gapilib::syntax::parse_stored_definition;
+use gapilib::syntax::visit::{self, Visit};
 use std::path::{Path, PathBuf};
 
 fn parsed(sources: &SourceMap, name: &str, text: &str) -> StoredDefinition {
@@ -67,4 +71,88 @@ fn models_that_are_simulated_have_no_unknown_names() {
             all.filter(|one| one.is_error()).map(|error| render(&error, &sources, false)).collect();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
+}
+
+/// The places of the first names of all references in a class and those in it.
+#[derive(Default)]
+struct Places(Vec<Span>);
+
+impl Visit for Places {
+    fn reference(&mut self, reference: &ComponentReference) {
+        self.0.push(reference.span);
+        visit::walk_reference(self, reference);
+    }
+}
+
+impl Places {
+    fn class(&mut self, class: &ClassDefinition) {
+        let ClassSpecifier::Long(long) = &class.specifier else { return };
+        for section in &long.sections {
+            match section {
+                Section::Elements { elements, .. } => {
+                    elements.iter().for_each(|element| self.element(element));
+                }
+                Section::Equations { equations, .. } => {
+                    equations.iter().for_each(|one| self.equation(one));
+                }
+                Section::Algorithm { statements, .. } => {
+                    statements.iter().for_each(|one| self.statement(one));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn element(&mut self, element: &Element) {
+        match element {
+            Element::Class(nested) => self.class(&nested.class),
+            Element::Extends(extends) => {
+                let (arguments, span) = (extends.modification.clone(), extends.span);
+                let modification = Modification { arguments, binding: None, span };
+                visit::walk_modification(self, &modification);
+            }
+            Element::Component(clause) => {
+                self.0.push(clause.type_specifier.span);
+                for component in &clause.components {
+                    let modification = component.modification.iter();
+                    modification.for_each(|one| visit::walk_modification(self, one));
+                    component.condition.iter().for_each(|one| self.expression(one));
+                }
+            }
+            Element::Import(_) => {}
+        }
+    }
+}
+
+/// Every name of the models, one after the other, replaced by one that nothing declares.
+#[test]
+fn every_wrong_name_is_found() {
+    let unknown = "thisIsNotDeclared";
+    let (mut tried, mut missed) = (0, Vec::new());
+    for path in right_models() {
+        let text = std::fs::read_to_string(&path).expect("a readable file");
+        let sources = SourceMap::default();
+        let mut places = Places::default();
+        let file = parsed(&sources, "right.mo", &text);
+        file.classes.iter().for_each(|class| places.class(class));
+        for place in places.0 {
+            let (start, end) = (place.start as usize, place.end as usize);
+            let first = text[start..end].split(['.', '[', '(', ' ']).next().unwrap_or_default();
+            if first.is_empty() {
+                continue;
+            }
+            tried += 1;
+            let wrong = format!("{}{unknown}{}", &text[..start], &text[start + first.len()..]);
+            let sources = SourceMap::default();
+            let Ok(file) = parse_stored_definition(sources.add("wrong.mo", &*wrong), &wrong) else {
+                continue;
+            };
+            let found = errors(&library(&file), &sources);
+            if !found.iter().any(|error| error.contains(unknown)) {
+                missed.push(format!("{}: `{first}` at {start}", path.display()));
+            }
+        }
+    }
+    assert!(tried > 600, "{tried} names");
+    assert!(missed.is_empty(), "{tried} names, not found:\n{}", missed.join("\n"));
 }

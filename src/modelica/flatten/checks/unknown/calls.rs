@@ -146,7 +146,10 @@ impl<'a> Inputs<'a> {
         }
         let mut inputs: Vec<Component<'a>> = Vec::new();
         let mut is_modified = false;
-        for class in function.lineage() {
+        let mut lineage: Vec<Scope<'a>> = function.lineage().collect();
+        // Inherited inputs come first.
+        lineage.rotate_left(1);
+        for class in lineage {
             is_modified |= match &class.definition().specifier {
                 ClassSpecifier::Short(short) => !short.modification.is_empty(),
                 ClassSpecifier::Derivative(_) => return None,

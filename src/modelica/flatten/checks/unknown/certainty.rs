@@ -21,14 +21,14 @@ impl<'a> Scope<'a> {
 
     /// Whether names in its text may mean elements that no declaration shows.
     pub fn has_open_names(self) -> bool {
-        let around = std::iter::successors(Some(self), |scope| {
+        let mut around = std::iter::successors(Some(self), |scope| {
             if scope.definition().encapsulated { None } else { scope.parent() }
         });
         let has_open = |class: Scope<'a>| {
             let bases = class.library.declared_bases(class.class);
             class.has_open_base() || bases.iter().any(|base| class.of(*base).is_open())
         };
-        around.into_iter().any(has_open)
+        around.any(has_open)
     }
 
     /// Whether it extends, or is short for, a class that is unknown or found in a replaceable one.

@@ -84,7 +84,6 @@ impl<'a> Modified<'a> {
             Modified::Class { class, is_certain } => {
                 Modified::Class { class, is_certain: is_certain && !is_replaceable }
             }
-            Modified::Variable(_) if is_replaceable => Modified::Unknown,
             other => other,
         }
     }
