@@ -48,7 +48,7 @@ pub(crate) trait Names {
     ///
     /// # Errors
     /// What the view finds wrong.
-    fn from_package(&mut self, package: &Name, name: Ident) -> Lookup<Self> {
+    fn imported_from(&mut self, package: &Name, name: Ident) -> Lookup<Self> {
         self.global(&package.child(name))
     }
 
@@ -82,7 +82,7 @@ pub(crate) trait Names {
             }
         }
         for package in packages {
-            if let Some(found) = self.from_package(&package, name)? {
+            if let Some(found) = self.imported_from(&package, name)? {
                 return Ok(Some(found));
             }
         }

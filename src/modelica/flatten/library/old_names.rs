@@ -71,7 +71,11 @@ impl Names for OldClasses<'_> {
         Ok(self.names.found(None, name, true, self.depth + 1))
     }
 
-    fn from_package(&mut self, package: &Name, name: Ident) -> Result<Option<Meaning>, Infallible> {
+    fn imported_from(
+        &mut self,
+        package: &Name,
+        name: Ident,
+    ) -> Result<Option<Meaning>, Infallible> {
         let full = package.child(name);
         if self.names.is_known(&full) { self.global(&full) } else { Ok(None) }
     }
