@@ -188,6 +188,9 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
     let limit = significant(MINIMUM, 1);
     let measure = match offset.relative.filter(|relative| relative.is_finite()) {
         // Noise-free data are fitted to the last digit, where the offset is one of rounding.
+        None if kind == EndingKind::Minimum && offset.relative.is_some() => {
+            "the residuals are at rounding level".to_owned()
+        }
         Some(relative) if kind == EndingKind::Minimum && relative > OF_ROUNDING => {
             "the residuals are at rounding level".to_owned()
         }
@@ -278,7 +281,7 @@ pub fn descents(run: &Run) -> Vec<SolvedDescent> {
 pub fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
     let is_near = |descent: &&SolvedDescent| {
         descent.group > 0
-            && descent.ending == DescentEnd::Minimum
+            && descent.ending.is_at_minimum()
             && descent.objective.is_some_and(|sum| sum <= limit)
     };
     let mut others: Vec<(usize, OtherMinimum)> = Vec::new();

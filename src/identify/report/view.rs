@@ -1,7 +1,6 @@
 //! What the page shows: the solution, and what is derived from it for drawing.
 
 use crate::elementary;
-use crate::ga::optimizer::DescentEnd;
 use crate::problem::{
     Band, BandPoint, EndingKind, Finding, Severity, Solution, SolvedDescent, SolvedParameter,
     SolvedSeries,
@@ -141,8 +140,8 @@ fn ending(solution: &Solution) -> Ending<'_> {
 fn descent(solved: &SolvedDescent) -> Option<Descent> {
     Some(Descent {
         objective: solved.objective?,
-        minimum: solved.ending == DescentEnd::Minimum,
-        is_best: solved.group == 0 && solved.ending == DescentEnd::Minimum,
+        minimum: solved.ending.is_at_minimum(),
+        is_best: solved.group == 0 && solved.ending.is_at_minimum(),
     })
 }
 

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 pub enum DescentEnd {
     /// At a minimum: the test of Bates and Watts holds.
     Minimum,
+    /// On the way to a minimum that another descent has reached: its residuals are those that the
+    /// linear model about this minimum predicts. The report says where this minimum is.
+    Joined,
     /// Its steps were used up, or the search ended before it did.
     StepLimit,
     /// No step reduces the sum of squares beyond the errors of the simulation.
@@ -16,6 +19,13 @@ pub enum DescentEnd {
     Flat,
     /// Its start could not be simulated.
     Failed,
+}
+
+impl DescentEnd {
+    /// Whether the descent leads to a minimum.
+    pub fn is_at_minimum(self) -> bool {
+        matches!(self, DescentEnd::Minimum | DescentEnd::Joined)
+    }
 }
 
 /// One descent.

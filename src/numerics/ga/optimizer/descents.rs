@@ -2,7 +2,8 @@
 //! minimum, and whether further starts are worth their cost.
 //!
 //! Reference: [Boender & Rinnooy Kan 1987](gapilib_base::bibliography#boender-rinnooy-kan-1987): where n
-//! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
+//! descents have ended in w different minima, the part of the search space whose descents end in minima
+//! not yet seen is expected to be w (w + 1) / (n (n − 1)).
 
 use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
 use super::{Answers, DescentEnd, DescentReport, Wants};
@@ -21,22 +22,32 @@ const AGREEING_IF_BAD: usize = 15;
 const UNTESTED: usize = 8;
 /// A minimum that leaves more than this part of the squares of the measured values fits badly.
 const BAD: f64 = 0.1;
-/// Minima not found yet, expected, above which a search goes on.
-const MISSING: f64 = 1.0;
+/// Descents of which the best minimum must be the end at least, and the expected part of the search
+/// space that leads to minima not yet seen, above which a search goes on: one minimum needs 5 descents,
+/// two need 5, three 7, four 9, ten 20.
+pub const FEWEST: usize = 5;
+const UNSEEN: f64 = 0.3;
 /// Where the best of so many descents has ended at no minimum, and the last ones have not improved on
 /// it by this part, further ones will not come to one either: derivatives vanish or jump there, or a
 /// constraint is in the way.
 const STUCK: usize = 30;
 const LAST: usize = 15;
 const IMPROVED: f64 = 1e-3;
+/// The genetic search goes on where one in so many descents or fewer have reached the best minimum.
+const SELDOM: usize = 5;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
 const STEPS: usize = 40;
 /// Steps to make the best minimum finer.
 const FINE_STEPS: usize = 100;
+/// Individuals nearer than this in every gene are the same start.
+const DISTINCT: f64 = 0.05;
 
-/// All descents of a search; those of a round are asked together, trials first, then Jacobians.
+/// All descents of a search; those of a round are asked together, trials first, then Jacobians. A
+/// descent ends as soon as it is on the way to a minimum that another one has reached.
 pub struct Pool {
     descents: Vec<Descent>,
+    /// The descent that had reached the minimum to which each leads.
+    joined: Vec<Option<usize>>,
     /// Whether each began at a point that owes nothing to other descents.
     independent: Vec<bool>,
     active: Vec<usize>,
@@ -52,6 +63,7 @@ impl Pool {
     pub fn new(accuracy: Accuracy) -> Pool {
         Pool {
             descents: Vec::new(),
+            joined: Vec::new(),
             independent: Vec::new(),
             active: Vec::new(),
             shares: Vec::new(),
@@ -76,6 +88,7 @@ impl Pool {
         for (number, start) in starts.into_iter().enumerate() {
             self.active.push(self.descents.len());
             self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            self.joined.push(None);
             self.independent.push(number < independent);
         }
         self.shares = vec![0; self.active.len()];
@@ -127,6 +140,22 @@ impl Pool {
                 first += share;
             }
         }
+        self.join();
+    }
+
+    /// Ends the descents that lead to known minima.
+    fn join(&mut self) {
+        for k in self.active.clone() {
+            if !self.descents[k].has_moved() {
+                continue;
+            }
+            let leads = |other: &Descent| self.descents[k].leads_to(other);
+            let known = self.descents.iter().position(leads);
+            if known.is_some() {
+                self.descents[k].join();
+                self.joined[k] = known;
+            }
+        }
     }
 
     /// Forgets everything, as the ranges have changed.
@@ -156,9 +185,36 @@ impl Pool {
         self.best().map_or(f64::INFINITY, |best| self.descents[best].sum())
     }
 
-    /// Where descents have started and ended.
-    pub fn visited(&self) -> impl Iterator<Item = &[f64]> {
-        self.descents.iter().flat_map(Descent::places)
+    /// The number of descents.
+    pub fn count(&self) -> usize {
+        self.descents.len()
+    }
+
+    /// Whether a place is far from where descents have started and where they stand.
+    pub fn is_new(&self, genome: &[f64]) -> bool {
+        self.descents.iter().flat_map(Descent::places).all(|known| is_far(known, genome))
+    }
+
+    /// Moves up to `count` of the candidates, best first, to the starts: those that are new, and those
+    /// that are better than all descents. Candidates that are neither are left out.
+    pub fn choose(
+        &self,
+        candidates: &mut Vec<(Vec<f64>, f64)>,
+        count: usize,
+        starts: &mut Vec<Vec<f64>>,
+    ) {
+        let full = starts.len() + count;
+        let smallest = self.smallest();
+        candidates.retain(|(genome, fitness)| {
+            if starts.len() >= full {
+                return true;
+            }
+            let is_fresh = self.is_new(genome) && starts.iter().all(|known| is_far(known, genome));
+            if is_fresh || *fitness < smallest {
+                starts.push(genome.clone());
+            }
+            false
+        });
     }
 
     /// The number of the end of each descent, in the order of the sums of squares.
@@ -168,10 +224,18 @@ impl Pool {
         let mut groups = vec![0; order.len()];
         let mut first: Vec<usize> = Vec::new();
         for k in order {
+            if self.joined[k].is_some() {
+                continue;
+            }
             let known = first.iter().position(|&one| self.descents[one].agrees(&self.descents[k]));
             groups[k] = known.unwrap_or(first.len());
             if known.is_none() {
                 first.push(k);
+            }
+        }
+        for (k, joined) in self.joined.iter().enumerate() {
+            if let Some(other) = *joined {
+                groups[k] = groups[other];
             }
         }
         groups
@@ -209,8 +273,6 @@ impl Pool {
         let mut different: Vec<usize> = ended.map(|report| report.group).collect();
         different.sort_unstable();
         different.dedup();
-        let (n, w) = (n as f64, different.len() as f64);
-        let expected = w * (n - 1.0) / (n - w - 2.0);
         let agreeing = self.agreeing();
         let agree = match reached {
             0 => {
@@ -219,7 +281,17 @@ impl Pool {
             }
             count => count >= agreeing,
         };
-        agree && n > w + 2.0 && expected <= w + MISSING
+        let (of, w) = (n as f64, different.len() as f64);
+        agree && n >= FEWEST && w * (w + 1.0) <= UNSEEN * of * (of - 1.0)
+    }
+
+    /// Whether descents alone do not get on: most of them have not ended at minima, the best minimum was
+    /// reached by one in five of them or fewer, or it fits badly.
+    pub fn is_doubtful(&self) -> bool {
+        let reports = self.reports();
+        let at_minima = reports.iter().filter(|report| report.ending.is_at_minimum()).count();
+        let fits_badly = self.smallest() > BAD * elementary::powi(self.accuracy.size, 2);
+        fits_badly || 2 * at_minima < reports.len() || SELDOM * reached(&reports) <= reports.len()
     }
 
     /// How many descents must agree on the best minimum.
@@ -236,16 +308,22 @@ impl Pool {
 
     pub fn reports(&self) -> Vec<DescentReport> {
         let groups = self.groups();
-        let report =
-            |(descent, group): (&Descent, usize)| DescentReport { group, ..descent.report() };
-        self.descents.iter().zip(groups).map(report).collect()
+        let report = |(k, group): (usize, usize)| {
+            let own = self.descents[k].report();
+            let Some(other) = self.joined[k] else { return DescentReport { group, ..own } };
+            let DescentReport { end, objective, offset, .. } = self.descents[other].report();
+            DescentReport { end, objective, offset, group, ..own }
+        };
+        groups.into_iter().enumerate().map(report).collect()
     }
+}
+
+/// Whether two places differ by more than the same start does.
+pub fn is_far(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).any(|(a, b)| (a - b).abs() > DISTINCT)
 }
 
 /// Descents that ended at the best minimum; 0 where the best is none.
 pub fn reached(reports: &[DescentReport]) -> usize {
-    reports
-        .iter()
-        .filter(|report| report.group == 0 && report.ending == DescentEnd::Minimum)
-        .count()
+    reports.iter().filter(|report| report.group == 0 && report.ending.is_at_minimum()).count()
 }

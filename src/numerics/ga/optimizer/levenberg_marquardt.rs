@@ -9,7 +9,7 @@
 //! [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §10.3.
 
 use super::linear_model::{LinearModel, Offset, Step};
-use super::{Answers, DescentEnd, DescentReport, Method, Optimizer, Setup, Wants};
+use super::{Answers, DescentEnd, DescentReport, ERRORS, Method, Optimizer, Setup, Wants};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Genomes;
@@ -180,6 +180,37 @@ impl Descent {
         self.end == Some(DescentEnd::Minimum) && self.goal > FINE
     }
 
+    /// Whether it has just come to a place whose derivatives are not yet known.
+    pub fn has_moved(&self) -> bool {
+        self.end.is_none() && self.asked == Asked::Jacobian
+    }
+
+    /// Whether it is on the way to the minimum where `other` has ended: the linear model about this
+    /// minimum, which determines every gene, predicts its residuals. This model is convex, and so
+    /// there is no other minimum between them.
+    pub fn leads_to(&self, other: &Descent) -> bool {
+        let n = self.x.len();
+        let Some(offset) = other.offset else { return false };
+        let is_known = other.end == Some(DescentEnd::Minimum) && !offset.blind;
+        if !is_known || offset.rank + offset.held < n || self.sum < other.sum {
+            return false;
+        }
+        let (mut moved, mut error) = (0.0, 0.0);
+        let rows = other.jacobian.chunks_exact(n).zip(&other.residuals).zip(&self.residuals);
+        for ((row, at_minimum), here) in rows {
+            let places = self.x.iter().zip(&other.x);
+            let by: f64 = row.iter().zip(places).map(|(d, (a, b))| d * (a - b)).sum();
+            moved += by * by;
+            error += elementary::powi(here - at_minimum - by, 2);
+        }
+        error <= LINEAR * LINEAR * moved
+    }
+
+    /// Ends it on the way to a known minimum.
+    pub fn join(&mut self) {
+        self.end = Some(DescentEnd::Joined);
+    }
+
     /// Whether a bound holds a gene where it stands.
     pub fn is_held(&self) -> bool {
         self.offset.is_some_and(|offset| offset.held > 0)
@@ -208,7 +239,10 @@ impl Descent {
     /// not determine the place.
     pub fn agrees(&self, other: &Descent) -> bool {
         let (Some(model), Some(offset)) = (&self.model, self.offset) else { return false };
-        let floor = self.accuracy.floor().max(self.accuracy.noise * self.accuracy.size);
+        // Residuals of the size of the errors of the simulation are those of an exact fit, wherever in a
+        // valley: noise-free data of a model with a structurally non-identifiable product.
+        let errors = ERRORS * self.accuracy.noise * self.accuracy.size;
+        let floor = self.accuracy.floor().max(errors);
         let freedom = self.residuals.len().saturating_sub(offset.rank).max(1);
         let error = (self.sum / freedom as f64).sqrt();
         let near = AGREED * error + floor;
@@ -351,6 +385,9 @@ impl Descent {
     }
 }
 
+/// A minimum is known to lie ahead where its linear model predicts the residuals to this part of their
+/// change: from here Gauss-Newton steps shorten the distance by such a factor or more.
+const LINEAR: f64 = 0.2;
 /// Genes nearer than this are the same.
 const SAME_PLACE: f64 = 1e-5;
 /// Minima that differ by less than this part of a standard error are the same.

@@ -200,7 +200,8 @@ pub fn test_minimum(
     let error = noise * size;
     // What the step to the minimum of the linear model would change of the residuals.
     let freedom = residuals.len().saturating_sub(offset.rank).max(1) as f64;
-    let moved = offset.relative.map(|own| own * (offset.rank as f64 / freedom).sqrt() * length);
+    let part = |own: f64| (own * (offset.rank as f64 / freedom).sqrt()).min(1.0);
+    let moved = offset.relative.map(|own| part(own) * length);
     // Residuals of the size of the errors of the simulation: a change of this size is not noticeable.
     let is_noticeable =
         length > FROM_THE_SOLVER * error || moved.is_none_or(|moved| moved > ERRORS * error);
@@ -218,6 +219,8 @@ fn key(fitness: f64) -> f64 {
 use super::{FAILED_FITNESS, hypervolume};
 #[cfg(test)]
 use crate::registry::Options;
+#[cfg(test)]
+mod multimodal_tests;
 #[cfg(test)]
 pub(crate) mod problems;
 #[cfg(test)]

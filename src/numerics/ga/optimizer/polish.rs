@@ -1,10 +1,11 @@
-//! A search and multistart together. First come descents by least squares from the best points of a
-//! Latin hypercube: where they agree on one minimum, that is all. Where they do not, rounds of the
-//! search (a genetic algorithm, say) and further hypercubes give further starts. The search itself
-//! is not disturbed. It all ends when the best minimum was reached from several starts and few
-//! others can be expected.
+//! A search and multistart together. First comes a descent by least squares from the start values, then
+//! descents from the best points of a small Latin hypercube: where they show which minimum is the best,
+//! that is all. Further descents begin at the other points of the hypercube. Where descents fail, fit
+//! badly or seldom reach the best minimum, rounds of the search (a genetic algorithm, say) and larger
+//! hypercubes give the starts. The search itself is not disturbed. It all ends when the best minimum
+//! was reached from several starts and few others can be expected.
 
-use super::descents::Pool;
+use super::descents::{FEWEST, Pool, is_far};
 use super::exchange::{Exchanges, Scale};
 use super::levenberg_marquardt::Accuracy;
 use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
@@ -15,15 +16,16 @@ use crate::ga::{Genomes, Mrg32k3a};
 
 /// Questions of the search between two rounds of descents; before the first there is none.
 const QUESTIONS: usize = 10;
-/// Points of a Latin hypercube: this many for each gene, within limits.
+/// Points of a Latin hypercube: this many for each gene, within limits; first few, and many where the
+/// search has begun.
+const FEW_POINTS: usize = 3;
+const FEW: [usize; 2] = [8, 60];
 const POINTS: usize = 10;
 const SAMPLE: [usize; 2] = [30, 150];
 /// Descents of a round that begin at points of the search, of the hypercube, and beside the best
 /// minimum so far.
 const FROM_SEARCH: usize = 1;
 const FROM_SAMPLE: usize = 2;
-/// Descents of the first round: the fewest with which one minimum can be enough.
-const FIRST_ROUND: usize = 5;
 const FROM_BEST: usize = 1;
 /// Genes of the best minimum that are drawn anew at most. Minima often differ in few: a frequency,
 /// the place of a peak (ENSO has 9 genes, and two periods decide).
@@ -32,10 +34,10 @@ const REDRAWN: usize = 3;
 /// part of the range: a diffusivity of 3e-14 in 0 .. 1e-9 is found, which the other points never show.
 const SMALL_EVERY: usize = 3;
 const SMALLEST: f64 = 1e-10;
+/// Where the first descent begins in a range whose middle is zero.
+const BESIDE: f64 = 0.55;
 /// Individuals of a question remembered as candidates.
 const CANDIDATES: usize = 24;
-/// Individuals nearer than this in every gene are the same start.
-const DISTINCT: f64 = 0.05;
 
 /// What is asked at present.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +56,12 @@ pub struct Polished {
     rng: Mrg32k3a,
     points: usize,
     from_sample: usize,
+    /// Points of the small samples before the search begins.
+    few: usize,
+    /// Whether the search has begun.
+    has_searched: bool,
+    /// Points of the sample asked last, without those beside the best minimum.
+    asked: usize,
     /// A point given by the user, until a descent has begun there.
     given: Option<Vec<f64>>,
     /// The best of the search and of the hypercube since the last round.
@@ -69,9 +77,13 @@ pub struct Polished {
 impl Polished {
     /// Descents besides `search`, with random numbers of their own.
     pub fn new(search: Box<dyn Optimizer>, setup: &Setup, rng: Mrg32k3a) -> Polished {
-        let points = (POINTS * setup.genes.len()).clamp(SAMPLE[0], SAMPLE[1]);
-        let alone = Polished::alone(setup, points, FROM_SAMPLE);
-        Polished { search: Some(search), rng, ..alone }
+        let n = setup.genes.len();
+        let points = (POINTS * n).clamp(SAMPLE[0], SAMPLE[1]);
+        let few = (FEW_POINTS * n).clamp(FEW[0], FEW[1]);
+        let mut alone = Polished::alone(setup, points, FROM_SAMPLE);
+        let start = alone.given.take().unwrap_or_else(|| alone.middle(n));
+        alone.pool.begin(vec![start], 1);
+        Polished { search: Some(search), stage: Stage::Descents, rng, few, ..alone }
     }
 
     /// Descents from hypercubes alone, with so many points and descents in a round.
@@ -83,6 +95,9 @@ impl Polished {
             rng: setup.rng.clone(),
             points,
             from_sample,
+            few: points,
+            has_searched: false,
+            asked: 0,
             given: setup.start.clone(),
             found: Vec::new(),
             sampled: Vec::new(),
@@ -92,37 +107,35 @@ impl Polished {
         }
     }
 
+    /// The middle of the ranges, but not zero: models that depend on a square have no derivative there.
+    fn middle(&self, n: usize) -> Vec<f64> {
+        let is_zero = |scale: &Scale| !scale.logarithmic && scale.min + scale.max == 0.0;
+        let one = |k: usize| if self.scales.get(k).is_some_and(is_zero) { BESIDE } else { 0.5 };
+        (0..n).map(one).collect()
+    }
+
     /// The starts of the next round, and how many of them owe nothing to earlier descents: what the
     /// user gave, then the best that are far from each other and from where descents have been. What
     /// is better than all descents always counts. Last an exchange of two genes.
     fn starts(&mut self) -> (Vec<Vec<f64>>, usize) {
         let mut starts: Vec<Vec<f64>> = self.given.take().into_iter().collect();
-        let mut independent = 0;
-        let smallest = self.pool.smallest();
-        let is_first = self.search.is_some() && self.pool.best_place().is_none();
-        let from_sample = match is_first {
-            true => FIRST_ROUND - starts.len(),
-            false => self.from_sample,
+        let lacking = FEWEST.saturating_sub(self.pool.count());
+        let from_sample = match &self.search {
+            Some(_) => self.from_sample.max(lacking),
+            None => self.from_sample,
         };
-        let sources = [
-            (&mut self.found, FROM_SEARCH),
-            (&mut self.sampled, from_sample),
-            (&mut self.beside, FROM_BEST),
-        ];
-        for (number, (candidates, count)) in sources.into_iter().enumerate() {
-            let wanted = starts.len() + count;
-            for (genome, fitness) in candidates.drain(..) {
-                let known = self.pool.visited().chain(starts.iter().map(Vec::as_slice));
-                let fresh = known.into_iter().all(|known| is_far(known, &genome));
-                if starts.len() < wanted && (fresh || fitness < smallest) {
-                    starts.push(genome);
-                }
-            }
-            if number < 2 {
-                independent = starts.len();
-            }
+        self.pool.choose(&mut self.found, FROM_SEARCH, &mut starts);
+        self.pool.choose(&mut self.sampled, from_sample, &mut starts);
+        let independent = starts.len();
+        self.pool.choose(&mut self.beside, FROM_BEST, &mut starts);
+        self.found.clear();
+        self.beside.clear();
+        if self.has_searched || self.search.is_none() {
+            self.sampled.clear();
         }
-        starts.extend(self.exchanged());
+        if lacking == 0 {
+            starts.extend(self.exchanged());
+        }
         (starts, independent)
     }
 
@@ -132,11 +145,13 @@ impl Polished {
         self.exchanges.next(&best, |a, b| !is_far(a, b))
     }
 
-    /// The points of a sample: a Latin hypercube, and from the second round on as many with some
-    /// genes of the best minimum drawn anew.
+    /// The points of a sample: a Latin hypercube, and where the search has begun as many with some genes
+    /// of the best minimum drawn anew.
     fn sample(&mut self, batch: &mut Genomes) {
         let n = batch.n_genes();
-        let sample = latin_hypercube(n, self.points, &mut self.rng);
+        let is_wide = self.has_searched || self.search.is_none();
+        self.asked = if is_wide { self.points } else { self.few };
+        let sample = latin_hypercube(n, self.asked, &mut self.rng);
         for (number, genome) in sample.rows().enumerate() {
             let row: Vec<f64> = genome.to_vec();
             match number % SMALL_EVERY == SMALL_EVERY - 1 {
@@ -144,7 +159,8 @@ impl Polished {
                 false => batch.push(&row),
             }
         }
-        let Some(best) = self.pool.best_place().filter(|_| n > 1) else { return };
+        let best = self.pool.best_place().filter(|_| n > 1 && is_wide);
+        let Some(best) = best else { return };
         let mut genome = best.to_vec();
         for other in latin_hypercube(n, self.points, &mut self.rng).rows() {
             genome.copy_from_slice(best);
@@ -175,14 +191,29 @@ impl Polished {
         self.stage = match (self.stage, &self.search) {
             (Stage::Search(left), _) if left > 1 => Stage::Search(left - 1),
             (Stage::Search(_), _) => Stage::Sample,
-            (Stage::Sample, _) => {
-                let (starts, independent) = self.starts();
-                self.pool.begin(starts, independent);
-                Stage::Descents
-            }
-            (Stage::Descents, Some(_)) => Stage::Search(QUESTIONS),
+            (Stage::Sample, _) => self.begin_round(),
+            (Stage::Descents, Some(_)) => self.after_round(),
             (Stage::Descents, None) => Stage::Sample,
         };
+    }
+
+    fn begin_round(&mut self) -> Stage {
+        let (starts, independent) = self.starts();
+        self.pool.begin(starts, independent);
+        Stage::Descents
+    }
+
+    /// What follows a round that is not enough.
+    fn after_round(&mut self) -> Stage {
+        let has_begun = self.pool.count() >= FEWEST;
+        if self.has_searched || has_begun && self.pool.is_doubtful() {
+            self.has_searched = true;
+            Stage::Search(QUESTIONS)
+        } else if has_begun && self.sampled.iter().any(|(genome, _)| self.pool.is_new(genome)) {
+            self.begin_round()
+        } else {
+            Stage::Sample
+        }
     }
 }
 
@@ -199,10 +230,6 @@ fn remember(
     kept.extend(good.iter().take(CANDIDATES).map(|&(k, f)| (batch.row(k).to_vec(), f)));
     kept.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
     kept.truncate(CANDIDATES);
-}
-
-fn is_far(a: &[f64], b: &[f64]) -> bool {
-    a.iter().zip(b).any(|(a, b)| (a - b).abs() > DISTINCT)
 }
 
 impl Optimizer for Polished {
@@ -248,7 +275,7 @@ impl Optimizer for Polished {
                 search.tell(batch, answers);
             }
             _ => {
-                let count = batch.len().min(self.points);
+                let count = batch.len().min(self.asked);
                 remember(&mut self.sampled, batch, answers, 0..count);
                 remember(&mut self.beside, batch, answers, count..batch.len());
             }
