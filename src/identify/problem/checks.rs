@@ -11,6 +11,7 @@ use super::statistics::distributions::{
 };
 use super::statistics::outliers::{outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
+use super::statistics::resolution::resolution;
 use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };
@@ -96,6 +97,10 @@ pub(crate) fn residual_findings(
             continue;
         }
         findings.extend(poor_fit(problem, k, own, &raw));
+        let steps = resolution(&problem.series[k].y);
+        let is_rounding = |(&j, r): (&usize, &f64)| (r.abs() <= steps[j - own.first]).then_some(j);
+        let rounding: Vec<usize> = own.points.iter().zip(&raw).filter_map(is_rounding).collect();
+        suspects.retain(|j| !rounding.contains(j));
         findings.extend(saturated(&problem.series[k], own, &mut suspects));
         findings.extend(of_series(own, (simulated, &rest), alpha, &mut suspects));
     }

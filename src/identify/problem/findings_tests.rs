@@ -380,6 +380,27 @@ fn outliers_are_far_from_the_fit() {
     }
 }
 
+/// Values with three significant digits: those of the largest are the least exact, and none is an
+/// outlier. One that is off by more than its last digit is.
+#[test]
+fn rounding_is_not_an_outlier() {
+    let digits = |value: f64| format!("{value:.2e}").parse::<f64>().unwrap();
+    for n in [7, 10, 14] {
+        let exact: Vec<f64> = grid(n).iter().map(|x| decay(&[5.0, 1.2], *x)).collect();
+        let posed = |mistake: f64| {
+            let rounded =
+                |(k, y): (usize, &f64)| digits(y + if k == 3 { mistake } else { 0.0 }) - y;
+            let noise = exact.iter().enumerate().map(rounded).collect();
+            problem(&[(decay, noise, Sigma::Unknown)], &[5.0, 1.2], [0.01, 20.0], None)
+        };
+        let (_, solution) = solved(posed(0.0));
+        assert!(!has(&solution, FindingKind::Outlier), "{n}: {:?}", solution.findings);
+        let (_, solution) = solved(posed(1.0));
+        let found = solution.findings.iter().find(|f| f.kind == FindingKind::Outlier);
+        assert_eq!(found.map(|f| &f.rows[..]), Some(&[4][..]), "{n}: {:?}", solution.findings);
+    }
+}
+
 /// Errors that two outputs share are found, and independent ones are not taken for them.
 #[test]
 fn errors_in_common_are_named() {

@@ -15,6 +15,7 @@ pub(crate) mod distributions;
 pub(super) mod freedom;
 pub(super) mod outliers;
 pub(super) mod residuals;
+pub(super) mod resolution;
 mod special_functions;
 
 use crate::elementary;
