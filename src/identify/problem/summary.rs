@@ -9,12 +9,19 @@ use super::{
     SolvedParameter, SolvedSeries, Statistics,
 };
 use crate::diag::Fault;
+use crate::ga::Mrg32k3a;
 use crate::ga::operators::KINDS;
+use crate::ga::sampling::latin_hypercube;
 use crate::registry::BAD_OPTION;
 use crate::{elementary, fault};
 
 /// Points beside the best at which a lack of rank is looked at.
 const ELSEWHERE: usize = 5;
+/// They differ from it by more than this part of a range: 1e-3 apart, a capacitance times a resistance
+/// passed for their sum.
+const FAR: f64 = 0.02;
+/// The stream of random numbers of those that the search has not simulated.
+const STREAM: u64 = 1_000_019;
 
 /// The operators that were chosen, in the order of a generation.
 fn chosen_operators(problem: &super::Problem) -> indexmap::IndexMap<String, String> {
@@ -37,7 +44,7 @@ impl Solution {
         let simulated = run.evaluation.simulate(&best.values);
         let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
         run.evaluation.show("standard errors");
-        let others = elsewhere(run);
+        let others = elsewhere(run, &best.values)?;
         let mut statistics =
             Statistics::at(problem, &run.evaluation, &best.values, &simulated, &others);
         let effects = effects(run, &best.values, &simulated, &mut statistics)?;
@@ -208,16 +215,30 @@ fn method(run: &Run) -> String {
     }
 }
 
-/// Some individuals that were simulated successfully, from the whole run.
-fn elsewhere(run: &Run) -> Vec<Vec<f64>> {
+/// Points of the search far from the best; where there are too few, points of a Latin hypercube. Near
+/// the best a product cannot be told from a sum.
+fn elsewhere(run: &Run, best: &[f64]) -> Result<Vec<Vec<f64>>, Fault> {
+    let parameters = &run.problem.parameters;
+    let is_far = |values: &[f64]| {
+        let pairs = parameters.iter().zip(values.iter().zip(best));
+        pairs.into_iter().any(|(free, (a, b))| (free.fraction(*a) - free.fraction(*b)).abs() > FAR)
+    };
     let good: Vec<&Vec<f64>> = run
         .kept
         .iter()
-        .filter(|(_, fitness)| !crate::ga::has_failed(*fitness))
+        .filter(|(values, fitness)| !crate::ga::has_failed(*fitness) && is_far(values))
         .map(|(values, _)| values)
         .collect();
     let every = good.len().div_ceil(ELSEWHERE).max(1);
-    good.iter().step_by(every).map(|values| (*values).clone()).collect()
+    let mut found: Vec<Vec<f64>> =
+        good.iter().step_by(every).map(|values| (*values).clone()).collect();
+    if found.len() < ELSEWHERE {
+        let mut rng = Mrg32k3a::new(&run.problem.seed)?.stream(STREAM);
+        let more = latin_hypercube(parameters.len(), ELSEWHERE - found.len(), &mut rng);
+        let value = |(free, u): (&super::Free, &f64)| free.value(*u);
+        found.extend(more.rows().map(|row| parameters.iter().zip(row).map(value).collect()));
+    }
+    Ok(found)
 }
 
 fn solved_series(

@@ -7,6 +7,9 @@ use super::{
     EndingKind, FindingKind, Free, Problem, Run, Solution, SolvedParameter, Stop, Verdict, conclude,
 };
 
+use crate::ga::optimizer::METHODS;
+use crate::registry::{self, Options};
+
 type Formula = fn(&[f64], f64) -> f64;
 
 const NOISE: [f64; 16] = [
@@ -293,6 +296,25 @@ fn functions_of_parameters_are_named() {
             };
             assert_eq!(own.verdict, Some(expected), "{own:?}");
         }
+    }
+}
+
+/// A search that has only seen the neighborhood of the best point, as least squares after a script does,
+/// cannot tell a product from a sum there; the statistics look farther.
+#[test]
+fn a_product_is_named_after_a_search_nearby() {
+    let formula: Formula = |p, x| 10.0 * (-x / (p[0] * p[1])).exp();
+    let mut near =
+        posed(formula, &[("R", [0.5, 8.0]), ("C", [0.5, 8.0])], |x| 10.0 * (-x / 4.0).exp());
+    let method = registry::find("method", METHODS, "levenberg_marquardt").unwrap();
+    near.method = (method.make)(&mut Options::default()).unwrap();
+    for (free, start) in near.parameters.iter_mut().zip([1.3062, 3.0683]) {
+        free.start = Some(start);
+    }
+    let solution = solved(near);
+    assert!(sentences(&solution).contains("depends only on R*C. Fix"), "{}", sentences(&solution));
+    for own in &solution.parameters {
+        assert_eq!(own.verdict, Some(Verdict::StructurallyNonIdentifiable), "{own:?}");
     }
 }
 
