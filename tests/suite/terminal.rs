@@ -246,3 +246,35 @@ fn files_carry_no_commands_to_the_terminal() {
         assert!(!coloured.contains("\u{1b}]"), "{arguments:?}: {coloured:?}");
     }
 }
+
+/// What the statistics of a fit are doing is shown where they take long: the profile that is computed, and
+/// the fits of a bootstrap.
+#[test]
+fn the_statistics_show_their_progress() {
+    let model = "model Decay\n  parameter Real k = 1, x0 = 1;\n  Real x(start = x0, fixed = true);\n\
+                 equation\n  der(x) = -k*x;\nend Decay;\n";
+    let noise = [0.01, -0.02, 0.015, 0.0, -0.01, 0.02, -0.015, 0.005];
+    let row = |(k, e): (usize, &f64)| {
+        let t = 0.5 * k as f64;
+        format!("{t},{:.4}\n", 2.0 * (-0.8 * t).exp() + e)
+    };
+    let data = noise.iter().enumerate().map(row).fold("t,x\n".to_owned(), |all, row| all + &row);
+    let problem = "model = \"Decay\"\nfiles = [\"Decay.mo\"]\n[parameters]\n\
+                   k = { min = 0.1, max = 10 }\nx0 = { min = 0.1, max = 10 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\nx = { variable = \"time\", column = \"t\" }\n\
+                   outputs = { x = \"x\" }\n[bootstrap]\nsamples = 100\n";
+    let here = folder(&[("Decay.mo", model), ("d.csv", &data), ("p.toml", problem)]);
+    let mut command = command(here.path(), &["identify", "p.toml", "--profile"]);
+    command.env("TERM", "xterm").env("NO_COLOR", "1");
+    let mut session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
+    let mut shown = String::new();
+    for text in
+        ["standard errors", "profile of k, 1 of 2", "profile of x0, 2 of 2", "bootstrap: fit "]
+    {
+        match session.exp_string(text) {
+            Ok(before) => shown.push_str(&before),
+            Err(error) => panic!("{text:?} does not come: {error}; {shown}"),
+        }
+    }
+    session.exp_eof().expect("it ends");
+}

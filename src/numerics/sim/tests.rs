@@ -2,8 +2,8 @@
 
 use super::problems::{self, HeatRod, TestProblem};
 use super::*;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
 
 type Exact = fn(f64) -> Vec<f64>;
 
@@ -411,6 +411,40 @@ fn failures_say_when_and_why() {
     assert!(ended.time < 0.5, "{ended}");
     let cancelled = Settings { cancel: Some(Arc::new(AtomicBool::new(true))), ..settings };
     assert_eq!(failure(&mut problems::decay(), &cancelled).kind, SimErrorKind::Cancelled);
+}
+
+/// The flag is looked at before every attempt of a step: a simulation without end makes few evaluations
+/// after it is set.
+#[test]
+fn a_long_simulation_ends_soon_after_the_flag_is_set() {
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
+    static FLAG: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+    const BEFORE: usize = 1000;
+    for entry in INTEGRATORS {
+        CALLS.store(0, Ordering::Relaxed);
+        FLAG.store(false, Ordering::Relaxed);
+        let mut endless = problems::oscillator();
+        endless.rhs = |_, y, _, out| {
+            if CALLS.fetch_add(1, Ordering::Relaxed) + 1 == BEFORE {
+                FLAG.store(true, Ordering::Relaxed);
+            }
+            (out[0], out[1]) = (y[1], -y[0]);
+        };
+        let settings = Settings {
+            cancel: Some(Arc::clone(&FLAG)),
+            max_total_steps: u64::MAX,
+            output: OutputGrid::Intervals(1_000_000),
+            ..by(entry.name, settings(1e6, 1e-6))
+        };
+        assert_eq!(
+            failure(&mut endless, &settings).kind,
+            SimErrorKind::Cancelled,
+            "{}",
+            entry.name
+        );
+        let more = CALLS.load(Ordering::Relaxed) - BEFORE;
+        assert!(more < 200, "{}: {more} evaluations", entry.name);
+    }
 }
 
 #[test]

@@ -19,6 +19,7 @@ use crate::problem::distributions::{normal_below, normal_quantile};
 use crate::problem::{Problem, Run, Simulate, other_shards};
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The stream of random numbers, far from those of the search.
 const STREAM: u64 = 1_000_003;
@@ -105,10 +106,13 @@ pub fn bootstrap(
     local: &Local,
     refusals: &mut Vec<String>,
 ) -> Result<Option<Bootstrap>, Fault> {
-    let problem = &run.problem;
+    let (problem, evaluation) = (&run.problem, &run.evaluation);
     let measured: Vec<f64> = problem.series.iter().flat_map(|series| series.y.clone()).collect();
     let source = Mrg32k3a::new(&problem.seed)?.stream(STREAM);
+    let begun = AtomicUsize::new(0);
     let job = |number: usize, simulator: &mut dyn Simulate| {
+        let begun = 1 + begun.fetch_add(1, Ordering::Relaxed);
+        evaluation.show(&format!("bootstrap: fit {begun} of {}", settings.samples));
         let mut rng = source.substream(number as u64);
         let (data, scales) = drawn(problem, settings.resampling, local, &measured, &mut rng);
         let data = Data {
@@ -119,12 +123,12 @@ pub fn bootstrap(
         };
         data.fit(simulator, &local.values).filter(|fit| fit.converged).map(|fit| fit.values)
     };
-    let fits = run.evaluation.each_part("bootstrap", &local.values, settings.samples, job);
+    let fits = evaluation.each_part("bootstrap", &local.values, settings.samples, job);
     let Some(fits) = fits else {
         refusals.push(other_shards("bootstrap"));
         return Ok(None);
     };
-    if run.evaluation.is_cancelled() {
+    if evaluation.is_cancelled() {
         return Ok(None);
     }
     let estimates: Vec<Vec<f64>> = fits.into_iter().flatten().collect();

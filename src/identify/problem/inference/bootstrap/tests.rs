@@ -40,6 +40,27 @@ fn spread_of_the_replicates_is_the_standard_error() {
     }
 }
 
+/// A parameter that half of the replicates put at the end of its range has no quantiles that mean
+/// anything (Andrews 2000), and the other one has an interval.
+#[test]
+fn at_an_end_of_its_range_a_parameter_has_no_bootstrap_interval() {
+    let x: Vec<f64> = (0..20).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().zip(noise(20)).map(|(x, e)| 1.0 - 0.006 * x + 0.1 * e).collect();
+    for (low, is_cut) in [(0.0, true), (-10.0, false)] {
+        let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [low, 10.0]]);
+        problem.inference.bootstrap = Some(BootstrapSettings {
+            samples: 200,
+            resampling: Resampling::Residuals,
+            interval: IntervalKind::Percentile,
+        });
+        let found = infer(&finished(problem)).unwrap().bootstrap.unwrap();
+        let sentences = found.sentences();
+        assert!(sentences[1].starts_with("p0 in "), "{sentences:?}");
+        let words = if is_cut { "p1 has no interval: " } else { "p1 in " };
+        assert!(sentences[2].starts_with(words), "{sentences:?}");
+    }
+}
+
 #[test]
 fn threads_do_not_matter() {
     let bytes = |threads| {

@@ -120,6 +120,7 @@ pub fn posterior(
     if run.evaluation.parts.are_divided() {
         return Ok(in_shards(run, settings, local, (&density, &begin), refusals));
     }
+    run.evaluation.show("posterior: warm-up of the chains");
     let begun: Option<Vec<Chain>> = run.evaluation.each(CHAINS, begin).into_iter().collect();
     let Some(chains) = begun else {
         refusals.push(NOT_DEFINITE.to_owned());
@@ -127,7 +128,10 @@ pub fn posterior(
     };
     let chains: Vec<Mutex<Chain>> = chains.into_iter().map(Mutex::new).collect();
     let mut last = None;
+    let mut drawn = 0;
     for count in rounds(settings.samples) {
+        drawn += count;
+        run.evaluation.show(&format!("posterior: draw {drawn} of {}", settings.samples));
         run.evaluation.each(CHAINS, |number, simulator| {
             let mut chain = chains[number].lock().unwrap_or_else(PoisonError::into_inner);
             chain.draw(count, &mut |u| density.at(simulator, u));

@@ -126,6 +126,25 @@ fn posteriors_of_a_straight_line_are_exact() {
     }
 }
 
+/// A range that ends within the posterior acts as a prior: the report names the end. One that ends ten
+/// standard errors away is not mentioned.
+#[test]
+fn a_posterior_that_its_range_cuts_says_so() {
+    let x: Vec<f64> = (0..8).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().zip(noise(8)).map(|(x, e)| 1.0 + 0.5 * x + 0.1 * e).collect();
+    for (end, is_cut) in [(0.5, true), (0.3, false)] {
+        let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [end, 10.0]]);
+        problem.series[0].sigma = Sigma::Given(vec![0.1; 8]);
+        problem.inference.posterior = Some(PosteriorSettings { samples: 4000 });
+        let posterior = infer(&finished(problem)).unwrap().posterior.unwrap();
+        let text = posterior.sentences().join("\n");
+        assert!(posterior.converged, "{text}");
+        let words = format!("The posterior of p1 is cut by the end {end} of its search range");
+        assert_eq!(text.contains(&words), is_cut, "{text}");
+        assert!(!text.contains("posterior of p0"), "{text}");
+    }
+}
+
 #[test]
 fn threads_do_not_matter() {
     let bytes = |threads| {
