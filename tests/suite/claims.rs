@@ -120,7 +120,7 @@ fn wrong_parameter(name: &str, claim: &Parameter, own: &Value) -> Vec<String> {
         let is_open = interval.is_some() && names.contains(&open);
         let holds = match (end, interval) {
             (None, _) => true,
-            (Some(End::Open(_)), _) => is_open,
+            (Some(End::Open(word)), _) => word == "open" && is_open,
             (Some(End::At([right, within])), Some(ends)) => {
                 !is_open && (ends[side] - right).abs() <= *within
             }
