@@ -26,5 +26,5 @@ fn set_up_memory() {
 
 fn main() -> ExitCode {
     set_up_memory();
-    gapilib::cli::main()
+    gapilib::internals::cli::main()
 }

@@ -8,21 +8,21 @@
 #![allow(clippy::disallowed_methods, reason = "expected values need not have every digit")]
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Program, SensitivityCode};
-use gapilib::flatten::{self, Library, LibraryFiles};
-use gapilib::ga::optimizer::METHODS;
-use gapilib::identify::CompiledModel;
-use gapilib::identify::fitness::FITNESSES;
-use gapilib::identify::problem::{
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Program, SensitivityCode};
+use gapilib::internals::flatten::{self, Library, LibraryFiles};
+use gapilib::internals::ga::optimizer::METHODS;
+use gapilib::internals::identify::CompiledModel;
+use gapilib::internals::identify::fitness::FITNESSES;
+use gapilib::internals::identify::problem::{
     Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma, Stop,
 };
-use gapilib::name::Name;
-use gapilib::registry::{self, Options};
-use gapilib::runtime::System;
-use gapilib::sim::{OutputGrid, Settings, SimErrorKind, Simulator, Trajectory};
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::name::Name;
+use gapilib::internals::registry::{self, Options};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{OutputGrid, Settings, SimErrorKind, Simulator, Trajectory};
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::alloc::{GlobalAlloc, Layout, System as Malloc};
 use std::cell::Cell;
 use std::path::Path;
@@ -114,7 +114,7 @@ fn cell(class: &str) -> System {
 }
 
 fn settings(method: &str, tolerance: f64) -> Settings {
-    let method = gapilib::sim::find_integrator(method).expect("an integrator");
+    let method = gapilib::internals::sim::find_integrator(method).expect("an integrator");
     let output = OutputGrid::Intervals(100);
     Settings { stop: 0.5, tolerance, output, method, ..Settings::default() }
 }

@@ -61,6 +61,22 @@ pub enum Reporting {
 }
 
 /// How a session behaves.
+///
+/// ```
+/// use gapilib_modelica::value::Value;
+/// use gapilib_script::world::MemoryWorld;
+/// use gapilib_script::{Dialect, Options, Session, Strictness};
+///
+/// let options = Options {
+///     dialect: Some(Dialect::OpenModelica),
+///     strictness: Strictness::Strict,
+///     ..Options::default()
+/// };
+/// let mut session = Session::new(Box::new(MemoryWorld::new())).with_options(options);
+/// // The first error ends the run.
+/// session.run_text("input", "x := 1; y := nothing + 1; x := 2;");
+/// assert_eq!(session.variable("x"), Some(&Value::Integer(1)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// The dialect; `None` to recognise it from the script.

@@ -1,8 +1,8 @@
 //! The files of a disk, for the benchmarks that read libraries.
 
-use gapilib::flatten::LibraryFiles;
-use gapilib::source::{SourceId, SourceMap};
-use gapilib::syntax;
+use gapilib::internals::flatten::LibraryFiles;
+use gapilib::internals::source::{SourceId, SourceMap};
+use gapilib::internals::syntax;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(crate) struct Disk(SourceMap);
 
 impl LibraryFiles for Disk {
-    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), gapilib::diag::Fault> {
+    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), gapilib::Fault> {
         let text: Arc<str> = syntax::decode(&std::fs::read(path).unwrap_or_default()).0.into();
         Ok((self.0.add(path.display().to_string(), text.clone()), text))
     }

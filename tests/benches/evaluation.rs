@@ -1,9 +1,9 @@
 //! One evaluation of a point of the polarization curve: parameters set, two variables observed.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::sim::DaeSystem;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::sim::DaeSystem;
 use std::hint::black_box;
 
 #[path = "../suite/flat_class.rs"]

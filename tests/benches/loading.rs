@@ -3,9 +3,9 @@
 //! outlined, and the model is left out.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use gapilib::flatten::{self, Library, LibraryFiles};
-use gapilib::name::Name;
-use gapilib::syntax::{self, Outline};
+use gapilib::internals::flatten::{self, Library, LibraryFiles};
+use gapilib::internals::name::Name;
+use gapilib::internals::syntax::{self, Outline};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -7,14 +7,14 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::flatten::{self, Library, LibraryFiles};
-use gapilib::name::Name;
-use gapilib::plot::{Axis, Figure, Mark, Panel, Series};
-use gapilib::sim::{DaeSystem, OutputGrid, Settings, Simulator, Trajectory};
-use gapilib::source::SourceMap;
-use gapilib::syntax;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{self, Library, LibraryFiles};
+use gapilib::internals::name::Name;
+use gapilib::internals::plot::{Axis, Figure, Mark, Panel, Series};
+use gapilib::internals::sim::{DaeSystem, OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;

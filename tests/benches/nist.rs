@@ -8,7 +8,7 @@
 #[path = "../nist/mod.rs"]
 mod nist;
 
-use gapilib::identify::problem::EndingKind;
+use gapilib::internals::identify::problem::EndingKind;
 use nist::{Dataset, MODELS};
 
 /// Simulations that the default search may take.

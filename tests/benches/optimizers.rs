@@ -4,10 +4,12 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
-use gapilib::elementary;
-use gapilib::ga::optimizer::{Answers, METHODS, Method, Polished, Setup, Wants, survivors};
-use gapilib::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
-use gapilib::registry::{self, Options};
+use gapilib::internals::elementary;
+use gapilib::internals::ga::optimizer::{
+    Answers, METHODS, Method, Polished, Setup, Wants, survivors,
+};
+use gapilib::internals::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
+use gapilib::internals::registry::{self, Options};
 use problems::{Objectives, Residuals};
 use std::sync::LazyLock;
 use std::time::Instant;

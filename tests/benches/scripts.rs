@@ -1,8 +1,8 @@
 //! How fast scripts run: a scalar loop, a product of matrices, a function call, a new session.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
+use gapilib::Session;
+use gapilib::world::MemoryWorld;
 use nalgebra::DMatrix;
 use std::hint::black_box;
 

@@ -16,11 +16,11 @@
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::flatten::{self, Library, LibraryFiles};
-use gapilib::name::Name;
-use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{self, Library, LibraryFiles};
+use gapilib::internals::name::Name;
+use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Trajectory};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;

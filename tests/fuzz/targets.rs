@@ -1,19 +1,19 @@
 //! What no bytes may make panic or hang. The fuzz targets call these functions with inputs that are
 //! led by coverage, the suite with a corpus and fixed mutations of it.
 
-use gapilib::cli::embedding::Embedding;
-use gapilib::flatten::{Library, flatten};
-use gapilib::identify::problem;
-use gapilib::lsp::{Client, Document, Documents, Workspace, answer};
-use gapilib::mat::{self, MatFile};
+use gapilib::Session;
+use gapilib::embedding::Embedding;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::identify::problem;
+use gapilib::internals::lsp::{Client, Document, Documents, Workspace, answer};
+use gapilib::internals::mat::{self, MatFile};
+use gapilib::internals::script::runs::problem::{RunOptions, solve};
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::ast::StoredDefinition;
+use gapilib::internals::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
+use gapilib::internals::syntax::{decode, parse_script, parse_stored_definition, print};
 use gapilib::results;
-use gapilib::script::Session;
-use gapilib::script::runs::problem::{RunOptions, solve};
-use gapilib::script::world::{MemoryWorld, Store};
-use gapilib::source::SourceId;
-use gapilib::syntax::ast::StoredDefinition;
-use gapilib::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
-use gapilib::syntax::{decode, parse_script, parse_stored_definition, print};
+use gapilib::world::{MemoryWorld, Store};
 use lsp_types::{TextDocumentContentChangeEvent, TextDocumentItem};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -67,7 +67,7 @@ pub(crate) fn flatten_model(bytes: &[u8]) {
     let mut library = Library::new();
     let _ = library.load(&file);
     for class in library.all() {
-        let _ = gapilib::flatten::check(&library, &class);
+        let _ = gapilib::internals::flatten::check(&library, &class);
         if let Ok(flattened) = flatten(&library, &class, &[]) {
             let _ = flattened.model.to_string();
         }

@@ -4,21 +4,21 @@
 // What includes this file, a test or a benchmark, uses parts of it.
 #![allow(dead_code)]
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::flatten::{Library, flatten};
-use gapilib::ga::optimizer::METHODS;
-use gapilib::identify::CompiledModel;
-use gapilib::identify::fitness::FITNESSES;
-use gapilib::identify::problem::{
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::ga::optimizer::METHODS;
+use gapilib::internals::identify::CompiledModel;
+use gapilib::internals::identify::fitness::FITNESSES;
+use gapilib::internals::identify::problem::{
     Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma,
     Solution, Stop, conclude,
 };
-use gapilib::name::Name;
-use gapilib::registry::{self, Options};
-use gapilib::sim::Settings;
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::name::Name;
+use gapilib::internals::registry::{self, Options};
+use gapilib::internals::sim::Settings;
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

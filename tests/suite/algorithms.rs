@@ -1,7 +1,7 @@
 //! Algorithm sections of models whose loops and subscripts depend on variables (MLS §11.1.1, §11.2).
 
 use crate::shipped;
-use gapilib::script::Session;
+use gapilib::Session;
 
 const PACKAGE: &str = "package L
   model Units

@@ -1,7 +1,7 @@
 //! What functions assert that are called without use of their values, and what initial sections
 //! assert (MLS §8.3.7, §12.4).
 
-use gapilib::script::Session;
+use gapilib::Session;
 
 const PACKAGE: &str = r#"package Q
 function loops "cannot become an expression"
@@ -303,7 +303,7 @@ fn sums_are_asserted_up_to_rounding() {
         )
     };
     let run = |value: &str| {
-        let world = gapilib::script::world::MemoryWorld::new().with_file("M.mo", model(value));
+        let world = gapilib::world::MemoryWorld::new().with_file("M.mo", model(value));
         let errors = world.streams();
         let script = "openModel(\"M.mo\");\nsimulateModel(\"M\", stopTime = 1);";
         let status = Session::new(Box::new(world)).run_text("s.mos", script);

@@ -1,9 +1,9 @@
 //! Chattering, sliding and accumulating events, against exact solutions; work is counted.
 
 use super::hybrid::{compiled, file, near};
-use gapilib::codegen::{Access, Program};
-use gapilib::runtime::{System, Treated};
-use gapilib::sim::{
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::runtime::{System, Treated};
+use gapilib::internals::sim::{
     OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory, Treatment, find_integrator,
 };
 use std::path::{Path, PathBuf};

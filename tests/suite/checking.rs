@@ -1,15 +1,15 @@
 //! `tests/checking/*.mo`: what is wrong with each class of a file by its text and the names in it,
 //! whatever is made of it.
 
-use gapilib::diag::render::render;
-use gapilib::flatten::{Library, check};
-use gapilib::source::{SourceMap, Span};
-use gapilib::syntax::ast::{
+use gapilib::internals::diag::render::render;
+use gapilib::internals::flatten::{Library, check};
+use gapilib::internals::source::{SourceMap, Span};
+use gapilib::internals::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentReference, Element, Modification, Section,
     StoredDefinition,
 };
-use gapilib::syntax::parse_stored_definition;
-use gapilib::syntax::visit::{self, Visit};
+use gapilib::internals::syntax::parse_stored_definition;
+use gapilib::internals::syntax::visit::{self, Visit};
 use std::path::{Path, PathBuf};
 
 fn parsed(sources: &SourceMap, name: &str, text: &str) -> StoredDefinition {

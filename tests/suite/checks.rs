@@ -1,12 +1,12 @@
 //! Rules that classes keep or break by their text: what is refused, and what is not.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::flatten::{Library, check, flatten};
-use gapilib::name::Name;
-use gapilib::sim::{Settings, simulate};
-use gapilib::source::SourceMap;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::flatten::{Library, check, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::sim::{Settings, simulate};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax::parse_stored_definition;
 
 fn library(text: &str) -> Library {
     let sources = SourceMap::default();

@@ -2,7 +2,7 @@
 //! that follow by hand.
 
 use super::hybrid::{Run, attempt, compiled, simulated};
-use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Trajectory};
 
 #[track_caller]
 fn holds(run: &Run, name: &str, values: &[(f64, f64)]) {
@@ -213,7 +213,9 @@ fn ticks_count_from_the_start_of_the_simulation() {
     let mut rows = Trajectory::default();
     Simulator::new().run(&mut system, &settings, &mut rows).expect("it runs");
     let at = program.find_variable("t").expect("a variable");
-    let gapilib::codegen::Access::Observed { column, .. } = program.variables()[at].access else {
+    let gapilib::internals::codegen::Access::Observed { column, .. } =
+        program.variables()[at].access
+    else {
         panic!("t is observed");
     };
     let last = *rows.column(column).last().expect("a row");

@@ -2,7 +2,7 @@
 //! (`identify::ranks::chunk`), one message after the other, and its own thread simulates as well.
 //! Bandwidth is left out: a result of 1 KB takes less than a microsecond in any network of a cluster.
 
-use gapilib::identify::ranks::chunk::{self, Times};
+use gapilib::internals::identify::ranks::chunk::{self, Times};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 

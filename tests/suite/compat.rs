@@ -1,6 +1,6 @@
 //! The ledgers of `compat/` say what is true.
 
-use gapilib::script::builtins;
+use gapilib::internals::script::builtins;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -6,12 +6,12 @@ use crate::cli;
 use crate::conformance::{
     Corpus, Ended, Failure, File, Ledger, Stage, folder, is_asked_for, judge_all, run, say,
 };
-use gapilib::diag::Diagnostic;
-use gapilib::external::errors::EXTERNAL_OUTSIDE;
-use gapilib::flatten::errors::NOT_SUPPORTED as UNSUPPORTED_LANGUAGE;
-use gapilib::lower::errors::NOT_SUPPORTED;
-use gapilib::name::Name;
-use gapilib::syntax::ast::{
+use gapilib::Diagnostic;
+use gapilib::internals::external::errors::EXTERNAL_OUTSIDE;
+use gapilib::internals::flatten::errors::NOT_SUPPORTED as UNSUPPORTED_LANGUAGE;
+use gapilib::internals::lower::errors::NOT_SUPPORTED;
+use gapilib::internals::name::Name;
+use gapilib::internals::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, Element, ElementModification,
     ExpressionKind, Section,
 };

@@ -1,12 +1,12 @@
 //! Libraries that were written for an older version of another one (MLS §18.8): their classes are
 //! what the conversion script of the newer version makes of them.
 
-use gapilib::diag::{Diagnostic, Fault};
-use gapilib::flatten::errors::UNKNOWN_NAME;
-use gapilib::flatten::{Library, LibraryFiles, flatten};
-use gapilib::name::Name;
-use gapilib::source::{SourceId, SourceMap};
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::flatten::errors::UNKNOWN_NAME;
+use gapilib::internals::flatten::{Library, LibraryFiles, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::source::{SourceId, SourceMap};
+use gapilib::internals::syntax::parse_stored_definition;
+use gapilib::{Diagnostic, Fault};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -2,7 +2,8 @@
 //! is the snapshot beside it.
 
 use crate::transcripts::world_of;
-use gapilib::script::{Session, Transcript, codes};
+use gapilib::internals::script::codes;
+use gapilib::{Session, Transcript};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

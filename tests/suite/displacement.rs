@@ -2,7 +2,7 @@
 
 use super::chattering::{METHODS, run};
 use super::hybrid::near;
-use gapilib::sim::Treatment;
+use gapilib::internals::sim::Treatment;
 
 const TOLERANCES: [f64; 3] = [1e-4, 1e-6, 1e-8];
 

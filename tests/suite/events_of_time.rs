@@ -2,7 +2,7 @@
 //! go between two output points.
 
 use super::hybrid::{near, simulated, simulated_with};
-use gapilib::sim::{OutputGrid, Settings};
+use gapilib::internals::sim::{OutputGrid, Settings};
 
 /// der(x) = (if condition then 3 else 1) - x/2, steady at the start.
 fn steady(condition: &str) -> String {

@@ -5,15 +5,15 @@
 
 use crate::conformance::{Corpus, Ended, Failure, filter, folder, is_asked_for, judge_all, say};
 use crate::shipped::project;
-use gapilib::flatten::Library;
-use gapilib::name::Name;
-use gapilib::script::Session;
-use gapilib::script::models::checking;
-use gapilib::script::world::MemoryWorld;
-use gapilib::syntax::ast::{
+use gapilib::Session;
+use gapilib::internals::flatten::Library;
+use gapilib::internals::name::Name;
+use gapilib::internals::script::models::checking;
+use gapilib::internals::syntax::ast::{
     CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause, Element, Restriction,
     Section, VariabilityPrefix,
 };
+use gapilib::world::MemoryWorld;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,8 +1,8 @@
 //! External functions under their external names: values against independent computations, and
 //! models that use them.
 
-use gapilib::diag::Fault;
-use gapilib::external::{self, Call, Kind, Object, Outside, Slot};
+use gapilib::Fault;
+use gapilib::internals::external::{self, Call, Kind, Object, Outside, Slot};
 use std::sync::Arc;
 
 /// An argument.

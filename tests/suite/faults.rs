@@ -9,12 +9,12 @@
 //!
 //! Reference: the way SQLite is tested (I/O error and crash tests).
 
-use gapilib::script::access::policy::{Access, Grant};
-use gapilib::script::runs::problem::{RunOptions, solve};
-use gapilib::script::runs::view::Progress;
-use gapilib::script::runs::view::View;
-use gapilib::script::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
-use gapilib::script::{Journaling, Options, Session};
+use gapilib::internals::script::access::policy::{Access, Grant};
+use gapilib::internals::script::runs::problem::{RunOptions, solve};
+use gapilib::internals::script::runs::view::Progress;
+use gapilib::internals::script::runs::view::View;
+use gapilib::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
+use gapilib::{Journaling, Options, Session};
 use std::cell::RefCell;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,11 @@
 //! A class of predefined types only, as a flat model: no lookup, no modification.
 
-use gapilib::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use gapilib::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
-use gapilib::name::Name;
-use gapilib::source::SourceId;
-use gapilib::syntax::ast::*;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use gapilib::internals::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
+use gapilib::internals::name::Name;
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::ast::*;
+use gapilib::internals::syntax::parse_stored_definition;
 
 /// The flat model of the only class of a text.
 pub(crate) fn flat(text: &str) -> FlatModel {

@@ -1,11 +1,11 @@
 //! `tests/flattening/*.mo`: the flat model, or the errors. The class is the file's name, or `Main`
 //! inside the package of that name.
 
-use gapilib::diag::render::render;
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::{Ident, Name};
-use gapilib::source::SourceMap;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::diag::render::render;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::{Ident, Name};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::path::Path;
 
 fn flattened(path: &Path) -> String {
@@ -61,7 +61,8 @@ fn a_modification_from_outside_overrides_the_declaration() {
     let problem = "M(p = 2)";
     let source = sources.add("problem", problem);
     let (name, arguments) =
-        gapilib::syntax::parse_class_with_modification(source, problem).expect("a problem");
+        gapilib::internals::syntax::parse_class_with_modification(source, problem)
+            .expect("a problem");
     assert_eq!(name, Name::parse("M"));
     let flat = flatten(&library, &name, &arguments).expect("a model").model;
     assert!(flat.to_string().contains("p = 2;"), "{flat}");

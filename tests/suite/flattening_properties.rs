@@ -1,12 +1,12 @@
 //! No damaged model makes flattening or compilation panic, hang or run out of stack: the corpora
 //! with tokens deleted, doubled, exchanged or replaced by others of the same file.
 
-use gapilib::causalize;
-use gapilib::codegen::Program;
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::path::{Path, PathBuf};

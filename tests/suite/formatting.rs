@@ -2,11 +2,11 @@
 
 use crate::cli::{command, folder, gapi};
 use crate::shipped::project;
-use gapilib::diag::render::render;
-use gapilib::format::{Failure, Language, format};
-use gapilib::source::{SourceId, SourceMap};
-use gapilib::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
-use gapilib::syntax::{self, LexemeKind};
+use gapilib::internals::diag::render::render;
+use gapilib::internals::format::{Failure, Language, format};
+use gapilib::internals::source::{SourceId, SourceMap};
+use gapilib::internals::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
+use gapilib::internals::syntax::{self, LexemeKind};
 use proptest::prelude::*;
 use std::fs;
 use std::io::Write as _;
@@ -230,7 +230,7 @@ fn check_and_diff_write_nothing() {
 /// The difference is what `patch` needs to make one text of the other.
 #[test]
 fn differences_apply() {
-    use gapilib::format::diff::changes;
+    use gapilib::internals::format::diff::changes;
     for (path, text, language) in texts(&project("tests/formatting")) {
         let formatted = format(SourceId::NONE, &text, language).expect("it can be read");
         let (old, new): (Vec<&str>, Vec<&str>) =

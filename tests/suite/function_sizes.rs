@@ -2,8 +2,8 @@
 
 use super::functions::{compiled, failure, library, of_model};
 use super::hybrid::{compiled as model_of, simulated};
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
+use gapilib::Session;
+use gapilib::world::MemoryWorld;
 
 #[test]
 fn sizes_in_records_are_whole_numbers_of_the_record() {

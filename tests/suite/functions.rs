@@ -2,19 +2,19 @@
 //! derivatives those of its differences.
 
 use super::hybrid::simulated;
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::diag::Diagnostic;
-use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::runtime::System;
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
-use gapilib::sim::{DaeSystem, Failure, Settings, simulate};
-use gapilib::source::{SourceId, Span};
-use gapilib::syntax::{ast::ComponentReference, parse_stored_definition};
-use gapilib::value::Value;
+use gapilib::Diagnostic;
+use gapilib::Session;
+use gapilib::Value;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::eval::{Arguments, Callee, Function, Host, call_function};
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{DaeSystem, Failure, Settings, simulate};
+use gapilib::internals::source::{SourceId, Span};
+use gapilib::internals::syntax::{ast::ComponentReference, parse_stored_definition};
+use gapilib::world::MemoryWorld;
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 //! at every run. `GAPILIB_CASES` says how many mutations each target gets for each of its inputs.
 
 use crate::shipped::project;
-use gapilib::identify::problem::{Origins, Record, encode, header};
+use gapilib::internals::identify::problem::{Origins, Record, encode, header};
 use std::fs;
 use std::panic::catch_unwind;
 
@@ -165,7 +165,7 @@ fn try_one(target: fn(&[u8]), input: &[u8]) {
 /// Runs with as much stack as the program's own thread has.
 fn deep(work: impl FnOnce() + Send + 'static) {
     let thread = std::thread::Builder::new().stack_size(256 << 20);
-    let ended = thread.spawn(|| gapilib::script::with_stack(128 << 20, work)).unwrap().join();
+    let ended = thread.spawn(|| gapilib::with_stack(128 << 20, work)).unwrap().join();
     if let Err(panic) = ended {
         std::panic::resume_unwind(panic);
     }

@@ -1,8 +1,9 @@
 //! The functions of the paper: those built in against those in Modelica, and their errors.
 
 use crate::shipped;
-use gapilib::script::Session;
-use gapilib::value::{ArrayValue, Elements, Value};
+use gapilib::Session;
+use gapilib::Value;
+use gapilib::internals::value::{ArrayValue, Elements};
 
 const LOAD: &str = "openModel(\"models/GAPILib/package.mo\");\n";
 

@@ -1,11 +1,13 @@
 //! The grammar: corpora with their trees and errors, printing and reading again.
 
-use gapilib::diag::Diagnostic;
-use gapilib::diag::render::render;
-use gapilib::source::{SourceId, SourceMap};
-use gapilib::syntax::ast::{InteractiveKind, InteractiveStatement, Script, StoredDefinition};
-use gapilib::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
-use gapilib::syntax::{self, print};
+use gapilib::Diagnostic;
+use gapilib::internals::diag::render::render;
+use gapilib::internals::source::{SourceId, SourceMap};
+use gapilib::internals::syntax::ast::{
+    InteractiveKind, InteractiveStatement, Script, StoredDefinition,
+};
+use gapilib::internals::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
+use gapilib::internals::syntax::{self, print};
 use std::path::{Path, PathBuf};
 
 /// Every `.mo` file below the folder.

@@ -1,13 +1,13 @@
 //! Models with events, from text to trajectory, against exact solutions.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::{FlatModel, Library, flatten};
-use gapilib::runtime::System;
-use gapilib::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Trajectory};
-use gapilib::source::SourceMap;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::Diagnostic;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::flatten::{FlatModel, Library, flatten};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Trajectory};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 /// A finished simulation.

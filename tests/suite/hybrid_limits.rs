@@ -3,7 +3,7 @@
 
 use super::hybrid::{all_near, near, simulated};
 use super::index_reduction::{Run, compiled};
-use gapilib::sim::Settings;
+use gapilib::internals::sim::Settings;
 
 #[test]
 fn a_crossing_that_time_alone_makes_is_seen_though_steps_are_long() {
@@ -283,7 +283,7 @@ fn a_dip_within_one_step_is_seen() {
         when x < -1e-6 then never = pre(never) + 1; end when; end M;";
     // x = (t - 1)², a polynomial, so that steps are as long as they may be.
     for (method, tolerance) in [("dassl", 1e-6), ("dassl", 1e-9), ("radau", 1e-6)] {
-        let method = gapilib::sim::find_integrator(method).unwrap();
+        let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings = Settings { method, tolerance, stop: 2.0, ..Settings::default() };
         let run = Run::with(text, settings);
         assert_eq!(run.values("n").last(), Some(&1.0), "{tolerance}");
@@ -297,9 +297,9 @@ fn an_assertion_fails_at_the_time_when_it_begins_to() {
     let text = "model M Real x(start = 1, fixed = true); equation der(x) = -1;
         assert(x > 0.5, \"level below half\"); end M;";
     for method in ["dassl", "radau", "rodas4", "dopri5", "euler"] {
-        let method = gapilib::sim::find_integrator(method).unwrap();
+        let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings = Settings { method, ..Settings::default() };
-        let error = gapilib::sim::simulate(&mut compiled(text).system(), &settings);
+        let error = gapilib::internals::sim::simulate(&mut compiled(text).system(), &settings);
         let error = error.expect_err("the assertion fails");
         assert!((error.time - 0.5).abs() < 1e-6, "{}: {}", method.name, error.time);
     }

@@ -1,7 +1,7 @@
 //! Whole identifications, shortened by an INI of the test's own.
 
 use crate::shipped;
-use gapilib::script::Session;
+use gapilib::Session;
 use std::path::Path;
 
 /// Runs the scripts of an entry (a folder of `scripts/`, empty for the main one) with few
@@ -124,7 +124,7 @@ fn least_squares_from_the_script_s_best_individual_reach_the_minimum() {
     let text = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 50\nRunScript(\"GAPILib_CYCLE.mos\")\n";
     let world = shipped::world().with_file("scripts/test.mos", text);
     let options =
-        gapilib::script::Options { probe: gapilib::identify::Probe::Off, ..Default::default() };
+        gapilib::Options { probe: gapilib::internals::identify::Probe::Off, ..Default::default() };
     let mut without = Session::new(Box::new(world)).with_options(options);
     without.run_file(Path::new("scripts/test.mos"));
     assert_eq!(written(&with, "history.csv"), written(&without, "history.csv"));
@@ -148,12 +148,12 @@ fn a_script_s_minimum_has_bands_and_profiles() {
                   F := Fit(D, Y);\n";
     let run_with = |probe| {
         let world = shipped::world().with_file("Line.mo", model).with_file("test.mos", script);
-        let options = gapilib::script::Options { probe, ..Default::default() };
+        let options = gapilib::Options { probe, ..Default::default() };
         let mut session = Session::new(Box::new(world)).with_options(options);
         session.run_file(Path::new("test.mos"));
         session
     };
-    let session = run_with(gapilib::identify::Probe::Profiles);
+    let session = run_with(gapilib::internals::identify::Probe::Profiles);
     let found = result(&session);
     // Sums by hand: x̄ = 2, Sxx = 10, ȳ = 5, Sxy = 19.7.
     let (b, a) = (1.97, 5.0 - 1.97 * 2.0);
@@ -184,7 +184,7 @@ fn a_script_s_minimum_has_bands_and_profiles() {
         assert!((high - value - width).abs() < 2e-3 * width, "{ends} {value} {width}");
     }
     assert!(!written(&session, "profiles.csv").is_empty());
-    let plain = run_with(gapilib::identify::Probe::LeastSquares);
+    let plain = run_with(gapilib::internals::identify::Probe::LeastSquares);
     assert_eq!(written(&plain, "bands.csv"), bands);
     assert!(result(&plain)["profiles"].is_null());
 }
@@ -482,8 +482,8 @@ fn wrong_data_are_refused_with_their_codes() {
     assert!(run.codes().is_empty() && run.errors.contains("note[data-note]"), "{}", run.errors);
     assert_eq!(codes("d.csv", b"i,V\n0,NaN\n0.1,\n"), ["bad-data"]);
     let mat = |x: usize, y: usize| {
-        let [x, y] = [x, y].map(|n| gapilib::mat::Matrix::column_vector(vec![1.0; n]));
-        gapilib::mat::write_v4([("i", &x), ("V", &y)]).unwrap()
+        let [x, y] = [x, y].map(|n| gapilib::internals::mat::Matrix::column_vector(vec![1.0; n]));
+        gapilib::internals::mat::write_v4([("i", &x), ("V", &y)]).unwrap()
     };
     assert_eq!(codes("d.mat", &mat(3, 2)), ["data-sizes-differ"]);
     assert_eq!(codes("d.mat", &mat(3, 3)), [] as [&str; 0]);

@@ -3,7 +3,7 @@
 //! `expected.txt`, which `make.py` beside them has computed without the program.
 
 use crate::transcripts::world_of;
-use gapilib::script::{Options, Session, Transcript};
+use gapilib::{Options, Session, Transcript};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ fn printed(transcript: &str, key: &str) -> Option<f64> {
 
 /// What is wrong with the run of a set; nothing if all is as expected.
 fn problems(folder: &Path) -> Vec<String> {
-    let options = Options { probe: gapilib::identify::Probe::Off, ..Options::default() };
+    let options = Options { probe: gapilib::internals::identify::Probe::Off, ..Options::default() };
     let mut session = Session::new(Box::new(world_of(folder))).with_options(options);
     session.output.transcript = Some(Transcript::default());
     let status = session.run_file(Path::new("run.mos"));

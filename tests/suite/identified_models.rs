@@ -1,12 +1,12 @@
 //! Shipped models, compiled and evaluated without a script.
 
 use crate::shipped;
-use gapilib::codegen::Program;
-use gapilib::flatten::{self, Library};
-use gapilib::ga::Genomes;
-use gapilib::identify::{CompiledModel, Evaluator, Question};
-use gapilib::source::SourceMap;
-use gapilib::{causalize, syntax};
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{self, Library};
+use gapilib::internals::ga::Genomes;
+use gapilib::internals::identify::{CompiledModel, Evaluator, Question};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::{causalize, syntax};
 
 fn polarization_curve(problem: &str) -> CompiledModel {
     let mut library = Library::new();

@@ -263,7 +263,7 @@ fn resumed_after_kills(wanted: u64) {
     let (code, text) = run(folder.path(), &["cooling.toml", "--out", "whole", "--threads", "2"]);
     assert_eq!(code, 0, "{text}");
     let length = started.elapsed();
-    let mut rng = gapilib::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
+    let mut rng = gapilib::internals::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
     let (mut kills, mut rounds, mut resumed) = (0, 0, 0);
     while kills < wanted {
         let out = format!("cut{rounds}");

@@ -1,12 +1,12 @@
 //! Systems of higher index, from Modelica text, against exact solutions.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::flatten::{FlatModel, Library, flatten};
-use gapilib::runtime::System;
-use gapilib::sim::{Settings, SimErrorKind, Trajectory, simulate};
-use gapilib::source::SourceMap;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::flatten::{FlatModel, Library, flatten};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{Settings, SimErrorKind, Trajectory, simulate};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 /// The flat model of the last class of a text.
@@ -127,7 +127,9 @@ fn what_is_not_differentiated_may_be_preferred() {
     // Nothing is iterated.
     let loops = |run: &Run| {
         let blocks = run.program.sorted().blocks.iter();
-        blocks.filter(|block| matches!(block, gapilib::causalize::Block::Loop(_))).count()
+        blocks
+            .filter(|block| matches!(block, gapilib::internals::causalize::Block::Loop(_)))
+            .count()
     };
     assert_eq!((loops(&plain), loops(&preferred)), (1, 0));
 }

@@ -1,7 +1,7 @@
 //! Initial systems that are hard to solve, and loops inside the evaluation, from Modelica text.
 
 use super::index_reduction::{Run, compiled};
-use gapilib::sim::{Settings, find_integrator, simulate};
+use gapilib::internals::sim::{Settings, find_integrator, simulate};
 
 /// Its only root is 0; from 3 every step leads away from it.
 const AWAY: &str = "x/(1 + x^2)";

@@ -3,9 +3,9 @@
 
 use super::hybrid::{attempt, simulated};
 use super::shipped;
-use gapilib::mat;
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
+use gapilib::Session;
+use gapilib::internals::mat;
+use gapilib::world::MemoryWorld;
 use std::path::Path;
 
 /// `d` has as many columns as the square of the largest of `s`.

@@ -1,7 +1,7 @@
 //! Data files as instruments and laboratories write them, against the tables that they were made
 //! from (`tests/data/laboratory`).
 
-use gapilib::mat::{self, MatFile};
+use gapilib::internals::mat::{self, MatFile};
 use serde_json::Value;
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! A file read class by class gives the tree of a file read at once.
 
-use gapilib::source::{SourceId, Spanned};
-use gapilib::syntax::ast::{ClassDefinition, ClassSpecifier, Element, Section};
-use gapilib::syntax::{self, Outline};
+use gapilib::internals::source::{SourceId, Spanned};
+use gapilib::internals::syntax::ast::{ClassDefinition, ClassSpecifier, Element, Section};
+use gapilib::internals::syntax::{self, Outline};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

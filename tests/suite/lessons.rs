@@ -3,10 +3,10 @@
 
 use crate::cli::{command, folder, gapi};
 use crate::shipped::project;
-use gapilib::lessons::{self, Lesson, Verdict};
-use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Reporting, Session};
-use gapilib::value::Value;
+use gapilib::Value;
+use gapilib::internals::lessons::{self, Lesson, Verdict};
+use gapilib::world::MemoryWorld;
+use gapilib::{Reporting, Session};
 use serde::Deserialize;
 use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;

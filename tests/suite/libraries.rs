@@ -2,10 +2,10 @@
 //! the files of its folder; the transcript is compared with the snapshot beside the script.
 
 use crate::transcripts::{transcript_of, world_of};
-use gapilib::name::Name;
-use gapilib::script::models::simulation;
-use gapilib::script::{Dialect, Options, Session};
-use gapilib::source::SourceId;
+use gapilib::internals::name::Name;
+use gapilib::internals::script::models::simulation;
+use gapilib::internals::source::SourceId;
+use gapilib::{Dialect, Options, Session};
 use std::path::Path;
 
 #[test]

@@ -1,14 +1,14 @@
 //! What libraries write that the specification allows, or that other programs accept: every case is
 //! simulated, and `x` at the end is the value that follows from the specification.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::{Flattened, Library, flatten};
-use gapilib::name::Name;
-use gapilib::sim::{Settings, simulate};
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::Diagnostic;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::flatten::{Flattened, Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::sim::{Settings, simulate};
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 
 /// The model `P.M` of a package whose contents these are.
 pub fn flattened(contents: &str) -> Flattened {

@@ -1,10 +1,10 @@
 //! What stopped models of published libraries: every case is a small model with the same cause.
 
 use crate::library_forms::{at_end, attempted};
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 
 /// HelmholtzMedia divides by `small`, which the neutral edition of `ModelicaServices` sets to the least
 /// normal number.

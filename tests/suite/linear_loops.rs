@@ -1,9 +1,9 @@
 //! Linear algebraic loops, from Modelica text, against exact solutions.
 
 use super::index_reduction::{Run, compiled};
-use gapilib::causalize::{Block, causalize};
-use gapilib::codegen::Program;
-use gapilib::sim::{Settings, simulate};
+use gapilib::internals::causalize::{Block, causalize};
+use gapilib::internals::codegen::Program;
+use gapilib::internals::sim::{Settings, simulate};
 
 /// Sizes of the linear and of the other loops.
 fn loops(program: &Program) -> (Vec<usize>, Vec<usize>) {
@@ -56,7 +56,7 @@ fn the_slopes_of_a_loop_reach_the_integrator() {
           der(x) = -a[3];
         end Slopes;";
     for method in ["dassl", "rodas4", "dopri5"] {
-        let method = gapilib::sim::find_integrator(method).unwrap();
+        let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let run = Run::with(text, Settings { method, tolerance: 1e-9, ..Settings::default() });
         assert_eq!(loops(&run.program), (vec![3], vec![]));
         run.follows("x", 1e-7, |t| (-t).exp());
@@ -110,8 +110,8 @@ fn parameters_that_are_zero_are_not_divided_by() {
 fn what_cannot_be_set_becomes_a_number() {
     let sorted = causalize(&super::index_reduction::flat(AXIS)).unwrap();
     let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
-    assert_eq!(kind("e[2]"), gapilib::lower::Kind::Constant(1.0));
-    assert_eq!(kind("r[3]"), gapilib::lower::Kind::Parameter { tunable: true });
+    assert_eq!(kind("e[2]"), gapilib::internals::lower::Kind::Constant(1.0));
+    assert_eq!(kind("r[3]"), gapilib::internals::lower::Kind::Parameter { tunable: true });
 }
 
 #[test]

@@ -2,11 +2,11 @@
 //! deeper than one operand, and threads of tests have 2 MiB of stack.
 
 use crate::hybrid::simulated;
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
-use gapilib::source::SourceId;
-use gapilib::syntax::ast::Expression;
-use gapilib::syntax::{parse_expression, print};
+use gapilib::Session;
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::ast::Expression;
+use gapilib::internals::syntax::{parse_expression, print};
+use gapilib::world::MemoryWorld;
 
 const TERMS: usize = 100_000;
 

@@ -1,7 +1,7 @@
 //! Matrices in files: against files of other programs, an independent reader, and damage.
 
-use gapilib::diag::Fault;
-use gapilib::mat::{self, Kind, MatFile, Matrix, Storage, Version};
+use gapilib::Fault;
+use gapilib::internals::mat::{self, Kind, MatFile, Matrix, Storage, Version};
 use proptest::prelude::*;
 use std::path::PathBuf;
 

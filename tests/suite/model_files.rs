@@ -2,9 +2,9 @@
 //! and what every simulation has for itself.
 
 use crate::shipped;
-use gapilib::mat::{self, Matrix};
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
+use gapilib::Session;
+use gapilib::internals::mat::{self, Matrix};
+use gapilib::world::MemoryWorld;
 
 const TABLES: &str = "#1\n# two tables\ndouble steps(4,3)\n0 0 1\n1 2 3\n1 5 3\n2 7 4\n\
                       float line(2,2)\n0 1\n4 9\n";

@@ -1,7 +1,7 @@
 //! The small package `Modelica` of `models/`.
 
 use crate::shipped;
-use gapilib::value::Value;
+use gapilib::Value;
 
 /// The numbers of expressions, row by row, computed in one session.
 fn numbers(expressions: &[&str]) -> Vec<Vec<f64>> {

@@ -2,8 +2,8 @@
 //! values: those of `tests/models`.
 
 use crate::shipped;
-use gapilib::script::Session;
-use gapilib::script::models::checking;
+use gapilib::Session;
+use gapilib::internals::script::models::checking;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -291,7 +291,7 @@ fn every_model_is_balanced() {
             assert!(name.contains("Table"), "{name} is not flattened");
             continue;
         };
-        if let Err(error) = gapilib::causalize::causalize(&flat) {
+        if let Err(error) = gapilib::internals::causalize::causalize(&flat) {
             assert!(ALONE.contains(&error.code.slug), "{name}: {error}");
         }
     }

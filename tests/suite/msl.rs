@@ -7,9 +7,9 @@
 use crate::conformance::{
     Corpus, Ended, Ledger, Reference, Stage, filter, folder, is_asked_for, judge_all, run, say,
 };
-use gapilib::flatten::{self, Library};
-use gapilib::name::Name;
-use gapilib::syntax::ast::{Argument, ClassSpecifier, Restriction, Section};
+use gapilib::internals::flatten::{self, Library};
+use gapilib::internals::name::Name;
+use gapilib::internals::syntax::ast::{Argument, ClassSpecifier, Restriction, Section};
 use std::collections::BTreeMap;
 
 /// Seconds that an example may take.

@@ -2,7 +2,7 @@
 //! endings together. All 27 with the default search are measured by `cargo bench --bench nist`.
 
 use super::nist::{Dataset, MODELS};
-use gapilib::identify::problem::EndingKind;
+use gapilib::internals::identify::problem::EndingKind;
 
 /// Values to 6 digits; standard errors to 5, where residuals are not those of rounding.
 fn assert_certified(name: &str, method: &str, start: Option<usize>, budget: u64) {

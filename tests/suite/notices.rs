@@ -1,7 +1,7 @@
 //! What models tell while they are simulated: warnings and texts that they print.
 
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
+use gapilib::Session;
+use gapilib::world::MemoryWorld;
 
 const MODEL: &str = "model P
   impure function tell

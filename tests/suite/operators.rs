@@ -3,8 +3,8 @@
 
 use crate::cli::{folder, gapi};
 use crate::shipped::{self, project};
-use gapilib::ga::operators::KINDS;
-use gapilib::value::Value;
+use gapilib::Value;
+use gapilib::internals::ga::operators::KINDS;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

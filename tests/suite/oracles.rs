@@ -3,7 +3,7 @@
 //! the feature `std` of nalgebra, with which its sums depend on the processor.
 
 use faer::linalg::solvers::{DenseSolveCore, PartialPivLu, Solve};
-use gapilib::sim::{DenseLu, Factorization, Pattern};
+use gapilib::internals::sim::{DenseLu, Factorization, Pattern};
 use proptest::prelude::*;
 
 /// Entries by columns, most of them zero, with rows and columns scaled by powers of ten.

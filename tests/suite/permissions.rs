@@ -303,7 +303,7 @@ fn all_commands_write_whole_files() {
 /// The guide lists the kinds of files and the exceptions that the program knows.
 #[test]
 fn the_guide_lists_the_files_that_scripts_create() {
-    use gapilib::script::access::policy::{EXCEPTIONS, KINDS};
+    use gapilib::internals::script::access::policy::{EXCEPTIONS, KINDS};
     let guide = include_str!("../../docs/src/permissions.md");
     for (kind, endings) in KINDS {
         let listed: Vec<String> = endings.iter().map(|ending| format!("`.{ending}`")).collect();

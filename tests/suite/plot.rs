@@ -1,6 +1,6 @@
 //! Figures.
 
-use gapilib::plot::{self, Axis, Comparison, Figure, Mark, Panel, Picture, Series};
+use gapilib::internals::plot::{self, Axis, Comparison, Figure, Mark, Panel, Picture, Series};
 use proptest::prelude::*;
 use resvg::tiny_skia::Pixmap;
 use std::path::Path;

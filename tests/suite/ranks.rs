@@ -1,14 +1,14 @@
 //! Populations on several ranks, which are threads here that pass messages: the same numbers for any
 //! number of them, and what becomes of ranks that do not fit, fail or are cancelled.
 
-use gapilib::causalize;
-use gapilib::codegen::Program;
-use gapilib::flatten::{self, Library};
-use gapilib::ga::Genomes;
-use gapilib::identify::ranks::{About, Connection, Processors, Ranks, Service, serve};
-use gapilib::identify::{CompiledModel, Evaluator, Question};
-use gapilib::source::SourceMap;
-use gapilib::syntax;
+use gapilib::internals::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{self, Library};
+use gapilib::internals::ga::Genomes;
+use gapilib::internals::identify::ranks::{About, Connection, Processors, Ranks, Service, serve};
+use gapilib::internals::identify::{CompiledModel, Evaluator, Question};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};

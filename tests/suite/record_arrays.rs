@@ -1,8 +1,8 @@
 //! Functions that rearrange arrays of records in models (MLS §10.3.3, §10.3.5, §10.4.2).
 
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
-use gapilib::syntax::ast::ExpressionKind;
+use gapilib::Session;
+use gapilib::internals::syntax::ast::ExpressionKind;
+use gapilib::world::MemoryWorld;
 use std::sync::Arc;
 
 const MODEL: &str = "model M

@@ -4,8 +4,8 @@
 //! tolerances. `cargo test reference_problems -- --nocapture` prints them.
 
 use super::index_reduction::{Run, compiled};
-use gapilib::codegen::{Access, Program};
-use gapilib::sim::{OutputGrid, Settings, Statistics, find_integrator, simulate};
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::sim::{OutputGrid, Settings, Statistics, find_integrator, simulate};
 use std::sync::Arc;
 
 /// The tolerances of all rows.

@@ -1,6 +1,6 @@
 //! Results of simulations as files.
 
-use gapilib::mat;
+use gapilib::internals::mat;
 use gapilib::results::{self, ResultTable, Series, Values, errors};
 use proptest::prelude::*;
 use std::process::Command;

@@ -1,15 +1,15 @@
 //! Strings that are made while a model is simulated: by `String` and `+`, in equations, algorithms and
 //! functions, and by external functions.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::runtime::System;
-use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::Diagnostic;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 fn translated(text: &str, class: &str) -> Result<Arc<Program>, Diagnostic> {

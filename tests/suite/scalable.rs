@@ -20,7 +20,7 @@ fn models_of_the_scalable_test_suite_are_simulated_at_their_sizes() {
         return;
     };
     let corpus = Corpus::load(&root);
-    let is_scaled = |name: &gapilib::name::Name| {
+    let is_scaled = |name: &gapilib::internals::name::Name| {
         let text = name.to_string();
         text.contains(".ScaledExperiments.")
             && is_asked_for(&text)

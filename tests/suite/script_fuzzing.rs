@@ -1,7 +1,7 @@
 //! Scripts made of pieces, in a world in memory: no panic and no hang, whatever they say.
 
-use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Dialect, Options, Session};
+use gapilib::world::MemoryWorld;
+use gapilib::{Dialect, Options, Session};
 use proptest::prelude::*;
 
 /// Pieces of statements; `@` stands for an expression, `#` for a name.

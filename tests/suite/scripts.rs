@@ -1,8 +1,8 @@
 //! The shipped scripts.
 
 use crate::shipped;
-use gapilib::source::SourceMap;
-use gapilib::{mat, syntax};
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::{mat, syntax};
 use std::path::Path;
 
 #[test]

@@ -122,7 +122,7 @@ fn a_study_that_was_killed_goes_on_with_the_searches_that_it_has() {
     identify(&here, &["--searches", "4", "--out", "killed", "--shard", "1/1"]);
     let whole = files(&here.path().join("whole"));
     let killed = here.path().join("killed");
-    let known = gapilib::identify::problem::ShardFile::from_bytes(
+    let known = gapilib::internals::identify::problem::ShardFile::from_bytes(
         &fs::read(killed.join("shard.part")).unwrap(),
     );
     let journal = known.expect("whole").journal;

@@ -2,15 +2,15 @@
 
 use super::flat_class::flat;
 use super::shipped::world;
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Program, SensitivityCode};
-use gapilib::flatten::FlatModel;
-use gapilib::identify::CompiledModel;
-use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
-use gapilib::runtime::System;
-use gapilib::script::Session;
-use gapilib::script::models::simulation::flat_model;
-use gapilib::sim::{Settings, Simulator, Trajectory, find_integrator};
+use gapilib::Session;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Program, SensitivityCode};
+use gapilib::internals::flatten::FlatModel;
+use gapilib::internals::identify::CompiledModel;
+use gapilib::internals::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
+use gapilib::internals::runtime::System;
+use gapilib::internals::script::models::simulation::flat_model;
+use gapilib::internals::sim::{Settings, Simulator, Trajectory, find_integrator};
 use proptest::prelude::*;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Sessions: exit codes, strictness, dialects, echo, libraries, and what lasts between statements.
 
-use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Dialect, Echo, Options, Permissions, Session, Strictness, Transcript};
-use gapilib::value::Value;
+use gapilib::Value;
+use gapilib::world::MemoryWorld;
+use gapilib::{Dialect, Echo, Options, Permissions, Session, Strictness, Transcript};
 use std::path::Path;
 
 fn run(world: MemoryWorld, options: Options, script: &str) -> (u8, String, Session) {
@@ -149,7 +149,7 @@ fn a_class_defined_again_is_translated_again() {
 
 #[test]
 fn work_at_the_end_is_done_once() {
-    fn say(session: &mut Session) -> Result<(), gapilib::diag::Diagnostic> {
+    fn say(session: &mut Session) -> Result<(), gapilib::Diagnostic> {
         session.print("end\n");
         Ok(())
     }

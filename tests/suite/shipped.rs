@@ -1,7 +1,7 @@
 //! Where the shipped files are.
 
-use gapilib::script::world::MemoryWorld;
-use gapilib::script::{RunStatus, Session};
+use gapilib::world::MemoryWorld;
+use gapilib::{RunStatus, Session};
 use std::path::{Path, PathBuf};
 
 /// A path of the project.

@@ -1,10 +1,10 @@
 //! Compiled models against exact solutions.
 
 use super::flat_class::flat;
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::runtime::System;
-use gapilib::sim::{DaeSystem, Settings, Trajectory, simulate};
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{DaeSystem, Settings, Trajectory, simulate};
 use std::sync::Arc;
 
 fn compiled(text: &str) -> Arc<Program> {

@@ -29,8 +29,9 @@ fn states_move_away_from_where_a_loop_has_no_derivative() {
     let text = "model M Real x(start = 0, fixed = true); Real y, s;
         equation der(x) = 1 + 0*s; y + s = x; s = sqrt(y); end M;";
     for method in ["dassl", "dopri5"] {
-        let method = gapilib::sim::find_integrator(method).unwrap();
-        let settings = gapilib::sim::Settings { method, tolerance: 1e-8, ..Default::default() };
+        let method = gapilib::internals::sim::find_integrator(method).unwrap();
+        let settings =
+            gapilib::internals::sim::Settings { method, tolerance: 1e-8, ..Default::default() };
         let run = Run::with(text, settings);
         run.follows("x", 1e-7, |t| t);
         run.follows("s", 1e-6, |t| ((1.0 + 4.0 * t).sqrt() - 1.0) / 2.0);
@@ -42,8 +43,9 @@ fn a_domain_error_of_the_residual_is_still_one() {
     let compiled = super::index_reduction::compiled(
         "model M Real x(start = 1, fixed = true); Real y; equation der(x) = -1; y = sqrt(x); end M;",
     );
-    let settings = gapilib::sim::Settings { stop: 2.0, ..Default::default() };
-    let error = gapilib::sim::simulate(&mut compiled.system(), &settings).expect_err("sqrt(-1)");
+    let settings = gapilib::internals::sim::Settings { stop: 2.0, ..Default::default() };
+    let error =
+        gapilib::internals::sim::simulate(&mut compiled.system(), &settings).expect_err("sqrt(-1)");
     assert!((error.time - 1.0).abs() < 1e-2, "{}", error.time);
 }
 
@@ -78,6 +80,6 @@ fn the_derivative_of_another_root_at_zero_is_refused() {
         "model M Real u(start = 0, fixed = true), v(start = 0, fixed = true); Real s, d;
          equation der(u) = 2; der(v) = 1; s = sqrt(u^2 - v^2); d = der(s); end M;",
     );
-    let settings = gapilib::sim::Settings { stop: 2.0, ..Default::default() };
-    gapilib::sim::simulate(&mut compiled.system(), &settings).expect_err("0/0");
+    let settings = gapilib::internals::sim::Settings { stop: 2.0, ..Default::default() };
+    gapilib::internals::sim::simulate(&mut compiled.system(), &settings).expect_err("0/0");
 }

@@ -3,7 +3,7 @@
 
 use super::hybrid::simulated;
 use super::index_reduction::{Run, compiled};
-use gapilib::sim::{Settings, simulate};
+use gapilib::internals::sim::{Settings, simulate};
 
 #[test]
 fn an_unknown_below_a_fraction_is_not_divided_by_where_it_begins() {

@@ -1,15 +1,15 @@
 //! Parameters that shaped the equations cannot be set afterwards; those that only choose values
 //! can, and what is simulated with a function is what the interpreter computes with it.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::{Access, Program};
-use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::sim::{Settings, simulate};
-use gapilib::source::{SourceId, Span};
-use gapilib::syntax::{ast::ComponentReference, parse_stored_definition};
-use gapilib::value::Value;
+use gapilib::Value;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::{Access, Program};
+use gapilib::internals::eval::{Arguments, Callee, Function, Host, call_function};
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::sim::{Settings, simulate};
+use gapilib::internals::source::{SourceId, Span};
+use gapilib::internals::syntax::{ast::ComponentReference, parse_stored_definition};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
@@ -88,7 +88,7 @@ fn parameters_that_chose_equations_or_sizes_cannot_be_set() {
 struct Functions(IndexMap<Name, Arc<Function>>);
 
 impl Host for Functions {
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, gapilib::diag::Diagnostic> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, gapilib::Diagnostic> {
         Ok(self.0.get(name).cloned().map(Callee::Function))
     }
 
@@ -97,14 +97,11 @@ impl Host for Functions {
         header: &Arc<Function>,
         _: Vec<Value>,
         _: Span,
-    ) -> Result<Vec<Value>, gapilib::diag::Diagnostic> {
+    ) -> Result<Vec<Value>, gapilib::Diagnostic> {
         panic!("`{}` is not a command", header.name)
     }
 
-    fn variable(
-        &mut self,
-        _: &ComponentReference,
-    ) -> Result<Option<Value>, gapilib::diag::Diagnostic> {
+    fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, gapilib::Diagnostic> {
         Ok(None)
     }
 }

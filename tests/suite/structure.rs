@@ -2,13 +2,13 @@
 
 use super::flat_class::flat;
 use super::shipped::{project, world};
-use gapilib::causalize::{PASSES, Pass, causalize, check, dump, report, sizes};
-use gapilib::codegen::Program;
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::FlatModel;
-use gapilib::script::Session;
-use gapilib::script::models::simulation::flat_model;
-use gapilib::sim::{DaeSystem, Settings, Simulator, Trajectory};
+use gapilib::Diagnostic;
+use gapilib::Session;
+use gapilib::internals::causalize::{PASSES, Pass, causalize, check, dump, report, sizes};
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::FlatModel;
+use gapilib::internals::script::models::simulation::flat_model;
+use gapilib::internals::sim::{DaeSystem, Settings, Simulator, Trajectory};
 use std::path::Path;
 
 #[test]

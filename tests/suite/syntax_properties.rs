@@ -1,15 +1,17 @@
 //! Properties of the parser: printing and reading again gives the same tree, and no text makes it
 //! panic.
 
-use gapilib::name::{Ident, Name};
-use gapilib::source::{SourceId, Span, Spanned};
-use gapilib::syntax::ast::{
+use gapilib::internals::name::{Ident, Name};
+use gapilib::internals::source::{SourceId, Span, Spanned};
+use gapilib::internals::syntax::ast::{
     Arguments, BinaryOperator, Comment, ComponentReference, Expression, ExpressionKind, ForIndex,
     InteractiveKind, InteractiveStatement, NamedArgument, ReferencePart, Script, Statement,
     StatementKind, Subscript, UnaryOperator,
 };
-use gapilib::syntax::visit::{Rewrite, WithoutSpans, rewrite_script, rewrite_stored_definition};
-use gapilib::syntax::{parse_expression, parse_script, parse_stored_definition, print};
+use gapilib::internals::syntax::visit::{
+    Rewrite, WithoutSpans, rewrite_script, rewrite_stored_definition,
+};
+use gapilib::internals::syntax::{parse_expression, parse_script, parse_stored_definition, print};
 use proptest::prelude::*;
 
 const BINARY: [BinaryOperator; 18] = [

@@ -1,8 +1,8 @@
 //! What a user sees: each script of `tests/transcripts/*/` is run in a world in memory that holds
 //! the files of its folder; the transcript is compared with the snapshot beside the script.
 
-use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Options, Permissions, Session, Transcript};
+use gapilib::world::MemoryWorld;
+use gapilib::{Options, Permissions, Session, Transcript};
 use std::fs;
 use std::path::Path;
 

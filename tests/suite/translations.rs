@@ -3,11 +3,11 @@
 
 use crate::cli::{command, folder};
 use crate::shipped;
-use gapilib::codegen::Program;
-use gapilib::script::Session;
-use gapilib::script::models::simulation::{self, SimulationOptions};
-use gapilib::script::world::{MemoryWorld, Store};
-use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::Session;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::script::models::simulation::{self, SimulationOptions};
+use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::world::{MemoryWorld, Store};
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,14 +1,14 @@
 //! Functions that use or return variables before they are assigned: zero with a warning, as other
 //! tools have it, and an error in strict mode.
 
-use gapilib::causalize::causalize;
-use gapilib::codegen::Program;
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::{Library, flatten};
-use gapilib::name::Name;
-use gapilib::sim::{DaeSystem, Settings, simulate};
-use gapilib::source::SourceId;
-use gapilib::syntax::parse_stored_definition;
+use gapilib::Diagnostic;
+use gapilib::internals::causalize::causalize;
+use gapilib::internals::codegen::Program;
+use gapilib::internals::flatten::{Library, flatten};
+use gapilib::internals::name::Name;
+use gapilib::internals::sim::{DaeSystem, Settings, simulate};
+use gapilib::internals::source::SourceId;
+use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 const FUNCTIONS: &str = "

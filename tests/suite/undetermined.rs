@@ -2,10 +2,10 @@
 //! without a word, and contradictions are errors.
 
 use super::hybrid::{compiled, near};
-use gapilib::codegen::Access;
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
-use gapilib::sim::{Settings, simulate};
+use gapilib::Session;
+use gapilib::internals::codegen::Access;
+use gapilib::internals::sim::{Settings, simulate};
+use gapilib::world::MemoryWorld;
 
 /// Exit code, and what was reported, after simulating a model of these declarations and equations.
 fn simulated(text: &str) -> (u8, String) {

@@ -2,8 +2,8 @@
 //! listens to goes on and says so; what anything depends on must have a value.
 
 use super::hybrid::{compiled, near};
-use gapilib::codegen::Access;
-use gapilib::sim::{Settings, Simulator, Trajectory};
+use gapilib::internals::codegen::Access;
+use gapilib::internals::sim::{Settings, Simulator, Trajectory};
 
 /// Warnings, and the values of a variable at the start and at the end; or why there are none.
 #[allow(clippy::type_complexity, reason = "a closure has no name")]

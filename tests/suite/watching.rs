@@ -1,9 +1,9 @@
 //! Runs that somebody watches: views, pauses in which settings change, and scripts that are
 //! interrupted and go on.
 
-use gapilib::script::runs::view::View;
-use gapilib::script::world::{MemoryWorld, Views};
-use gapilib::script::{Journaling, Options, Session};
+use gapilib::internals::script::runs::view::View;
+use gapilib::world::{MemoryWorld, Views};
+use gapilib::{Journaling, Options, Session};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 

@@ -5,13 +5,13 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a measurement")]
 
-use gapilib::cli::embedding::Embedding;
-use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
-use gapilib::identify::{CompiledModel, Model};
-use gapilib::name::Name;
-use gapilib::script::models::simulation;
-use gapilib::script::runs::view::Progress;
-use gapilib::script::world::Screen;
+use gapilib::embedding::Embedding;
+use gapilib::internals::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
+use gapilib::internals::identify::{CompiledModel, Model};
+use gapilib::internals::name::Name;
+use gapilib::internals::script::models::simulation;
+use gapilib::internals::script::runs::view::Progress;
+use gapilib::world::Screen;
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;

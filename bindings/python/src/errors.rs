@@ -1,7 +1,8 @@
 //! What is wrong, as Python's exception with its place and what to do.
 
-use gapilib::diag::{Diagnostic, Fault, Severity, render::render};
-use gapilib::source::{SourceMap, Span};
+use gapilib::{Diagnostic, Fault, Severity};
+use gapilib::internals::diag::render::render;
+use gapilib::internals::source::{SourceMap, Span};
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;

@@ -3,11 +3,11 @@
 use crate::errors::{Reported, raised};
 use crate::session::{Answer, checked};
 use crate::worker::{Worker, written};
-use gapilib::cli::embedding::Embedding;
-use gapilib::identify::problem::Solution;
-use gapilib::script::Session as Engine;
-use gapilib::script::access::policy::Grant;
-use gapilib::script::runs::problem::{RunOptions, solve};
+use gapilib::embedding::Embedding;
+use gapilib::internals::identify::problem::Solution;
+use gapilib::Session as Engine;
+use gapilib::internals::script::access::policy::Grant;
+use gapilib::internals::script::runs::problem::{RunOptions, solve};
 use indexmap::IndexMap;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;

@@ -25,12 +25,12 @@ use pyo3::prelude::*;
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResult<u8> {
     let _at_work = forked::AtWork::begin(py)?;
-    Ok(py.detach(|| gapilib::cli::embedding::command(arguments)))
+    Ok(py.detach(|| gapilib::embedding::command(arguments)))
 }
 
 #[pymodule]
 fn _gapilib(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    gapilib::budget::allow_long_calls();
+    gapilib::internals::budget::allow_long_calls();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("GapilibError", module.py().get_type::<errors::GapilibError>())?;
     module.add_function(wrap_pyfunction!(command, module)?)?;

@@ -2,11 +2,11 @@
 
 use crate::errors::raised_fault;
 use crate::values;
-use gapilib::diag::Fault;
-use gapilib::ga::crossover::Parents;
-use gapilib::ga::mutation::{Child, Course};
-use gapilib::ga::{Gene, Genomes, Mrg32k3a, operators};
-use gapilib::registry::Choice;
+use gapilib::Fault;
+use gapilib::internals::ga::crossover::Parents;
+use gapilib::internals::ga::mutation::{Child, Course};
+use gapilib::internals::ga::{Gene, Genomes, Mrg32k3a, operators};
+use gapilib::internals::registry::Choice;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};

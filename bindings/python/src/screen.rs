@@ -1,7 +1,7 @@
 //! What sessions print, on its way to Python.
 
-use gapilib::script::runs::view::Progress;
-use gapilib::script::world::Screen;
+use gapilib::internals::script::runs::view::Progress;
+use gapilib::world::Screen;
 use std::sync::mpsc::Sender;
 
 /// What a session tells the thread that waits for it.

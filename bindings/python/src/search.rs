@@ -2,9 +2,9 @@
 
 use crate::errors::raised_fault;
 use crate::values;
-use gapilib::ga::optimizer::{Answers, METHODS, Optimizer as Search, Setup, Wants};
-use gapilib::ga::{Gene, Genomes, Mrg32k3a};
-use gapilib::registry::{Choice, Options, find};
+use gapilib::internals::ga::optimizer::{Answers, METHODS, Optimizer as Search, Setup, Wants};
+use gapilib::internals::ga::{Gene, Genomes, Mrg32k3a};
+use gapilib::internals::registry::{Choice, Options, find};
 use indexmap::IndexMap;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -156,7 +156,7 @@ impl Optimizer {
         let count = batch.len();
         let objectives: Vec<f64> = flat(fitness)?
             .into_iter()
-            .map(|value| if value.is_finite() { value } else { gapilib::ga::FAILED_FITNESS })
+            .map(|value| if value.is_finite() { value } else { gapilib::internals::ga::FAILED_FITNESS })
             .collect();
         let residuals = residuals.map(flat).transpose()?.unwrap_or_default();
         let mut jacobians = jacobians.map(flat).transpose()?.unwrap_or_default();

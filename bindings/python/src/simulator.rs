@@ -4,9 +4,9 @@ use crate::errors::raised_fault;
 use crate::forked::{AtWork, Own};
 use crate::values;
 use crate::watch::Watched;
-use gapilib::diag::Fault;
-use gapilib::identify::problem::{Experiment, Failed, ModelSimulator, Observation, Simulate};
-use gapilib::identify::{CompiledModel, Model as _};
+use gapilib::Fault;
+use gapilib::internals::identify::problem::{Experiment, Failed, ModelSimulator, Observation, Simulate};
+use gapilib::internals::identify::{CompiledModel, Model as _};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -371,12 +371,12 @@ impl Simulator {
 fn without_derivatives(py: Python<'_>, refusal: Option<String>) -> PyErr {
     let why = refusal.unwrap_or_else(|| "the model has events".to_owned());
     let message = format!("there are no exact derivatives because {why}");
-    let fault = Fault::new(gapilib::registry::BAD_OPTION, message);
+    let fault = Fault::new(gapilib::internals::registry::BAD_OPTION, message);
     raised_fault(py, fault.help("take differences of simulations instead"))
 }
 
 /// A failed simulation as an exception.
 fn failure(py: Python<'_>, failed: Failed) -> PyErr {
-    let code = gapilib::codegen::errors::SIMULATION_FAILED;
+    let code = gapilib::internals::codegen::errors::SIMULATION_FAILED;
     raised_fault(py, Fault::new(code, failed.cause))
 }

@@ -2,7 +2,7 @@
 
 use crate::model::SimulationResult;
 use gapilib::results::{ResultTable, Series, Values};
-use gapilib::sim::Statistics;
+use gapilib::internals::sim::Statistics;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

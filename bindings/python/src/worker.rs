@@ -2,8 +2,8 @@
 
 use crate::forked::{AtWork, Own};
 use crate::screen::{Channel, Event};
-use gapilib::script::world::Screen;
-use gapilib::script::{Session, with_stack};
+use gapilib::world::Screen;
+use gapilib::{Session, with_stack};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt as _;

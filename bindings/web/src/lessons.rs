@@ -1,6 +1,6 @@
 //! The lessons and their checks.
 
-use gapilib::lessons::{self, Verdict};
+use gapilib::internals::lessons::{self, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// All lessons are asked for.

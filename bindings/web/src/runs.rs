@@ -5,8 +5,8 @@ use crate::steps;
 use crate::world::LiveWorld;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use gapilib::script::world::{Files, MemoryWorld, World};
-use gapilib::script::{Options, Permissions, RunStatus, Session, Transcript};
+use gapilib::world::{Files, MemoryWorld, World};
+use gapilib::{Options, Permissions, RunStatus, Session, Transcript};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -146,7 +146,7 @@ fn decoded(files: BTreeMap<PathBuf, String>) -> Result<Contents, String> {
 }
 
 fn absolute(start: &Path, path: &Path) -> PathBuf {
-    gapilib::script::world::normalized(&start.join(path))
+    gapilib::world::normalized(&start.join(path))
 }
 
 /// All files below a folder of a world.

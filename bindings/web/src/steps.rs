@@ -2,7 +2,7 @@
 
 use crate::lock;
 use crate::runs::Change;
-use gapilib::teach::{Trace, page};
+use gapilib::internals::teach::{Trace, page};
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 

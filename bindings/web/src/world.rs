@@ -3,10 +3,10 @@
 
 use crate::host::{self, Command};
 use crate::runs::Change;
-use gapilib::packages;
-use gapilib::script::access::policy::{Access, Grant};
-use gapilib::script::runs::view::{Fitted, Progress, Spread, View};
-use gapilib::script::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
+use gapilib::internals::packages;
+use gapilib::internals::script::access::policy::{Access, Grant};
+use gapilib::internals::script::runs::view::{Fitted, Progress, Spread, View};
+use gapilib::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
 use serde_json::json;
 use std::cell::Cell;
 use std::io;

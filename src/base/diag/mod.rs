@@ -50,6 +50,19 @@ pub struct Frame {
 }
 
 /// A fault without a place: what an operation returns.
+///
+/// ```
+/// use gapilib_base::diag::Fault;
+/// use gapilib_base::registry::BAD_OPTION;
+/// use gapilib_base::source::{SourceMap, Span};
+///
+/// let fault = Fault::new(BAD_OPTION, "`x` is not positive").help("give a larger `x`");
+/// let sources = SourceMap::default();
+/// let source = sources.add("input.mos", "f(x = -1)");
+/// let diagnostic = fault.at(Span::new(source, 6, 8));
+/// assert!(diagnostic.is_error());
+/// assert_eq!(sources.text(diagnostic.span()), "-1");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     /// Its kind.

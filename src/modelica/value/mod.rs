@@ -26,7 +26,18 @@ pub use record::RecordValue;
 use crate::name::{Ident, Name};
 use std::sync::Arc;
 
-/// A value.
+/// A value: what variables of scripts and arguments of functions hold.
+///
+/// ```
+/// use gapilib_modelica::value::{FromValue, Value};
+///
+/// let row = Value::reals(vec![1.0, 2.5]);
+/// assert_eq!(row.type_name(), "Real[2]");
+/// assert_eq!(row.dims(), [2]);
+/// assert_eq!(row.as_reals().as_deref(), Some(&[1.0, 2.5][..]));
+/// // An Integer becomes a Real where one is asked for.
+/// assert_eq!(f64::from_value(Value::Integer(3)).ok(), Some(3.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// `Real`

@@ -6,6 +6,17 @@ use crate::source::Span;
 use std::path::{Path, PathBuf};
 
 /// How a run ended.
+///
+/// ```
+/// use gapilib_script::Session;
+/// use gapilib_script::world::MemoryWorld;
+///
+/// let mut session = Session::new(Box::new(MemoryWorld::new()));
+/// let status = session.run_text("input", "x = 1/0");
+/// assert_eq!((status.errors, status.code), (1, 1));
+/// let status = session.run_text("input", "exit(3)");
+/// assert_eq!((status.exit, status.code), (Some(3), 3));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RunStatus {
     /// Errors that happened and that the script did not ask for.

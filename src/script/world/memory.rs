@@ -35,6 +35,17 @@ impl Streams {
 }
 
 /// A world in memory: files in a map, a clock that stands still, one thread.
+///
+/// ```
+/// use gapilib_script::Session;
+/// use gapilib_script::world::MemoryWorld;
+///
+/// let world = MemoryWorld::new().with_file("double.mos", "y = 2*x");
+/// let streams = world.streams();
+/// let mut session = Session::new(Box::new(world));
+/// session.run_text("input", "x = 21\nRunScript(\"double.mos\")\nprint(String(y))");
+/// assert_eq!(streams.output(), "42\n");
+/// ```
 #[derive(Debug, Clone)]
 pub struct MemoryWorld {
     policy: Policy,

@@ -6,7 +6,7 @@ mod exceptions;
 mod sources;
 
 use exceptions::{CYCLES, LONG_FUNCTIONS};
-use gapilib::graph::strongly_connected;
+use gapilib::internals::graph::strongly_connected;
 use sources::{Modules, Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
@@ -299,7 +299,7 @@ fn files_of_a_cycle_are_one_concept() {
 /// that names many of them is a second list.
 #[test]
 fn functions_of_the_language_are_listed_once() {
-    let known: Vec<String> = gapilib::functions::names()
+    let known: Vec<String> = gapilib::internals::functions::names()
         .chain(["der", "pre", "edge", "change", "initial", "terminal", "sample", "delay"])
         .map(|name| format!("\"{name}\""))
         .collect();

@@ -1,12 +1,12 @@
 //! A folder of Modelica files, loaded as one library.
 
-use gapilib::diag::{Diagnostic, Fault};
-use gapilib::external::errors::EXTERNAL_OUTSIDE;
-use gapilib::external::{Provide, Resources};
-use gapilib::flatten::Library;
-use gapilib::source::SourceMap;
-use gapilib::syntax::ast::StoredDefinition;
-use gapilib::syntax::{self, parse_stored_definition};
+use gapilib::internals::external::errors::EXTERNAL_OUTSIDE;
+use gapilib::internals::external::{Provide, Resources};
+use gapilib::internals::flatten::Library;
+use gapilib::internals::source::SourceMap;
+use gapilib::internals::syntax::ast::StoredDefinition;
+use gapilib::internals::syntax::{self, parse_stored_definition};
+use gapilib::{Diagnostic, Fault};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

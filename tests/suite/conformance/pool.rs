@@ -1,7 +1,7 @@
 //! Many cases on few threads, each within its time.
 
 use super::{Failure, Progress, Stage};
-use gapilib::script::with_stack;
+use gapilib::with_stack;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::thread;

@@ -1,6 +1,6 @@
 //! Reference results: folders of a collection, each named like the model that it belongs to.
 
-use gapilib::name::Name;
+use gapilib::internals::name::Name;
 use gapilib::results::{self, ResultTable};
 use std::fs;
 use std::path::{Path, PathBuf};

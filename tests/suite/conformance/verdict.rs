@@ -1,11 +1,11 @@
 //! How far a class gets: flattened, sorted, compiled, simulated, in agreement with a reference.
 
 use super::Reference;
-use gapilib::diag::Diagnostic;
-use gapilib::flatten::Library;
-use gapilib::name::Name;
+use gapilib::Diagnostic;
+use gapilib::internals::flatten::Library;
+use gapilib::internals::name::Name;
+use gapilib::internals::script::models::verification;
 use gapilib::results::TUBE_TOLERANCE;
-use gapilib::script::models::verification;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::Mutex;
