@@ -8,6 +8,7 @@ use gapilib::Fault;
 use gapilib::internals::identify::{CompiledModel, Model as _};
 use gapilib::results::{self, ResultTable, Values};
 use gapilib::Session as Engine;
+use gapilib::internals::script::models::final_state::FinalState;
 use gapilib::internals::script::models::simulation::{self, SimulationOptions, Translated};
 use gapilib::internals::sim::Statistics;
 use indexmap::IndexMap;
@@ -214,7 +215,8 @@ fn simulated(
     let mut options = wanted.options;
     if let Some((table, time)) = wanted.from {
         let time = time.or(table.time.last().copied()).unwrap_or(0.0);
-        simulation::begin_with(engine, &model, &table, time).map_err(fault)?;
+        let state = FinalState::in_result(&model, &table, time).map_err(fault)?;
+        engine.continue_from(&state, "the result").map_err(fault)?;
         options.start = options.start.or(Some(time));
     }
     for (name, value) in &wanted.parameters {
