@@ -69,7 +69,7 @@ fn priors_weigh_against_the_data() {
     assert!((value(&narrow, "k") - 0.82).abs() < 1e-3, "{}", value(&narrow, "k"));
     assert_eq!(narrow.series.len(), 1);
     assert!(
-        narrow.text().contains("The estimate of k comes mainly from its prior"),
+        narrow.text().contains("The estimate of k comes only from its prior"),
         "{}",
         narrow.text()
     );
