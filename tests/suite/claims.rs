@@ -107,7 +107,8 @@ fn wrong_parameter(name: &str, claim: &Parameter, own: &Value) -> Vec<String> {
     check!(wrong, is_right, "{name}: {verdict}, right: {:?}", claim.verdict);
     let value = own["value"].as_f64().expect("a value");
     if let Some([right, within]) = claim.value {
-        check!(wrong, (value - right).abs() <= within, "{name} = {value}, right: {right}");
+        let is_near = (value - right).abs() <= within;
+        check!(wrong, is_near, "{name} = {value}, right: {right}");
     }
     let interval = pair(&own["interval"]);
     if let Some(expected) = claim.interval {
