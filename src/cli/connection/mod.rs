@@ -96,7 +96,7 @@ fn workspace(who: Client, embedding: Embedding, first: Session) -> Workspace {
     })
 }
 
-/// Writes what is sent to the client; ends when nobody can send any more.
+/// Writes what is sent to the client; ends when the last sender is gone.
 fn write_all(messages: &Receiver<Message>) -> io::Result<()> {
     let mut output = io::stdout().lock();
     messages.iter().try_for_each(|message| frames::write(&mut output, &message))

@@ -389,7 +389,7 @@ impl Walk<'_> {
             if attempt >= CROSSING && (!jumps || is_located) {
                 return Ok(at(part));
             }
-            // Where the same end is met again, the rise is no parabola.
+            // Where the same end is met again, the rise is not a parabola.
             let is_root = attempt < CROSSING && same_end < 2;
             let place = at(if is_root { part } else { 0.5 });
             let mut there = values.to_vec();

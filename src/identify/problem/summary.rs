@@ -216,7 +216,7 @@ fn method(run: &Run) -> String {
 }
 
 /// Points of the search far from the best; where there are too few, points of a Latin hypercube. Near
-/// the best a product cannot be told from a sum.
+/// the best a product looks like a sum.
 fn elsewhere(run: &Run, best: &[f64]) -> Result<Vec<Vec<f64>>, Fault> {
     let parameters = &run.problem.parameters;
     let is_far = |values: &[f64]| {

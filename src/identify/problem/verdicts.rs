@@ -137,7 +137,7 @@ impl Solution {
         if groups.any(|group| in_group(&group.form) && group.parameters.contains(&k)) {
             own.verdict = Some(Verdict::StructurallyNonIdentifiable);
             own.determined = Some(false);
-            // What rounding leaves of a singular matrix is no standard error.
+            // What rounding leaves of a singular matrix is not a standard error.
             own.deviation = None;
             return Judged::Group;
         }
@@ -253,7 +253,7 @@ impl Solution {
     }
 
     /// Among parameters whose changes cancel near the best values, an interval may end only where
-    /// another of them meets the end of its range: that is no statement of the data.
+    /// another of them meets the end of its range: the data do not say that.
     fn beware_of_ranges(&mut self, k: usize, profile: &Profile, statistics: &Statistics) {
         if self.parameters[k].verdict != Some(Verdict::Identifiable) {
             return;
