@@ -11,6 +11,8 @@ use crate::identify::significant;
 
 /// Objectives that differ by less than this part are equal: these data do not show the difference.
 const EQUAL: f64 = 1e-3;
+/// Ratios of objectives below this are said in percent: a factor of 1.00 says nothing.
+const FEW_PERCENT: f64 = 1.1;
 
 /// The columns of inputs before a change: experiment, input, column.
 pub(super) type Before = Vec<(usize, String, Column)>;
@@ -84,6 +86,7 @@ fn finding(names: &[&str], assumed: Between, [own, other]: [Option<f64>; 2]) -> 
     let better = if other < own { assumed.other() } else { assumed };
     let ratio = own.max(other) / own.min(other);
     let by = match ratio.is_finite() && own.min(other) > 0.0 {
+        true if ratio < FEW_PERCENT => format!(" by {} %", significant(100.0 * (ratio - 1.0), 2)),
         true => format!(" by a factor of {}", significant(ratio, 3)),
         false => String::new(),
     };
@@ -111,4 +114,21 @@ fn finding(names: &[&str], assumed: Between, [own, other]: [Option<f64>; 2]) -> 
         false => Severity::Warning,
     };
     Finding::new(FindingKind::Data, sentence).severity(severity)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_differences_are_said_in_percent() {
+        let said = |other| finding(&["I"], Between::Constant, [Some(0.0025), Some(other)]).sentence;
+        assert!(said(0.00245).contains("\"linear\" fits better by 2 %;"), "{}", said(0.00245));
+        assert!(
+            said(0.001).contains("\"linear\" fits better by a factor of 2.5;"),
+            "{}",
+            said(0.001)
+        );
+        assert!(said(0.0025001).contains("do not show which is right"), "{}", said(0.0025001));
+    }
 }
