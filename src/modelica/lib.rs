@@ -35,6 +35,8 @@ pub mod external;
 pub mod flatten;
 pub mod format;
 pub mod functions;
+#[cfg(feature = "jit")]
+mod jit;
 pub mod lower;
 mod names;
 pub mod runtime;

@@ -2,6 +2,7 @@
 
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
+use super::machine_code::MachineCode;
 use super::run_time_texts::Texts;
 use crate::external::{Callable, Contents, Effect, Entry, FAIL, Kind, Objects, Slot};
 use crate::source::Span;
@@ -115,6 +116,9 @@ pub struct Code {
     pub derivative: Option<Derivative>,
     /// Inputs, and how equations are solved for them, `annotation(inverse(…))` (MLS §12.8).
     pub inverses: Vec<(u32, Inverse)>,
+    /// Its machine code for values and for dual numbers.
+    #[serde(skip)]
+    pub(crate) machine_code: [MachineCode; 2],
 }
 
 impl Code {

@@ -3,6 +3,7 @@
 use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
+use super::machine_code::Next;
 use super::memo::{Kept, Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
@@ -272,7 +273,8 @@ impl Machine {
         let mut at = 0usize;
         loop {
             let unassigned = if self.has_defaults { 0.0 } else { f64::NAN };
-            match execute(code, &mut at, &mut stack[base..], unassigned, &mut self.budget) {
+            let frame = &mut stack[base..];
+            match advance((functions, code), &mut at, frame, unassigned, &mut self.budget) {
                 Ok(None) => {
                     let outputs = base + code.outputs as usize;
                     let outputs = outputs..outputs + code.n_outputs as usize;
@@ -335,6 +337,8 @@ impl Machine {
                     code = callee;
                     enter(code, stack, base);
                 }
+                // No function pauses before its machine code runs.
+                Ok(Some(Wanted::Pause)) => {}
                 Err(reason) => {
                     return Err(Failure { function, at: at as u32 - 1, reason });
                 }
@@ -397,13 +401,17 @@ impl Machine {
 }
 
 /// What a function wants its machine to do.
-enum Wanted {
+#[derive(Debug, PartialEq)]
+pub(super) enum Wanted {
     Call(Call),
     External(u32),
+    /// To go on at the head of a loop after so many instructions.
+    Pause,
 }
 
 /// A call that a function wants.
-struct Call {
+#[derive(Debug, PartialEq)]
+pub(super) struct Call {
     function: u32,
     arguments: u32,
     results: u32,
@@ -526,13 +534,42 @@ fn enter<T: Number>(code: &Code, stack: &mut [T], base: usize) {
     }
 }
 
-/// Runs instructions of one frame up to the end or to a call; `at` is behind the last one run.
-fn execute<T: Number>(
+/// Runs one frame up to the end or to a call, by machine code as far as there is any; `at` is behind the
+/// last instruction run.
+fn advance<T: Number>(
+    (functions, code): (&Functions, &Code),
+    at: &mut usize,
+    r: &mut [T],
+    unassigned: f64,
+    budget: &mut u64,
+) -> Result<Option<Wanted>, Reason> {
+    let Some(machine_code) = code.machine_code.get(T::PARTS - 1) else {
+        return execute(code, at, r, unassigned, budget, 0);
+    };
+    loop {
+        let next = machine_code.run((functions, code), at, r, unassigned, budget);
+        let Next::AtMost(instructions) = next else {
+            return execute(code, at, r, unassigned, budget, 0);
+        };
+        let (first, before) = (*at, *budget);
+        let pause = budget.saturating_sub(instructions);
+        let wanted = execute(code, at, r, unassigned, budget, pause);
+        machine_code.count(before - *budget + at.saturating_sub(first) as u64);
+        if !matches!(wanted, Ok(Some(Wanted::Pause))) {
+            return wanted;
+        }
+    }
+}
+
+/// Interprets instructions of one frame up to the end or to a call, or to the head of a loop when the
+/// budget is not more than `pause`; `at` is behind the last one run.
+pub(super) fn execute<T: Number>(
     code: &Code,
     at: &mut usize,
     r: &mut [T],
     unassigned: f64,
     budget: &mut u64,
+    pause: u64,
 ) -> Result<Option<Wanted>, Reason> {
     let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
     while let Some(instruction) = code.instructions.get(*at) {
@@ -598,8 +635,11 @@ fn execute<T: Number>(
                 r[d as usize] = T::constant(turns(of(0), of(1), of(2))?);
             }
             Instruction::Jump { target } => {
-                spend(budget, *at, target as usize)?;
-                *at = target as usize;
+                let from = std::mem::replace(at, target as usize);
+                spend(budget, from, *at).inspect_err(|_| *at = from)?;
+                if *at < from && *budget < pause {
+                    return Ok(Some(Wanted::Pause));
+                }
             }
             Instruction::JumpUnless { a, target } => {
                 if !decided(r[a as usize])? {
@@ -665,7 +705,7 @@ fn finite<T: Number>(result: T) -> Result<T, Reason> {
 }
 
 /// The number of turns over `start : step : stop` (MLS §10.4.3).
-fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
+pub(super) fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
     if start.is_nan() || step.is_nan() || stop.is_nan() {
         return Err(Reason::Unassigned);
     }

@@ -4,7 +4,8 @@
 //! variables is a register of its frame. Booleans are 0 and 1, Integers and ordinals whole numbers.
 //! One loop runs the instructions on any [`Number`]: on `f64` for values, on [`Dual`] numbers for
 //! derivatives (forward accumulation, [Griewank & Walther 2008](gapilib_base::bibliography#griewank-2008)),
-//! on dual numbers of dual numbers for second derivatives.
+//! on dual numbers of dual numbers for second derivatives. What runs often on values or on dual
+//! numbers becomes machine code.
 //!
 //! ```text
 //! frame   inputs | outputs, variables, temporaries and constants in any order
@@ -18,9 +19,16 @@ mod elementary;
 mod external;
 mod failure;
 mod machine;
+#[cfg(feature = "jit")]
+mod machine_code;
+#[cfg(not(feature = "jit"))]
+#[path = "without_machine_code.rs"]
+mod machine_code;
 mod memo;
 mod number;
 mod run_time_texts;
+#[cfg(feature = "jit")]
+mod translation;
 mod validation;
 
 pub use crate::external::Journal;

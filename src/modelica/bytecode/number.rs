@@ -5,6 +5,9 @@ use crate::elementary;
 
 /// A number with its derivatives, or without.
 pub trait Number: Copy {
+    /// How many floating-point numbers it consists of, which lie one behind the other.
+    const PARTS: usize;
+
     /// Without a slope.
     fn constant(value: f64) -> Self;
     /// The number alone.
@@ -42,6 +45,8 @@ pub struct Stacks {
 }
 
 impl Number for f64 {
+    const PARTS: usize = 1;
+
     fn constant(value: f64) -> f64 {
         value
     }
@@ -97,6 +102,7 @@ impl Number for f64 {
 
 /// A number `v` with its derivative `d` in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct Dual<T> {
     /// The number.
     pub v: T,
@@ -119,6 +125,8 @@ where
 macro_rules! dual {
     ($inner:ty, $stack:ident) => {
         impl Number for Dual<$inner> {
+            const PARTS: usize = 2 * <$inner as Number>::PARTS;
+
             fn constant(value: f64) -> Self {
                 Dual { v: Number::constant(value), d: Number::constant(0.0) }
             }

@@ -13,7 +13,8 @@ impl Functions {
         self.codes.iter().all(|code| self.is_valid(code))
     }
 
-    fn is_valid(&self, code: &Code) -> bool {
+    /// Whether all that a function refers to is there.
+    pub(super) fn is_valid(&self, code: &Code) -> bool {
         code.frame as usize <= MAX_STACK
             && code.has(0, code.n_inputs)
             && code.has(code.outputs, code.n_outputs)

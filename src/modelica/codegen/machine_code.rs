@@ -18,11 +18,10 @@ use super::translation::{Matrices, Part, translate};
 use super::upcalls::{Upcalls, Workspaces};
 use crate::bytecode::Functions;
 use crate::codegen::tape::Tape;
-use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
+use crate::jit::{self, Effort, Executable};
 use rustc_hash::FxHashSet;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Mutex, OnceLock};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Runs of a tape after which it is translated: a translation takes about as long as a thousand.
 const OFTEN: u32 = 1_000;
@@ -38,15 +37,6 @@ const PIECE: usize = 8_000;
 const WHOLE: usize = 100_000;
 /// Tapes longer than this are not translated.
 const LONGEST: usize = 2_000_000;
-
-/// Whether no tape is translated.
-static INTERPRETED: AtomicBool = AtomicBool::new(false);
-
-/// From now on tapes do not become machine code in this process: for systems that forbid memory
-/// which is made executable, and to see that the results are the same to the bit.
-pub fn interpret() {
-    INTERPRETED.store(true, Ordering::Relaxed);
-}
 
 /// The machine code of a tape, once it has run often.
 #[derive(Default)]
@@ -101,8 +91,7 @@ impl MachineCode {
     fn count(&self, tape: &Tape, translated: impl FnOnce() -> Option<Function>) {
         let often = if tape.code.len() <= LONG { OFTEN } else { OFTEN_LONG };
         if self.runs.fetch_add(1, Ordering::Relaxed) == often {
-            let interpreted = INTERPRETED.load(Ordering::Relaxed);
-            self.function.get_or_init(|| if interpreted { None } else { translated() });
+            self.function.get_or_init(|| if jit::is_interpreted() { None } else { translated() });
         }
     }
 }
@@ -157,7 +146,7 @@ pub(super) struct Function {
     n_outputs: usize,
     /// The machine code has addresses in it.
     _upcalls: Upcalls,
-    module: Mutex<Option<JITModule>>,
+    _code: Executable,
 }
 
 impl Function {
@@ -167,29 +156,20 @@ impl Function {
         let length =
             without_routines(tape, LONGEST)?.len() + Upcalls::of(tape, functions)?.length();
         match length {
-            0..=LONG => Function::translated(code, results, LONG, ["speed", "backtracking"]),
+            0..=LONG => Function::translated(code, results, LONG, Effort::Best),
             // Better code would take too long.
-            _ => Function::translated(code, results, PIECE, ["none", "single_pass"]),
+            _ => Function::translated(code, results, PIECE, Effort::Quick),
         }
     }
 
-    /// Translates in pieces of at most so many instructions, with options of Cranelift for
-    /// optimization and register allocation.
+    /// Translates in pieces of at most so many instructions.
     fn translated(
         (tape, outputs, functions): Code,
         results: Results,
         longest: usize,
-        [opt_level, regalloc_algorithm]: [&str; 2],
+        effort: Effort,
     ) -> Option<Function> {
-        let flags = [
-            ("opt_level", opt_level),
-            ("regalloc_algorithm", regalloc_algorithm),
-            ("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" }),
-            ("probestack_strategy", "inline"),
-        ];
-        cranelift_native::builder().ok()?;
-        let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
-        let mut module = JITModule::new(builder);
+        let mut code = jit::Code::new(effort)?;
         let instructions = without_routines(tape, LONGEST)?;
         let upcalls = Upcalls::of(tape, functions)?;
         let whole = |instructions| vec![Piece { instructions, left: outputs.to_vec() }];
@@ -213,24 +193,26 @@ impl Function {
                 outputs: &places,
                 keeps: in_registers,
             };
-            ids.push(define(&mut module, &format!("tape_{number}"), part, &mut matrices)?);
+            let translated =
+                |target, context: &mut _| translate(part, &mut matrices, target, context);
+            ids.push(code.define(&format!("tape_{number}"), translated)?);
         }
-        module.finalize_definitions().ok()?;
-        let entry = |id: FuncId| {
-            let address = module.get_finalized_function(id);
+        let code = code.finish()?;
+        let entry = |id| {
+            let address = code.address(id)?;
             // SAFETY: the function was declared with the signature of `Entry` and lives as long as
-            // the module, which the result keeps.
-            unsafe { std::mem::transmute::<*const u8, Entry>(address) }
+            // the code, which the result keeps.
+            Some(unsafe { std::mem::transmute::<*const u8, Entry>(address) })
         };
         let copied = in_registers && results == Results::InArray;
         Some(Function {
-            entries: ids.into_iter().map(entry).collect(),
+            entries: ids.into_iter().map(entry).collect::<Option<_>>()?,
             in_registers,
             outputs: if copied { outputs.to_vec() } else { Vec::new() },
             n_registers: registers_used(tape, outputs, &upcalls),
             n_outputs: if results == Results::InArray { outputs.len() } else { 0 },
             _upcalls: upcalls,
-            module: Mutex::new(Some(module)),
+            _code: code,
         })
     }
 
@@ -263,32 +245,6 @@ impl Function {
 
 /// A tape, the registers of its outputs, and the functions that it calls.
 type Code<'a> = (&'a Tape, &'a [Register], &'a Functions);
-
-/// Adds the code of a part of a tape to a module.
-fn define(
-    module: &mut JITModule,
-    name: &str,
-    part: Part,
-    matrices: &mut Matrices,
-) -> Option<FuncId> {
-    let mut context = module.make_context();
-    translate(part, matrices, module.target_config(), &mut context)?;
-    let signature = &context.func.signature;
-    let id = module.declare_function(name, Linkage::Export, signature).ok()?;
-    module.define_function(id, &mut context).ok()?;
-    module.clear_context(&mut context);
-    Some(id)
-}
-
-impl Drop for Function {
-    fn drop(&mut self) {
-        let module = self.module.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(module) = module.take() {
-            // SAFETY: the entries are not called any more.
-            unsafe { module.free_memory() };
-        }
-    }
-}
 
 /// One more than the last register that a tape or its outputs mention.
 fn registers_used(tape: &Tape, outputs: &[Register], upcalls: &Upcalls) -> usize {
@@ -411,17 +367,17 @@ mod tests {
             let (code, mut memory) = compiled(&pool, &outputs);
             let functions = Functions::default();
             let code_of = (&code.tape, &*code.outputs, &functions);
-            let best = Function::translated(code_of, Results::InArray, LONG, ["speed", "backtracking"]);
-            let quick = Function::translated(code_of, Results::InArray, LONG, ["none", "single_pass"]);
+            let best = Function::translated(code_of, Results::InArray, LONG, Effort::Best);
+            let quick = Function::translated(code_of, Results::InArray, LONG, Effort::Quick);
             let whole = [best, quick].map(|f| f.expect("all of it can be translated"));
             let cut = [5, 20, 60].map(|longest| {
-                Function::translated(code_of, Results::InArray, longest, ["none", "single_pass"])
+                Function::translated(code_of, Results::InArray, longest, Effort::Quick)
             });
             let cut = cut.map(|f| f.expect("all of it can be translated"));
             let left = left_by(&code.tape, VARIABLES, [&code.outputs, &[]]);
             let in_place = [LONG, 20].map(|longest| {
                 let code = (&code.tape, &*left, &functions);
-                Function::translated(code, Results::InRegisters, longest, ["none", "single_pass"])
+                Function::translated(code, Results::InRegisters, longest, Effort::Quick)
             });
             let in_place = in_place.map(|f| f.expect("all of it can be translated"));
             let made: Vec<Function> = whole.into_iter().chain(cut).chain(in_place).collect();
@@ -464,8 +420,7 @@ mod tests {
         let (code, mut memory) = compiled(&pool, &outputs);
         let functions = Functions::default();
         let code_of = (&code.tape, &*code.outputs, &functions);
-        let function =
-            Function::translated(code_of, Results::InArray, PIECE, ["speed", "backtracking"]);
+        let function = Function::translated(code_of, Results::InArray, PIECE, Effort::Best);
         let function = function.expect("all of it can be translated");
         for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
             memory[0] = x;

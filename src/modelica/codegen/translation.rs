@@ -11,7 +11,7 @@ use super::regions::shared_by_branches;
 use super::tape::Tape;
 use super::upcalls::{self, Upcalls};
 use crate::elementary;
-use crate::symbolic::RelationOperator;
+use crate::jit::{binary, condition, unary};
 use crate::symbolic::function::FunctionId;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
@@ -130,18 +130,6 @@ fn signatures(
         builder.import_signature(signature)
     });
     (functions, elimination, asking)
-}
-
-/// Calls a function of the table.
-#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
-extern "C" fn unary(function: fn(f64) -> f64, a: f64) -> f64 {
-    function(a)
-}
-
-/// Calls a function of the table.
-#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
-extern "C" fn binary(function: fn(f64, f64) -> f64, a: f64, b: f64) -> f64 {
-    function(a, b)
 }
 
 /// Room for A by rows and b behind it.
@@ -610,16 +598,5 @@ impl Translation<'_> {
         }
         self.builder.seal_all_blocks();
         self.builder.finalize(target);
-    }
-}
-
-fn condition(operator: RelationOperator) -> FloatCC {
-    match operator {
-        RelationOperator::Less => FloatCC::LessThan,
-        RelationOperator::LessEqual => FloatCC::LessThanOrEqual,
-        RelationOperator::Greater => FloatCC::GreaterThan,
-        RelationOperator::GreaterEqual => FloatCC::GreaterThanOrEqual,
-        RelationOperator::Equal => FloatCC::Equal,
-        RelationOperator::NotEqual => FloatCC::NotEqual,
     }
 }

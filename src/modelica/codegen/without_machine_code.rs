@@ -4,9 +4,6 @@ use super::instruction::Register;
 use super::memory::Memory;
 use crate::codegen::tape::Tape;
 
-/// Tapes do not become machine code in any case.
-pub fn interpret() {}
-
 /// The machine code that a tape never gets.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MachineCode;

@@ -55,16 +55,11 @@ impl Emitter {
             n_outputs,
             frame: self.next,
             constants: self.values,
-            gives_texts: false,
             messages: self.messages,
             places: self.places,
-            inverses: Vec::new(),
             texts: self.texts,
             externals: self.externals,
-            impure: false,
-            writes: false,
-            may_lack: false,
-            derivative: None,
+            ..Code::default()
         }
     }
 

@@ -1,0 +1,177 @@
+//! Machine code and the interpreter agree to the bit.
+
+use super::super::code::Instruction;
+use super::super::elementary::Elementary;
+use super::super::failure::Reason;
+use super::super::machine::{Machine, Wanted, execute};
+use super::super::number::Dual;
+use super::*;
+use crate::symbolic::RelationOperator;
+use crate::symbolic::function::find;
+use proptest::prelude::*;
+
+/// Registers of the random functions; the first ones are numbers, the last ones rows.
+const FRAME: u32 = 24;
+const BUDGET: u64 = 400;
+const OPERATORS: [RelationOperator; 3] =
+    [RelationOperator::Less, RelationOperator::GreaterEqual, RelationOperator::NotEqual];
+
+/// What an instruction is made of: its kind and four numbers.
+type Draw = (u8, [u8; 4]);
+
+fn elementary(name: &str) -> &'static Elementary {
+    Elementary::of(find(name).expect("a function of the table"))
+}
+
+fn instruction((kind, [a, b, c, e]): Draw, n: usize) -> Instruction {
+    let [d, a, b] = [a, b, c].map(|x| u32::from(x) % 8);
+    let target = u32::from(e) % (n as u32 + 1);
+    match kind % 24 {
+        0 => Instruction::Constant { d, value: f64::from(e) - 100.0 },
+        1 => Instruction::Move { d, a, n: 1 },
+        2 => Instruction::Move { d, a, n: 1 + u32::from(e) % 16 },
+        3 => Instruction::Neg { d, a },
+        4 => Instruction::Not { d, a },
+        5 | 6 => Instruction::Add { d, a, b },
+        7 => Instruction::Sub { d, a, b },
+        8 | 9 => Instruction::Mul { d, a, b },
+        10 => Instruction::Div { d, a, b },
+        11 => Instruction::Pow { d, a, b },
+        12 => Instruction::Relation { operator: OPERATORS[e as usize % 3], d, a, b },
+        13 => Instruction::Unary { function: elementary("sin"), d, a },
+        14 => Instruction::Unary { function: elementary(["sqrt", "exp"][e as usize % 2]), d, a },
+        15 => Instruction::Binary { function: elementary("atan2"), d, a, b },
+        16 => Instruction::Offset { d, subscript: a, size: 5, stride: 1 + b % 3 },
+        17 => Instruction::Load { d, base: 8 + b, offset: a },
+        18 => Instruction::Store { base: 8 + b, offset: d, a },
+        19 => Instruction::Jump { target },
+        20 | 21 => Instruction::JumpUnless { a, target },
+        22 => Instruction::Check { a, n: u32::from(e) % 16 },
+        _ => match e % 4 {
+            0 => Instruction::Turns { d, range: a },
+            1 => Instruction::Call { function: 0, d: 8, a: 8 },
+            2 => Instruction::Unassign { d, n: 1 + u32::from(e) % 16 },
+            _ => Instruction::Assert { a, message: 0 },
+        },
+    }
+}
+
+fn function(draws: &[Draw]) -> Functions {
+    let instructions = draws.iter().map(|draw| instruction(*draw, draws.len())).collect();
+    let code = Code {
+        instructions,
+        n_inputs: 8,
+        n_outputs: 8,
+        outputs: 8,
+        frame: FRAME,
+        messages: vec!["no".into()],
+        ..Code::default()
+    };
+    Functions { codes: vec![code], ..Functions::default() }
+}
+
+/// What a frame comes to: the event, the place, the budget and all parts of its numbers, without what
+/// distinguishes one NaN from another.
+type Outcome = (Result<Option<Wanted>, Reason>, usize, u64, Vec<Option<u64>>);
+
+fn outcome<T: Number + std::fmt::Debug>(
+    translated: Option<&Translated>,
+    code: &Code,
+    frame: &[T],
+    parts_of: impl Fn(&T) -> Vec<f64>,
+) -> Outcome {
+    let (mut at, mut budget, mut frame) = (0, BUDGET, frame.to_vec());
+    if let Some(translated) = translated {
+        at = translated.call(at, &mut frame, f64::NAN, &mut budget);
+    }
+    let wanted = execute(code, &mut at, &mut frame, f64::NAN, &mut budget, 0);
+    let parts = frame.iter().flat_map(parts_of);
+    let bits = parts.map(|part| (!part.is_nan()).then_some(part.to_bits())).collect();
+    (wanted, at, budget, bits)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn machine_code_does_what_the_interpreter_does(
+        draws in prop::collection::vec((any::<u8>(), any::<[u8; 4]>()), 1..40),
+        values in prop::collection::vec(
+            prop_oneof![Just(0.0), Just(1.0), Just(2.0), Just(3.0), Just(f64::NAN), -5.0f64..9.0],
+            FRAME as usize,
+        ),
+        slopes in prop::collection::vec(-2.0f64..2.0, FRAME as usize),
+    ) {
+        let functions = function(&draws);
+        let code = &functions.codes[0];
+        let on_values = Translated::new(&functions, code, 1).expect("all can be translated");
+        let own = |x: &f64| vec![*x];
+        prop_assert_eq!(
+            outcome(Some(&on_values), code, &values, own),
+            outcome(None, code, &values, own)
+        );
+        let on_duals = Translated::new(&functions, code, 2).expect("all can be translated");
+        let duals: Vec<Dual<f64>> =
+            values.iter().zip(&slopes).map(|(v, d)| Dual { v: *v, d: *d }).collect();
+        let both = |x: &Dual<f64>| vec![x.v, x.d];
+        prop_assert_eq!(
+            outcome(Some(&on_duals), code, &duals, both),
+            outcome(None, code, &duals, both)
+        );
+    }
+}
+
+/// `for i in 1 : n loop y := f(y) + i*x; end for`, where `f(y) = y/2`.
+fn a_loop() -> Functions {
+    let half = Code {
+        instructions: vec![Instruction::Mul { d: 1, a: 0, b: 2 }],
+        n_inputs: 1,
+        outputs: 1,
+        n_outputs: 1,
+        frame: 3,
+        constants: vec![(2, 0.5)],
+        ..Code::default()
+    };
+    // x 0, n 1, y 2, i 3, 1 4, condition 5, f(y) 6, i*x 7
+    let instructions = vec![
+        Instruction::Relation { operator: RelationOperator::LessEqual, d: 5, a: 3, b: 1 },
+        Instruction::JumpUnless { a: 5, target: 7 },
+        Instruction::Call { function: 1, d: 6, a: 2 },
+        Instruction::Mul { d: 7, a: 3, b: 0 },
+        Instruction::Add { d: 2, a: 6, b: 7 },
+        Instruction::Add { d: 3, a: 3, b: 4 },
+        Instruction::Jump { target: 0 },
+    ];
+    let sum = Code {
+        instructions,
+        n_inputs: 2,
+        outputs: 2,
+        n_outputs: 1,
+        frame: 8,
+        constants: vec![(2, 0.0), (3, 1.0), (4, 1.0)],
+        ..Code::default()
+    };
+    Functions { codes: vec![sum, half], ..Functions::default() }
+}
+
+/// y and dy/dx of [`a_loop`], with y' = y/2 + i from x = 1.
+fn expected(x: f64, n: u32) -> (f64, f64) {
+    let step = |(y, slope), i| (y * 0.5 + f64::from(i) * x, slope * 0.5 + f64::from(i));
+    (1..=n).fold((0.0, 0.0), step)
+}
+
+#[test]
+fn a_function_becomes_machine_code_while_it_runs() {
+    let functions = a_loop();
+    let mut machine = Machine::default();
+    for n in [3, 10, 300_000, 20] {
+        let arguments = [0.75, f64::from(n)];
+        let (y, slope) = expected(0.75, n);
+        assert_eq!(machine.call(&functions, 0, arguments.into_iter()), Ok(&[y][..]));
+        assert_eq!(machine.partial(&functions, 0, &[0], arguments.into_iter()), Ok(&[slope][..]));
+        let translated = |code: &Code| {
+            [0, 1].map(|parts| matches!(code.machine_code[parts].translated.get(), Some(Some(_))))
+        };
+        assert_eq!(translated(&functions.codes[0]), [n > 10; 2]);
+    }
+}
