@@ -37,6 +37,9 @@ pub mod format;
 pub mod functions;
 #[cfg(feature = "jit")]
 mod jit;
+#[cfg(not(feature = "jit"))]
+#[path = "without_jit.rs"]
+mod jit;
 pub mod lower;
 mod names;
 pub mod runtime;

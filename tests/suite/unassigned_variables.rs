@@ -1,5 +1,5 @@
-//! Functions that use or return variables before they are assigned: zero with a warning, as other
-//! tools have it, and an error in strict mode.
+//! What functions warn of while they run: variables that are used or returned before they are assigned,
+//! zero with a warning, as other tools have it, and an error in strict mode; assertions of level warning.
 
 use gapilib::Diagnostic;
 use gapilib::internals::causalize::causalize;
@@ -107,7 +107,7 @@ fn simulated(program: &Arc<Program>) -> Result<(f64, Vec<String>), String> {
     let mut out = [0.0];
     system.observe_only(&[at]);
     system.observe(0.25, &[], &mut out).expect("a value");
-    Ok((out[0], system.defaults().into_iter().map(|(words, _)| words).collect()))
+    Ok((out[0], system.notices().iter().map(|warning| warning.message.clone()).collect()))
 }
 
 const BEFORE: &str = "uses or returns a variable before it is assigned";
@@ -130,6 +130,32 @@ fn zero_is_taken_in_simulations_with_one_warning_for_each_function() {
         let (program, _) = translated(&format!("Real y = {call};"), true).expect("a model");
         let error = simulated(&program).expect_err("strict");
         assert!(error.contains("a variable has no value in the function"), "{call}: {error}");
+    }
+}
+
+#[test]
+fn assertions_of_level_warning_warn_once() {
+    let rest = "
+      function careful
+        input Real x;
+        output Real y = 0;
+      algorithm
+        for i in 1:3 loop
+          assert(x < 0.125, \"x is \" + String(3) + \" times too large\", AssertionLevel.warning);
+          assert(x < 7, \"never\", AssertionLevel.warning);
+          y := y + i * x;
+        end for;
+      end careful;
+      Real y = careful(time);";
+    for strict in [false, true] {
+        let (program, _) = translated(rest, strict).expect("a model");
+        let (found, warnings) = simulated(&program).expect("a simulation");
+        assert_eq!(found, 1.5);
+        let [warning] = warnings.as_slice() else { panic!("{warnings:?}") };
+        assert_eq!(
+            warning,
+            "x is 3 times too large (in a call of `M.careful`, maybe on the way to a solution)"
+        );
     }
 }
 

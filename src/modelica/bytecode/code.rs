@@ -76,6 +76,8 @@ pub enum Instruction {
     Check { a: Register, n: u32 },
     /// Fails unless `a` holds.
     Assert { a: Register, message: u32 },
+    /// Warns unless `a` holds.
+    Warn { a: Register, message: u32 },
 }
 
 /// A function for arguments of known sizes.
@@ -238,9 +240,10 @@ impl Functions {
     pub fn message(&self, failure: &Failure) -> Option<&str> {
         let code = self.codes.get(failure.function as usize)?;
         match (failure.reason, code.instructions.get(failure.at as usize)?) {
-            (Reason::Assertion, Instruction::Assert { message, .. }) => {
-                Some(&code.messages[*message as usize])
-            }
+            (
+                Reason::Assertion,
+                Instruction::Assert { message, .. } | Instruction::Warn { message, .. },
+            ) => Some(&code.messages[*message as usize]),
             (Reason::External, Instruction::External { external }) => {
                 let call = &code.externals[*external as usize];
                 let is_message = call.only_fails() || call.entry.name == "ModelicaError";
@@ -254,10 +257,17 @@ impl Functions {
         }
     }
 
-    /// That a function which was called used or returned a variable before it was assigned and zero was
-    /// taken, in words, with the place where it was noticed.
-    pub(crate) fn default_taken(&self, (called, failure): &(u32, Failure)) -> (String, Span) {
+    /// What a machine noticed while it ran a function, in words, with its place.
+    pub(crate) fn notice(&self, (called, failure): &(u32, Failure)) -> (String, Span) {
         let name = |function: u32| self.codes.get(function as usize).map_or("", |code| &code.name);
+        let (words, span) = self.explain(failure);
+        if failure.reason == Reason::Assertion {
+            let known = format!(
+                "{words} (in a call of `{}`, maybe on the way to a solution)",
+                name(*called)
+            );
+            return (known, span);
+        }
         let noticed = match failure.function == *called {
             true => String::new(),
             false => format!(", noticed in `{}`", name(failure.function)),
@@ -266,7 +276,7 @@ impl Functions {
             "`{}` uses or returns a variable before it is assigned{noticed}: zero is taken",
             name(*called)
         );
-        (words, self.explain(failure).1)
+        (words, span)
     }
 
     /// A failure in words, with its place.

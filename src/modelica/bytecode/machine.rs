@@ -6,6 +6,8 @@ use super::failure::{Failure, Reason};
 use super::machine_code::Next;
 use super::memo::{Kept, Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
+use super::range::turns;
+use super::translation::translated;
 use crate::budget::instruction_limit;
 use crate::external::Journal;
 use std::ops::Range;
@@ -15,8 +17,6 @@ use std::sync::Arc;
 const MAX_CALLS: usize = 2_000;
 /// Largest number of registers of all frames.
 pub(super) const MAX_STACK: usize = 20_000_000;
-/// Most turns of a loop.
-const MAX_TURNS: f64 = 1e15;
 
 /// Runs functions; every thread has its own.
 #[derive(Debug, Clone, Default)]
@@ -37,8 +37,8 @@ pub struct Machine {
     /// Whether variables that nothing was assigned to are zero.
     has_defaults: bool,
     /// Functions that were called, and where variables were used that nothing was assigned to, once for
-    /// each function.
-    defaults: Vec<(u32, Failure)>,
+    /// each function; functions with warnings, and where these are given.
+    notices: Vec<(u32, Failure)>,
 }
 
 /// Where to go on when a function ends.
@@ -62,7 +62,7 @@ impl Machine {
     /// Forgets all external objects and the hidden state of random numbers.
     pub fn restart(&mut self) {
         self.externals.restart();
-        self.defaults.clear();
+        self.notices.clear();
     }
 
     /// How many instructions the call before this took.
@@ -86,15 +86,26 @@ impl Machine {
         self.externals.texts.text(&functions.texts, number)
     }
 
-    /// Functions that were called, and where zero was taken for variables that nothing was assigned to.
-    pub fn defaults(&self) -> &[(u32, Failure)] {
-        &self.defaults
+    /// Functions that were called, and where zero was taken for variables that nothing was assigned to
+    /// or an assertion of level warning did not hold.
+    pub fn notices(&self) -> &[(u32, Failure)] {
+        &self.notices
     }
 
     /// Notes that zero was taken in the call of a function, and where.
     pub(crate) fn note_default(&mut self, called: u32, failure: Failure) {
-        if !self.defaults.iter().any(|(known, _)| *known == called) {
-            self.defaults.push((called, failure));
+        let is_it = |(known, noted): &(u32, Failure)| {
+            *known == called && noted.reason == Reason::Unassigned
+        };
+        if !self.notices.iter().any(is_it) {
+            self.notices.push((called, failure));
+        }
+    }
+
+    /// Notes that an assertion of level warning does not hold.
+    fn note_warning(&mut self, warning: Failure) {
+        if !self.notices.contains(&(warning.function, warning)) {
+            self.notices.push((warning.function, warning));
         }
     }
 
@@ -337,6 +348,10 @@ impl Machine {
                     code = callee;
                     enter(code, stack, base);
                 }
+                Ok(Some(Wanted::Warning)) => {
+                    let reason = Reason::Assertion;
+                    self.note_warning(Failure { function, at: at as u32 - 1, reason });
+                }
                 // No function pauses before its machine code runs.
                 Ok(Some(Wanted::Pause)) => {}
                 Err(reason) => {
@@ -405,6 +420,8 @@ impl Machine {
 pub(super) enum Wanted {
     Call(Call),
     External(u32),
+    /// To take the warning of the instruction before.
+    Warning,
     /// To go on at the head of a loop after so many instructions.
     Pause,
 }
@@ -547,7 +564,9 @@ fn advance<T: Number>(
         return execute(code, at, r, unassigned, budget, 0);
     };
     loop {
-        let next = machine_code.run((functions, code), at, r, unassigned, budget);
+        let length = code.instructions.len();
+        let translated = || translated::<T>(functions, code);
+        let next = machine_code.run((length, translated), at, r, unassigned, budget);
         let Next::AtMost(instructions) = next else {
             return execute(code, at, r, unassigned, budget, 0);
         };
@@ -664,6 +683,11 @@ pub(super) fn execute<T: Number>(
                     return Err(Reason::Assertion);
                 }
             }
+            Instruction::Warn { a, .. } => {
+                if !decided(r[a as usize])? {
+                    return Ok(Some(Wanted::Warning));
+                }
+            }
         }
     }
     Ok(None)
@@ -701,18 +725,6 @@ fn finite<T: Number>(result: T) -> Result<T, Reason> {
     match result.value().is_finite() {
         true => Ok(result),
         false => Err(Reason::NotFinite),
-    }
-}
-
-/// The number of turns over `start : step : stop` (MLS §10.4.3).
-pub(super) fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
-    if start.is_nan() || step.is_nan() || stop.is_nan() {
-        return Err(Reason::Unassigned);
-    }
-    let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
-    match count.is_finite() && count < MAX_TURNS {
-        true => Ok(count.max(0.0)),
-        false => Err(Reason::Range),
     }
 }
 

@@ -7,10 +7,8 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::code::{Code, Functions};
 use super::number::Number;
-use super::translation::translate;
-use crate::jit::{self, Effort, Executable};
+use crate::jit::Executable;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -18,10 +16,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const OFTEN: u64 = 1_000;
 /// Shorter functions are as if they had so many instructions: making memory executable takes time.
 const SHORT: u64 = 100;
-/// Instructions beyond which the time of a translation matters more than the best code.
-const LONG: usize = 3_000;
-/// Longer functions are not translated: the time that it takes is more than linear.
-const LONGEST: usize = 100_000;
 
 /// The machine code of a function for one kind of number, once it has run often.
 #[derive(Default)]
@@ -40,24 +34,24 @@ pub(super) enum Next {
 }
 
 impl MachineCode {
-    /// Runs as much as machine code can; says what the interpreter does then.
+    /// Runs as much as machine code can, of a function of so many instructions which is translated so;
+    /// says what the interpreter does then.
     pub(super) fn run<T: Number>(
         &self,
-        (functions, code): (&Functions, &Code),
+        (length, translated): (usize, impl FnOnce() -> Option<Translated>),
         at: &mut usize,
         frame: &mut [T],
         unassigned: f64,
         budget: &mut u64,
     ) -> Next {
-        let often = OFTEN * (code.instructions.len() as u64).max(SHORT);
+        let often = OFTEN * (length as u64).max(SHORT);
         if self.translated.get().is_none() {
             let interpreted = self.interpreted.load(Ordering::Relaxed);
             if interpreted < often {
                 return Next::AtMost(often - interpreted);
             }
         }
-        let translated = self.translated.get_or_init(|| Translated::new(functions, code, T::PARTS));
-        if let Some(translated) = translated {
+        if let Some(translated) = self.translated.get_or_init(translated) {
             *at = translated.call(*at, frame, unassigned, budget);
         }
         Next::Everything
@@ -88,7 +82,7 @@ impl std::fmt::Debug for MachineCode {
 type Entry = unsafe extern "C" fn(*mut f64, f64, *mut u64, u64) -> u64;
 
 /// A function in memory of its own.
-struct Translated {
+pub(super) struct Translated {
     entry: Entry,
     /// How many numbers its frame has, of how many parts each.
     frame: usize,
@@ -97,24 +91,25 @@ struct Translated {
 }
 
 impl Translated {
-    fn new(functions: &Functions, code: &Code, parts: usize) -> Option<Translated> {
-        let length = code.instructions.len();
-        if jit::is_interpreted() || length > LONGEST || !functions.is_valid(code) {
-            return None;
-        }
-        let effort = if length <= LONG { Effort::Best } else { Effort::Quick };
-        let mut executable = jit::Code::new(effort)?;
-        let translated = |target, context: &mut _| translate((code, parts), target, context);
-        let id = executable.define("function", translated)?;
-        let executable = executable.finish()?;
-        let address = executable.address(id)?;
-        // SAFETY: the function was declared with the signature of `Entry` and lives as long as the
-        // code, which the result keeps.
+    /// The function that begins at an address of the code, for frames of so many numbers of so many
+    /// parts.
+    ///
+    /// # Safety
+    /// It has the signature of [`Entry`], and reads and writes no more than such a frame and the budget.
+    pub(super) unsafe fn new(
+        code: Executable,
+        address: *const u8,
+        (frame, parts): (usize, usize),
+    ) -> Translated {
+        // SAFETY: the caller promises the signature; the code lives as long as the result, which keeps
+        // it.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-        Some(Translated { entry, frame: code.frame as usize, parts, _code: executable })
+        Translated { entry, frame, parts, _code: code }
     }
 
-    fn call<T: Number>(
+    /// Runs the function on a frame from an instruction on; the number of the instruction that it leaves
+    /// to the interpreter.
+    pub(super) fn call<T: Number>(
         &self,
         at: usize,
         frame: &mut [T],
@@ -124,14 +119,13 @@ impl Translated {
         assert!(self.frame <= frame.len(), "the frame has the registers of the function");
         assert_eq!(self.parts, T::PARTS, "the numbers are those it was translated for");
         let frame = frame.as_mut_ptr().cast();
-        // SAFETY: the code reads and writes the registers of its frame, as parts of numbers that lie
-        // one behind the other: those that instructions name were checked when it was translated,
-        // those that offsets lead to are checked by it.
+        // SAFETY: the frame is as large as the code takes it to be, of numbers whose parts lie one
+        // behind the other.
         let left = unsafe { (self.entry)(frame, unassigned, budget, at as u64) };
         left as usize
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "jit"))]
 #[path = "machine_code_tests.rs"]
 mod tests;

@@ -1,10 +1,11 @@
 //! Machine code and the interpreter agree to the bit.
 
-use super::super::code::Instruction;
+use super::super::code::{Code, Functions, Instruction};
 use super::super::elementary::Elementary;
 use super::super::failure::Reason;
 use super::super::machine::{Machine, Wanted, execute};
 use super::super::number::Dual;
+use super::super::translation::translated;
 use super::*;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::find;
@@ -47,10 +48,11 @@ fn instruction((kind, [a, b, c, e]): Draw, n: usize) -> Instruction {
         19 => Instruction::Jump { target },
         20 | 21 => Instruction::JumpUnless { a, target },
         22 => Instruction::Check { a, n: u32::from(e) % 16 },
-        _ => match e % 4 {
+        _ => match e % 5 {
             0 => Instruction::Turns { d, range: a },
             1 => Instruction::Call { function: 0, d: 8, a: 8 },
-            2 => Instruction::Unassign { d, n: 1 + u32::from(e) % 16 },
+            2 => Instruction::Warn { a, message: 0 },
+            3 => Instruction::Unassign { d, n: 1 + u32::from(e) % 16 },
             _ => Instruction::Assert { a, message: 0 },
         },
     }
@@ -104,13 +106,13 @@ proptest! {
     ) {
         let functions = function(&draws);
         let code = &functions.codes[0];
-        let on_values = Translated::new(&functions, code, 1).expect("all can be translated");
+        let on_values = translated::<f64>(&functions, code).expect("all can be translated");
         let own = |x: &f64| vec![*x];
         prop_assert_eq!(
             outcome(Some(&on_values), code, &values, own),
             outcome(None, code, &values, own)
         );
-        let on_duals = Translated::new(&functions, code, 2).expect("all can be translated");
+        let on_duals = translated::<Dual<f64>>(&functions, code).expect("all can be translated");
         let duals: Vec<Dual<f64>> =
             values.iter().zip(&slopes).map(|(v, d)| Dual { v: *v, d: *d }).collect();
         let both = |x: &Dual<f64>| vec![x.v, x.d];
@@ -169,9 +171,9 @@ fn a_function_becomes_machine_code_while_it_runs() {
         let (y, slope) = expected(0.75, n);
         assert_eq!(machine.call(&functions, 0, arguments.into_iter()), Ok(&[y][..]));
         assert_eq!(machine.partial(&functions, 0, &[0], arguments.into_iter()), Ok(&[slope][..]));
-        let translated = |code: &Code| {
+        let is_translated = |code: &Code| {
             [0, 1].map(|parts| matches!(code.machine_code[parts].translated.get(), Some(Some(_))))
         };
-        assert_eq!(translated(&functions.codes[0]), [n > 10; 2]);
+        assert_eq!(is_translated(&functions.codes[0]), [n > 10; 2]);
     }
 }

@@ -19,15 +19,15 @@ mod elementary;
 mod external;
 mod failure;
 mod machine;
-#[cfg(feature = "jit")]
-mod machine_code;
-#[cfg(not(feature = "jit"))]
-#[path = "without_machine_code.rs"]
 mod machine_code;
 mod memo;
 mod number;
+mod range;
 mod run_time_texts;
 #[cfg(feature = "jit")]
+mod translation;
+#[cfg(not(feature = "jit"))]
+#[path = "without_translation.rs"]
 mod translation;
 mod validation;
 

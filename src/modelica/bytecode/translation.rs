@@ -6,12 +6,13 @@
 
 #![allow(unsafe_code, reason = "machine code hands over registers as pointers")]
 
-use super::code::{Code, Instruction, Register};
+use super::code::{Code, Functions, Instruction, Register};
 use super::elementary::Elementary;
-use super::machine::turns;
+use super::machine_code::Translated;
 use super::number::{Dual, Number};
+use super::range::turns;
 use crate::elementary;
-use crate::jit::{binary, condition, unary};
+use crate::jit::{self, Effort, binary, condition, unary};
 use crate::symbolic::function::Value as FunctionValue;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
@@ -27,9 +28,31 @@ use std::collections::BTreeMap;
 /// Longer rows of registers are copied and filled by a function of this process.
 const SHORT_ROW: u32 = 8;
 
+/// Instructions beyond which the time of a translation matters more than the best code.
+const LONG: usize = 3_000;
+/// Longer functions are not translated: the time that it takes is more than linear.
+const LONGEST: usize = 100_000;
+
+/// The machine code of one of the functions for a kind of number, if it can have any.
+pub(super) fn translated<T: Number>(functions: &Functions, code: &Code) -> Option<Translated> {
+    let length = code.instructions.len();
+    if jit::is_interpreted() || length > LONGEST || !functions.is_valid(code) {
+        return None;
+    }
+    let effort = if length <= LONG { Effort::Best } else { Effort::Quick };
+    let mut executable = jit::Code::new(effort)?;
+    let translate = |target, context: &mut _| translate((code, T::PARTS), target, context);
+    let id = executable.define("function", translate)?;
+    let executable = executable.finish()?;
+    let address = executable.address(id)?;
+    // SAFETY: `translate` makes the signature. Registers that instructions name are in the frame, as was
+    // checked above; the code itself checks those that offsets lead to.
+    Some(unsafe { Translated::new(executable, address, (code.frame as usize, T::PARTS)) })
+}
+
 /// Writes the code of a function for numbers of one part (values) or two (with a derivative) into a
 /// context.
-pub(super) fn translate(
+fn translate(
     (code, parts): (&Code, usize),
     target: TargetFrontendConfig,
     context: &mut Context,
@@ -218,7 +241,9 @@ impl Translation<'_> {
                     self.block(target);
                     entered.extend((target <= at).then_some(target));
                 }
-                Instruction::Call { .. } | Instruction::External { .. } => entered.push(at + 1),
+                Instruction::Call { .. }
+                | Instruction::External { .. }
+                | Instruction::Warn { .. } => entered.push(at + 1),
                 _ => {}
             }
         }
@@ -372,6 +397,41 @@ impl Translation<'_> {
             }
             Instruction::Unassign { d, n } => self.fill(d, n),
             Instruction::Move { d, a, n } => self.copy(d, a, n),
+            Instruction::Offset { d, subscript, size, stride } => {
+                self.subscript(d, subscript, (size, stride), at);
+            }
+            Instruction::Load { d, base, offset } => {
+                let place = self.place(base, offset, at);
+                let operand = self.read(place, 0);
+                self.set(d, operand);
+            }
+            Instruction::Store { base, offset, a } => {
+                let place = self.place(base, offset, at);
+                let operand = self.get(a);
+                self.write(operand, place, 0);
+                self.known.clear();
+            }
+            Instruction::Turns { d, range } => self.turns(d, range, at),
+            Instruction::Jump { target } => {
+                self.spend(at, target);
+                let target = self.within(target);
+                let block = self.blocks[&target];
+                self.builder.ins().jump(block, &[]);
+            }
+            Instruction::JumpUnless { a, target } => self.jump_unless(a, target, at),
+            Instruction::Call { .. } | Instruction::External { .. } => self.leave(at),
+            Instruction::Check { a, n } => self.check(a, n, at),
+            Instruction::Assert { a, .. } | Instruction::Warn { a, .. } => {
+                let holds = self.decided(a, at);
+                self.go_on_if(holds, at);
+            }
+            _ => self.arithmetic(at, instruction),
+        }
+    }
+
+    /// An instruction that computes one number from others.
+    fn arithmetic(&mut self, at: usize, instruction: &Instruction) {
+        match *instruction {
             Instruction::Neg { d, a } => {
                 let a = self.get(a);
                 let v = self.builder.ins().fneg(a.v);
@@ -414,34 +474,8 @@ impl Translation<'_> {
                 let dual = (dual_binary as *const () as usize, address);
                 self.binary((value, dual), d, [a, b], at);
             }
-            Instruction::Offset { d, subscript, size, stride } => {
-                self.subscript(d, subscript, (size, stride), at);
-            }
-            Instruction::Load { d, base, offset } => {
-                let place = self.place(base, offset, at);
-                let operand = self.read(place, 0);
-                self.set(d, operand);
-            }
-            Instruction::Store { base, offset, a } => {
-                let place = self.place(base, offset, at);
-                let operand = self.get(a);
-                self.write(operand, place, 0);
-                self.known.clear();
-            }
-            Instruction::Turns { d, range } => self.turns(d, range, at),
-            Instruction::Jump { target } => {
-                self.spend(at, target);
-                let target = self.within(target);
-                let block = self.blocks[&target];
-                self.builder.ins().jump(block, &[]);
-            }
-            Instruction::JumpUnless { a, target } => self.jump_unless(a, target, at),
-            Instruction::Call { .. } | Instruction::External { .. } => self.leave(at),
-            Instruction::Check { a, n } => self.check(a, n, at),
-            Instruction::Assert { a, .. } => {
-                let holds = self.decided(a, at);
-                self.go_on_if(holds, at);
-            }
+            // The others compute nothing.
+            _ => self.leave(at),
         }
     }
 

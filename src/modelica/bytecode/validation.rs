@@ -58,7 +58,7 @@ impl Functions {
                 called.is_some_and(|c| code.has(a, c.n_inputs) && code.has(d, c.n_outputs))
             }
             Instruction::External { external } => (external as usize) < code.externals.len(),
-            Instruction::Assert { a, message } => {
+            Instruction::Assert { a, message } | Instruction::Warn { a, message } => {
                 all(&[a]) && (message as usize) < code.messages.len()
             }
         }

@@ -108,9 +108,9 @@ impl Calls {
         self.machine.journal()
     }
 
-    /// Where zero was taken for variables that nothing was assigned to.
-    pub(crate) fn defaults(&self) -> &[(u32, Failure)] {
-        self.machine.defaults()
+    /// What was noticed in functions.
+    pub(crate) fn notices(&self) -> &[(u32, Failure)] {
+        self.machine.notices()
     }
 
     /// The value of a component of a record that a function leaves without one, if it may have any.

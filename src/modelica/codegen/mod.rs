@@ -58,6 +58,5 @@ pub use stored::bytes_of;
 /// From now on nothing becomes machine code in this process: for systems that forbid memory which is
 /// made executable, and to see that the results are the same to the bit.
 pub fn interpret() {
-    #[cfg(feature = "jit")]
     crate::jit::interpret();
 }

@@ -80,7 +80,7 @@ impl Environment for Calling<'_> {
         };
         let result = results.map_or(f64::NAN, |results| results[output as usize]);
         // The simulation warns of zero where nothing was assigned.
-        if machine.defaults().is_empty() { result } else { f64::NAN }
+        if machine.notices().is_empty() { result } else { f64::NAN }
     }
 }
 

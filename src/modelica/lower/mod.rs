@@ -48,6 +48,7 @@ pub use dae::*;
 pub(crate) use default_values::fold_parameters;
 pub use equation::*;
 pub use events::*;
+pub(crate) use function::warning_of;
 pub(crate) use real_values::is_real;
 pub use shape::Shape;
 pub use text_array::Texts;

@@ -8,9 +8,8 @@ use crate::bytecode::Journal;
 use crate::codegen::code::{LogAssertion, Outputs};
 use crate::codegen::errors::{ASSERTION_FAILED, DOMAIN_ERROR};
 use crate::diag::Diagnostic;
-use crate::lower::{Assertion, Level, TextPart};
+use crate::lower::{Assertion, Level, TextPart, warning_of};
 use crate::sim::{self, SimError, SimErrorKind};
-use crate::source::Span;
 use crate::value::format::written;
 
 impl System {
@@ -24,12 +23,11 @@ impl System {
         self.registers.calls.journal()
     }
 
-    /// Functions that used or returned variables before they were assigned in the last simulation,
-    /// for which zero was taken, and where.
-    pub fn defaults(&self) -> Vec<(String, Span)> {
+    /// Warnings of functions that were called in the last simulation.
+    pub fn notices(&self) -> Vec<Diagnostic> {
         let functions = &self.program.sorted().dae.functions;
-        let all = self.registers.calls.defaults().iter();
-        all.map(|failure| functions.default_taken(failure)).collect()
+        let all = self.registers.calls.notices().iter();
+        all.map(|notice| warning_of(functions, notice)).collect()
     }
 
     /// What the model has told in the last simulation, and how much more there was.

@@ -16,7 +16,6 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::errors::{
     BAD_PARAMETER_VALUE, INTERRUPTED, TRANSLATED_AGAIN, UNKNOWN_PARAMETER, VALUES_DROPPED,
 };
-use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{LogMessage, System, Treated, Undetermined};
@@ -407,7 +406,7 @@ pub fn simulate(
     report_log(session, &system.system);
     report_treatments(session, &system.system);
     report_undetermined(session, &system.system);
-    report_defaults(session, &system.system);
+    report_notices(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
     match run {
         Ok(statistics) => {
@@ -483,11 +482,12 @@ fn report_undetermined(session: &mut Session, system: &System) {
     }
 }
 
-/// The functions that used variables before they were assigned.
-fn report_defaults(session: &mut Session, system: &System) {
-    for (words, span) in system.defaults() {
-        if session.models.is_new_warning(span, &words) {
-            session.report(Fault::new(NO_VALUE_YET, words).help(ASSIGN_BEFORE).at(span).warning());
+/// The warnings of functions, each once.
+fn report_notices(session: &mut Session, system: &System) {
+    for warning in system.notices() {
+        let place = warning.labels.first().map_or(Span::NONE, |label| label.span);
+        if session.models.is_new_warning(place, &warning.message) {
+            session.report(warning);
         }
     }
 }

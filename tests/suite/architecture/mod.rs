@@ -25,7 +25,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
     ("budget", &[]),
-    ("bytecode", &["budget", "external", "symbolic", "source", "diag"]),
+    ("jit", &["symbolic"]),
+    ("bytecode", &["budget", "external", "jit", "symbolic", "source", "diag"]),
     ("units", &[]),
     ("mat", &["units", "diag"]),
     ("value", &["budget", "name", "diag"]),
@@ -80,6 +81,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         &[
             "budget",
             "bytecode",
+            "jit",
             "causalize",
             "lower",
             "flatten",

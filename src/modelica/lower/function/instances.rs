@@ -1,11 +1,11 @@
 //! Functions compiled for certain arguments, each combination once.
 
 use super::headers::{header_of, library_of, names_in_sizes};
+use super::notices::warning_of;
 use super::statements::Body;
 use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
-use crate::diag::{Diagnostic, Fault};
-use crate::eval::errors::{ASSIGN_BEFORE, NO_VALUE_YET};
+use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::external::{Effect, Kind, Slot};
 use crate::fault;
@@ -159,7 +159,7 @@ pub(crate) struct Instances {
     /// How many statements the interpreter has run.
     pub(in crate::lower) interpreted: Cell<u64>,
     /// Where calls of numbers took zero for variables that nothing was assigned to.
-    defaults: Vec<(u32, Failure)>,
+    notices: Vec<(u32, Failure)>,
     /// How many instructions calls of numbers took.
     folded: u64,
     /// The last call of numbers that took too many.
@@ -189,9 +189,8 @@ impl Instances {
     /// The finished functions, and warnings of them.
     pub(crate) fn finish(self) -> (Functions, Vec<Diagnostic>) {
         let mut warnings: Vec<Diagnostic> = Vec::new();
-        for failure in &self.defaults {
-            let (words, span) = self.functions.default_taken(failure);
-            let warning = Fault::new(NO_VALUE_YET, words).help(ASSIGN_BEFORE).at(span).warning();
+        for notice in &self.notices {
+            let warning = warning_of(&self.functions, notice);
             if !warnings.contains(&warning) {
                 warnings.push(warning);
             }
@@ -509,7 +508,7 @@ impl Instances {
         let is_exhausted = |failure: &Failure| failure.reason == Reason::Budget;
         self.exhausted = results.as_ref().err().copied().filter(is_exhausted).or(self.exhausted);
         let results = results.map(<[f64]>::to_vec);
-        self.defaults.extend(machine.defaults());
+        self.notices.extend(machine.notices());
         self.folded += machine.spent();
         results.ok().filter(|results| !results.iter().any(|x| x.is_nan()))
     }

@@ -18,6 +18,7 @@ mod headers;
 mod instances;
 mod interpreted;
 mod inverse;
+mod notices;
 mod on_demand;
 mod partial_derivative;
 mod place;
@@ -34,6 +35,7 @@ pub(super) use headers::library_of;
 pub(super) use instances::Instances;
 use instances::Output;
 pub(super) use inverse::{Inverts, inverts};
+pub(crate) use notices::warning_of;
 pub(super) use on_demand::OnDemand;
 pub(super) use results::CallResults;
 

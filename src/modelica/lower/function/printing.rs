@@ -42,6 +42,18 @@ impl Body<'_, '_> {
         Ok(())
     }
 
+    /// Warns with a text unless a condition holds.
+    pub(super) fn warn_unless(
+        &mut self,
+        condition: Operand,
+        text: Option<&ast::Expression>,
+        loops: &Loops,
+    ) {
+        let known = message_text(&mut self.of_known_texts(loops), text);
+        let (a, message) = (self.emitter.register(condition), self.emitter.message(known.into()));
+        self.emitter.emit(Instruction::Warn { a, message });
+    }
+
     /// Ends the simulation with a text unless a condition holds; the text is put together only then.
     pub(super) fn fail_unless(
         &mut self,

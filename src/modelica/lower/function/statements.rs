@@ -467,18 +467,21 @@ impl<'a, 'f> Body<'a, 'f> {
         let Some(condition) = find(0, "condition") else {
             return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
         };
-        if let Some(level) = find(2, "level")
-            && self.lowering(loops).known(level)? == 1.0
-        {
-            return Ok(());
-        }
+        let is_warning = match find(2, "level") {
+            Some(level) => self.lowering(loops).known(level)? == 1.0,
+            None => false,
+        };
         let condition = self.lowering(loops).scalar(condition)?;
         if let Operand::Constant(value) = condition
             && value != 0.0
         {
             return Ok(());
         }
-        self.fail_unless(condition, find(1, "message"), span, loops)
+        match is_warning {
+            true => self.warn_unless(condition, find(1, "message"), loops),
+            false => self.fail_unless(condition, find(1, "message"), span, loops)?,
+        }
+        Ok(())
     }
 }
 

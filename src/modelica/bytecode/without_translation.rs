@@ -1,0 +1,9 @@
+//! In place of machine code where the feature `jit` is left out: functions are always interpreted.
+
+use super::code::{Code, Functions};
+use super::machine_code::Translated;
+
+/// No function has machine code.
+pub(super) fn translated<T>(_: &Functions, _: &Code) -> Option<Translated> {
+    None
+}
