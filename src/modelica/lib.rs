@@ -35,10 +35,6 @@ pub mod external;
 pub mod flatten;
 pub mod format;
 pub mod functions;
-#[cfg(feature = "jit")]
-mod jit;
-#[cfg(not(feature = "jit"))]
-#[path = "without_jit.rs"]
 mod jit;
 pub mod lower;
 mod names;

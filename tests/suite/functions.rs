@@ -496,7 +496,7 @@ fn components_without_value_are_faults_of_who_reads_them() {
         let mut system = program.system();
         let result = simulate(&mut system, &settings);
         let result = result.map_err(|error| program.explain(&error).message.clone());
-        result.map(|_| system.defaults().len())
+        result.map(|_| system.notices().len())
     };
     assert_eq!(run(&text("a"), true), Ok(0));
     let expected = "a variable has no value in the function `P.part` (at t = 0)";

@@ -139,12 +139,15 @@ fn assertions_of_level_warning_warn_once() {
       function careful
         input Real x;
         output Real y = 0;
+      protected
+        Real i = 0;
       algorithm
-        for i in 1:3 loop
+        while i * x < 3 * x loop
+          i := i + 1;
           assert(x < 0.125, \"x is \" + String(3) + \" times too large\", AssertionLevel.warning);
           assert(x < 7, \"never\", AssertionLevel.warning);
           y := y + i * x;
-        end for;
+        end while;
       end careful;
       Real y = careful(time);";
     for strict in [false, true] {
