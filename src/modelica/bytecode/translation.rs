@@ -210,6 +210,12 @@ struct Operand {
     d: Option<Value>,
 }
 
+/// A function of this process for dual numbers, and the address of the one of the table that it takes.
+struct OnDuals {
+    callee: usize,
+    function: usize,
+}
+
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     code: &'a Code,
@@ -465,13 +471,13 @@ impl Translation<'_> {
             Instruction::Unary { function, d, a } => self.unary(function, d, a, at),
             Instruction::Pow { d, a, b } => {
                 let power = elementary::powf as fn(f64, f64) -> f64;
-                let dual = (dual_power as *const () as usize, 0);
+                let dual = OnDuals { callee: dual_power as *const () as usize, function: 0 };
                 self.binary((power, dual), d, [a, b], at);
             }
             Instruction::Binary { function, d, a, b } => {
                 let FunctionValue::Binary(value) = function.value else { return self.leave(at) };
-                let address = std::ptr::from_ref(function) as usize;
-                let dual = (dual_binary as *const () as usize, address);
+                let function = std::ptr::from_ref(function) as usize;
+                let dual = OnDuals { callee: dual_binary as *const () as usize, function };
                 self.binary((value, dual), d, [a, b], at);
             }
             // The others compute nothing.
@@ -534,10 +540,10 @@ impl Translation<'_> {
         self.set_finite(d, result, at);
     }
 
-    /// A function of two arguments: on values, and on dual numbers with its first argument.
+    /// A function of two arguments, on values and on dual numbers.
     fn binary(
         &mut self,
-        (value, (dual, function)): (fn(f64, f64) -> f64, (usize, usize)),
+        (value, dual): (fn(f64, f64) -> f64, OnDuals),
         d: Register,
         [a, b]: [Register; 2],
         at: usize,
@@ -551,8 +557,8 @@ impl Translation<'_> {
                 Operand { v: self.call(callee, self.callees.table[1], &arguments), d: None }
             }
             _ => {
-                let arguments = [self.number(function), self.address(a), self.address(b)];
-                self.on_duals((dual, self.callees.dual[1]), &arguments)
+                let arguments = [self.number(dual.function), self.address(a), self.address(b)];
+                self.on_duals((dual.callee, self.callees.dual[1]), &arguments)
             }
         };
         self.set_finite(d, result, at);
