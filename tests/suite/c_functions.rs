@@ -112,6 +112,101 @@ fn check_executes_nothing() {
     assert!(code == 0 && ran.exists(), "{out}{errors}");
 }
 
+/// Functions that read and write as many elements as they declare, and what they are called with.
+const DECLARED_SIZES: &str = "package Sizes
+  function three input Real u[3]; output Real y; external \"C\" y = three(u) annotation(Include =
+    \"static double three(double *u) { return u[0] + u[1] + u[2]; }\"); end three;
+  function first input Integer n; input Real u[n]; output Real y; external \"C\" y = first(n, u)
+    annotation(Include = \"static double first(int n, double *u) { double s = 0; int i;
+    for (i = 0; i < n; i++) s += u[i]; return s; }\"); end first;
+  function lengths input String s[2]; output Integer y; external \"C\" y = lengths(s) annotation(
+    Include = \"#include <string.h>\nstatic int lengths(const char **s) {
+    return (int)(strlen(s[0]) + strlen(s[1])); }\"); end lengths;
+  record Pair Real a[2]; end Pair;
+  record Row Integer n; Real a[n]; end Row;
+  function pair input Pair r; output Real y; external \"C\" y = pair(r.a) annotation(Include =
+    \"static double pair(double *a) { return a[0] + a[1]; }\"); end pair;
+  function row input Row r; output Real y; external \"C\" y = row(r.n, r.a) annotation(Include =
+    \"static double row(int n, double *a) { return n > 1 ? a[n - 1] : a[0]; }\"); end row;
+  function open_output input Real u; output Real y[:]; external \"C\" fill(u, y) annotation(Include =
+    \"static void fill(double u, double *y) { int i; for (i = 0; i < 9999; i++) y[i] = u; }\");
+    end open_output;
+  function open_local input Real u; output Real y; protected Real w[:]; external \"C\" y = work(u, w)
+    annotation(Include = \"static double work(double u, double *w) { int i;
+    for (i = 0; i < 9999; i++) w[i] = u; return w[0]; }\"); end open_local;
+  class Small extends ExternalObject;
+    function constructor input Real x; output Small o; external \"C\" o = small(x) annotation(
+      Include = \"#include <stdlib.h>\nstatic void *small(double x) { double *p = malloc(8); *p = x; return p; }\");
+      end constructor;
+    function destructor input Small o; external \"C\" small_free(o) annotation(
+      Include = \"#include <stdlib.h>\nstatic void small_free(void *o) { free(o); }\"); end destructor;
+  end Small;
+  class Large extends ExternalObject;
+    function constructor input Real x; output Large o; external \"C\" o = large(x) annotation(
+      Include = \"#include <stdlib.h>\nstatic void *large(double x) { double *p = calloc(1 << 20, 8); p[1 << 19] = x; return p; }\");
+      end constructor;
+    function destructor input Large o; external \"C\" large_free(o) annotation(
+      Include = \"#include <stdlib.h>\nstatic void large_free(void *o) { free(o); }\"); end destructor;
+  end Large;
+  function of_large input Large o; output Real y; external \"C\" y = of_large(o) annotation(
+    Include = \"static double of_large(void *o) { return ((double *)o)[1 << 19]; }\"); end of_large;
+end Sizes;
+";
+
+/// C reads and writes beyond no array, whatever a model or a script passes.
+#[test]
+fn arrays_and_objects_are_those_that_functions_declare() {
+    if !is_there_a_compiler() {
+        return;
+    }
+    let here = folder(&[("Sizes.mo", DECLARED_SIZES)]);
+    let (size, unknown) = ("size", "sizes are not declared");
+    for (number, (call, wanted)) in [
+        ("Sizes.three({1, 2, 3})", Ok("6")),
+        ("Sizes.three({1, 2})", Err(size)),
+        ("Sizes.first(2, {1, 2})", Ok("3")),
+        ("Sizes.first(3, {1, 2})", Err(size)),
+        ("Sizes.lengths({\"a\", \"bc\"})", Ok("3")),
+        ("Sizes.lengths({\"a\"})", Err(size)),
+        ("Sizes.pair(Sizes.Pair({1, 2}))", Ok("3")),
+        ("Sizes.pair(Sizes.Pair({1}))", Err(size)),
+        ("Sizes.row(Sizes.Row(2, {1, 2}))", Ok("2")),
+        ("Sizes.row(Sizes.Row(3, {1, 2}))", Err(size)),
+        ("sum(Sizes.open_output(1))", Err(unknown)),
+        ("Sizes.open_local(1)", Err(unknown)),
+        ("Sizes.of_large(Sizes.Large(5))", Ok("5")),
+        ("Sizes.of_large(Sizes.Small(5))", Err("Sizes.Small")),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let script = format!("openModel(\"Sizes.mo\");\nprint(String({call}));\n");
+        let model =
+            format!("model M{number} parameter Real p = {call}; Real x = p; end M{number};");
+        std::fs::write(here.path().join("s.mos"), script).expect("written");
+        std::fs::write(here.path().join(format!("M{number}.mo")), model).expect("written");
+        let file = format!("M{number}.mo");
+        for arguments in [
+            &["run", "s.mos", "--overwrite"][..],
+            &["simulate", &file, "--library", "Sizes.mo", "--output", "r.csv"],
+        ] {
+            let (code, out, errors) = gapi(&here, &[arguments, &["--allow-external"]].concat());
+            match wanted {
+                Err(word) => assert!(
+                    code == 1 && errors.contains(word),
+                    "{call} {arguments:?} {code}: {out}{errors}"
+                ),
+                Ok(value) => {
+                    let results = std::fs::read_to_string(here.path().join("r.csv"));
+                    let said = out.clone() + &results.unwrap_or_default();
+                    assert!(code == 0 && said.contains(value), "{call} {code}: {said}{errors}");
+                }
+            }
+            _ = std::fs::remove_file(here.path().join("r.csv"));
+        }
+    }
+}
+
 #[test]
 fn a_missing_compiler_is_named() {
     let here = folder(&[("a.mos", "Foreign.triple(2, 3)\n")]);

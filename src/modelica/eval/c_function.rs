@@ -12,7 +12,6 @@ use crate::syntax::ast::{
     self, Arguments, Binding, ComponentReference, Expression, ExpressionKind, External,
 };
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The external name of a function.
@@ -110,9 +109,13 @@ fn declaration(function: &Function, clause: &External) -> Result<Declaration, Di
     }
     let clause = call_of(function, clause);
     let mut arguments = Vec::with_capacity(clause.arguments.len());
+    let mut objects = Vec::with_capacity(clause.arguments.len() + 1);
     for argument in &clause.arguments {
         arguments.push(self::argument(function, argument)?);
+        objects.push(passed(function, argument).and_then(|(component, _)| object_class(component)));
     }
+    let made = clause.output.as_ref().and_then(|output| component(function, output.as_ident()?));
+    objects.push(made.and_then(object_class));
     let result = match &clause.output {
         None => None,
         Some(output) => {
@@ -130,7 +133,7 @@ fn declaration(function: &Function, clause: &External) -> Result<Declaration, Di
         class: function.name.to_string(),
         function: external_name(function, &clause).to_string(),
         destructor: is_constructor.then(|| destructor(function).to_string()),
-        objects: objects(function),
+        objects,
         effect: effect(function, is_constructor),
         arguments,
         result,
@@ -141,12 +144,11 @@ fn declaration(function: &Function, clause: &External) -> Result<Declaration, Di
     })
 }
 
-fn objects(function: &Function) -> BTreeSet<String> {
-    let class = |component: &FunctionComponent| match &component.value_type {
+fn object_class(component: &FunctionComponent) -> Option<String> {
+    match &component.value_type {
         ValueType::ExternalObject(class) => Some(class.to_string()),
         _ => None,
-    };
-    function.inputs.iter().chain(&function.outputs).filter_map(class).collect()
+    }
 }
 
 /// A constructor makes a new object with every call, and a function without outputs is called for
@@ -174,10 +176,11 @@ fn component(function: &Function, name: Ident) -> Option<&FunctionComponent> {
 
 /// The component that an argument is, or a component of a record that is an input, and whether it is
 /// an input.
-fn passed<'f>(
+pub(crate) fn passed<'f>(
     function: &'f Function,
-    reference: &ComponentReference,
+    argument: &Expression,
 ) -> Option<(&'f FunctionComponent, bool)> {
+    let ExpressionKind::Reference(reference) = &argument.kind else { return None };
     if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
         return None;
     }
@@ -218,8 +221,8 @@ fn argument(function: &Function, e: &Expression) -> Result<Argument, Diagnostic>
         {
             Argument::Size
         }
-        ExpressionKind::Reference(reference) => {
-            let passed = passed(function, reference);
+        ExpressionKind::Reference(_) => {
+            let passed = passed(function, e);
             let (component, is_input) = passed.ok_or_else(|| refused(function, what, e.span))?;
             let record = "is passed a record or a function";
             let scalar =
@@ -236,11 +239,21 @@ fn argument(function: &Function, e: &Expression) -> Result<Argument, Diagnostic>
                     let what = "returns an array of Strings";
                     return Err(refused(function, what, e.span));
                 }
+                (false, _) if !is_input && !has_sizes(component) => {
+                    let what = "writes to an array whose sizes are not declared";
+                    return Err(refused(function, what, e.span));
+                }
                 (false, _) => Argument::Array(scalar),
             }
         }
         _ => return Err(refused(function, what, e.span)),
     })
+}
+
+/// Whether there is memory for all that C may write: with `[:]` and no value there is none.
+fn has_sizes(component: &FunctionComponent) -> bool {
+    let is_size = |dim: &ast::Subscript| matches!(dim, ast::Subscript::Index(_));
+    component.binding.is_some() || component.dims.iter().all(is_size)
 }
 
 fn refused(function: &Function, what: &str, span: Span) -> Diagnostic {

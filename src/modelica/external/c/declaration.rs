@@ -57,8 +57,8 @@ pub struct Declaration {
     pub result: Option<Scalar>,
     /// The Modelica function that frees the object which this one makes (MLS §12.9.7).
     pub destructor: Option<String>,
-    /// The classes of the external objects that it takes or makes.
-    pub objects: BTreeSet<String>,
+    /// The class of each argument that is an external object, and behind them that of the result.
+    pub objects: Vec<Option<String>>,
     /// What calls do besides giving results.
     pub effect: Effect,
     /// `Include`
@@ -95,7 +95,7 @@ impl Declaration {
             sources.insert(text.clone());
         }
         sources.extend(self.libraries.iter().map(|library| format!("-l{library}")));
-        sources.extend(self.objects.iter().map(|class| format!("object {class}")));
+        sources.extend(self.objects.iter().flatten().map(|class| format!("object {class}")));
         sources
     }
 

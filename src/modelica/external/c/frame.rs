@@ -36,7 +36,7 @@ impl Frame {
     pub fn of(declaration: &Declaration, call: &Call<'_>) -> Result<Frame, Fault> {
         let mut cells = Vec::with_capacity(call.arguments.len() + 1);
         for (at, argument) in declaration.arguments.iter().enumerate() {
-            cells.push(cell(*argument, at, call)?);
+            cells.push(cell(declaration, *argument, at, call)?);
         }
         match declaration.result {
             Some(Scalar::Real) => cells.push(Cell::Reals(vec![0.0])),
@@ -64,7 +64,12 @@ impl Frame {
     }
 }
 
-fn cell(argument: Argument, at: usize, call: &Call<'_>) -> Result<Cell, Fault> {
+fn cell(
+    declaration: &Declaration,
+    argument: Argument,
+    at: usize,
+    call: &Call<'_>,
+) -> Result<Cell, Fault> {
     let slot = &call.arguments[at];
     let numbers = || &call.numbers[slot.first as usize..][..slot.len()];
     Ok(match argument {
@@ -79,10 +84,29 @@ fn cell(argument: Argument, at: usize, call: &Call<'_>) -> Result<Cell, Fault> {
                 Scalar::Whole => Cell::Wholes(wholes(numbers(), is_output, call)?),
                 Scalar::Text if is_output => Cell::Texts(vec![CString::default()]),
                 Scalar::Text => Cell::Texts(texts(slot, call)?),
-                Scalar::Object => Cell::Object(call.object::<CObject>(at)?.address()),
+                Scalar::Object => Cell::Object(object(declaration, at, call)?.address()),
             }
         }
     })
+}
+
+/// An object of the class that C takes it for.
+fn object<'c>(
+    declaration: &Declaration,
+    at: usize,
+    call: &'c Call<'_>,
+) -> Result<&'c CObject, Fault> {
+    let object: &CObject = call.object(at)?;
+    let name = |class: &Option<String>| class.clone().unwrap_or_default();
+    match declaration.objects.get(at) {
+        Some(wanted) if *wanted == object.class => Ok(object),
+        wanted => Err(call.fault(format!(
+            "argument {} is an object of the class `{}`, not of `{}`",
+            at + 1,
+            name(&object.class),
+            wanted.map(name).unwrap_or_default()
+        ))),
+    }
 }
 
 /// An `int`.
@@ -133,6 +157,8 @@ fn write(cell: Cell, slot: &Slot, call: &mut Call<'_>) -> Result<(), Fault> {
 pub(crate) struct CObject {
     pub(super) library: Arc<dyn CLibrary>,
     pub(super) address: usize,
+    /// Its class in Modelica.
+    pub(super) class: Option<String>,
     pub(super) destructor: Option<usize>,
 }
 

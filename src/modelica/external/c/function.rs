@@ -38,8 +38,9 @@ impl CFunction {
         match (self.declaration.result, frame.cells.last()) {
             (Some(Scalar::Object), Some(Cell::Object(address))) => {
                 let (library, address) = (self.library.clone(), *address);
+                let class = self.declaration.objects.last().cloned().flatten();
                 frame.store(&self.declaration, call)?;
-                call.give_object(CObject { library, address, destructor: self.destructor })
+                call.give_object(CObject { library, address, class, destructor: self.destructor })
             }
             _ => frame.store(&self.declaration, call),
         }

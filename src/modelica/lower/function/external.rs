@@ -10,9 +10,10 @@ use crate::eval::{FunctionComponent, c_function};
 use crate::external::{self, Entry, Kind, Slot};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::expressions::Lowered;
+use crate::lower::expressions::{Lowered, size_fault};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
+use crate::symbolic::RelationOperator;
 use crate::syntax::ast;
 
 impl Body<'_, '_> {
@@ -44,6 +45,11 @@ impl Body<'_, '_> {
             });
             arguments.push(self.slot(value, component, argument.span)?);
         }
+        if entry.c.is_some() {
+            for (argument, slot) in clause.arguments.iter().zip(&arguments) {
+                self.check_sizes(argument, slot)?;
+            }
+        }
         let output = clause.output.as_ref().and_then(|output| output.as_ident());
         let result = match function.outputs.iter().find(|c| Some(c.name) == output) {
             Some(output) => {
@@ -60,6 +66,54 @@ impl Body<'_, '_> {
         self.emitter.emit(Instruction::External { external });
         self.emitter.close();
         Ok(())
+    }
+
+    /// C reads as many elements as the declaration promises: an argument has the sizes of its component,
+    /// also where these are known only when the function is called.
+    fn check_sizes(&mut self, argument: &ast::Expression, slot: &Slot) -> Result<(), Diagnostic> {
+        let function = self.function.clone();
+        let Some((component, _)) = c_function::passed(&function, argument) else { return Ok(()) };
+        for (dim, size) in component.dims.iter().zip(&slot.dims) {
+            let ast::Subscript::Index(declared) = dim else { continue };
+            let Some(declared) = self.declared_size(declared, argument)? else { continue };
+            match declared {
+                Operand::Constant(declared) if declared == f64::from(*size) => {}
+                Operand::Constant(declared) => {
+                    let fault = size_fault(&[declared as usize], &[*size as usize]);
+                    return Err(fault.at(argument.span).related(component.span, "this component"));
+                }
+                declared @ Operand::Register(_) => {
+                    let (a, d) = (self.emitter.register(declared), self.emitter.block(1));
+                    let b = self.emitter.register(Operand::Constant(f64::from(*size)));
+                    let text = format!("`{}` has not the size that is declared", component.name);
+                    let message = self.emitter.message(text.into());
+                    let operator = RelationOperator::Equal;
+                    self.emitter.emit(Instruction::Relation { operator, d, a, b });
+                    self.emitter.emit(Instruction::Assert { a: d, message });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A size of a component. One of a record's component may be the name of another one in the record;
+    /// what else it may be is not known here.
+    fn declared_size(
+        &mut self,
+        size: &ast::Expression,
+        argument: &ast::Expression,
+    ) -> Result<Option<Operand>, Diagnostic> {
+        let ast::ExpressionKind::Reference(of) = &argument.kind else { return Ok(None) };
+        let [record @ .., _] = of.parts.as_slice() else { return Ok(None) };
+        let mut within = size.clone();
+        if let ast::ExpressionKind::Reference(own) = &mut within.kind {
+            own.parts.splice(0..0, record.iter().cloned());
+        }
+        match self.lowering(&Vec::new()).scalar(&within) {
+            Ok(size) => Ok(Some(size)),
+            Err(_) if !record.is_empty() => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// The files that a function reads are kept with the model, so that their names must be known.

@@ -115,10 +115,11 @@ impl Body<'_, '_> {
 
     /// Its number of dimensions, and its sizes as far as they are known.
     fn check_input(&mut self, input: &FunctionComponent, span: Span) -> Result<(), Diagnostic> {
-        let Some(Array { dims, .. }) = self.local(&[input.name]).and_then(|v| elements(v)) else {
-            return Ok(());
+        let dims = match self.local(&[input.name]) {
+            Some(Lowered::Array(Array { dims, .. })) => dims.clone(),
+            Some(Lowered::Texts(texts)) => texts.dims.clone(),
+            _ => return Ok(()),
         };
-        let dims = dims.clone();
         let name = &self.function.name;
         if dims.len() != input.dims.len() {
             return Err(fault!(
