@@ -4,7 +4,7 @@
 use super::errors::{EXTERNAL_FUNCTION, WRONG_ARGUMENTS};
 use super::{Evaluator, Function, FunctionComponent, ValueType, c_function};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::external::{Call, Entry, Kind, Object, Slot};
+use crate::external::{Call, Entry, Kind, MAX_INTEGER, Object, Slot};
 use crate::fault;
 use crate::name::Ident;
 use crate::syntax::ast;
@@ -158,9 +158,6 @@ struct Memory {
     /// Components that the call may write to.
     written: Vec<(FunctionComponent, Slot)>,
 }
-
-/// Integers beyond this do not fit into numbers.
-const MAX_INTEGER: i64 = 1 << 53;
 
 impl Memory {
     fn add(&mut self, value: Value) -> Result<Slot, Fault> {

@@ -9,6 +9,9 @@ use crate::fault;
 use std::any::Any;
 use std::sync::Arc;
 
+/// Integers beyond this do not fit into numbers.
+pub(crate) const MAX_INTEGER: i64 = 1 << 53;
+
 /// An external object: it does not change once it is made.
 pub type Object = Arc<dyn Any + Send + Sync>;
 
@@ -184,9 +187,9 @@ impl Call<'_> {
         self.numbers[self.arguments[argument].first as usize]
     }
 
-    /// A whole number.
+    /// A whole number; beyond those that are exact, the last of them.
     pub(super) fn whole(&self, argument: usize) -> i64 {
-        self.number(argument) as i64
+        (self.number(argument) as i64).clamp(-MAX_INTEGER, MAX_INTEGER)
     }
 
     /// A truth value.

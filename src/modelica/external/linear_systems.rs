@@ -52,7 +52,7 @@ fn factorize(a: DMatrix<f64>) -> Factors {
         places.swap(k, pivot);
         pivots.push((pivot + 1) as f64);
     }
-    let zero = upper.diagonal().iter().position(|pivot| *pivot == 0.0);
+    let zero = (0..upper.nrows().min(upper.ncols())).position(|k| upper[(k, k)] == 0.0);
     (factors, pivots, zero.map_or(0.0, |at| (at + 1) as f64))
 }
 
@@ -217,7 +217,8 @@ fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
 fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let band = matrix(call, 4)?;
-    let (n, lower, upper) = (band.ncols(), call.number(1) as usize, call.number(2) as usize);
+    let diagonals = |argument| usize::try_from(call.whole(argument)).unwrap_or(0);
+    let (n, lower, upper) = (band.ncols(), diagonals(1), diagonals(2));
     if band.nrows() < 2 * lower + upper + 1 {
         return Err(call.fault("the band has fewer rows than diagonals"));
     }

@@ -1,16 +1,26 @@
 //! Matrices as arguments of LAPACK's routines, row-major; leading dimensions are not looked at.
 
 use super::call::Call;
+use crate::budget::has_memory;
 use crate::diag::Fault;
 use nalgebra::DMatrix;
 
-/// A vector or matrix argument; a vector is a column.
+/// Rows or columns from which the memory is asked for: below, a square matrix takes 128 MiB at most.
+const LARGE: usize = 1 << 12;
+
+/// A vector or matrix argument; a vector is a column. Its orthogonal factors are square matrices with
+/// as many rows as it has rows or columns: one without elements may have billions.
 pub fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let (rows, columns) = match *call.dims(argument) {
         [rows] => (rows as usize, 1),
         [rows, columns] => (rows as usize, columns as usize),
         _ => return Err(call.fault("an argument is neither vector nor matrix")),
     };
+    let side = rows.max(columns);
+    let bytes = side.saturating_mul(side).saturating_mul(size_of::<f64>());
+    if side > LARGE && !has_memory(bytes) {
+        return Err(call.fault(format!("there is no memory for {side} rows and columns")));
+    }
     let values = call.array(argument);
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(DMatrix::from_row_slice(rows, columns, values)),

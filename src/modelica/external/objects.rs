@@ -61,10 +61,10 @@ impl Key {
         let mut key = Key { name: call.name, numbers: Vec::new(), strings: Vec::new() };
         for slot in call.arguments {
             let first = slot.first as usize;
+            key.numbers.extend(slot.dims.iter().map(|size| u64::from(*size)));
             match slot.kind {
-                Kind::Text => key.strings.push(call.strings[first].clone()),
+                Kind::Text => key.strings.extend_from_slice(&call.strings[first..][..slot.len()]),
                 Kind::Number | Kind::Numbered | Kind::Object => {
-                    key.numbers.extend(slot.dims.iter().map(|size| u64::from(*size)));
                     let numbers = &call.numbers[first..][..slot.len()];
                     key.numbers.extend(numbers.iter().map(|number| number.to_bits()));
                 }

@@ -11,15 +11,22 @@ use crate::fault;
 use crate::value::format::written;
 
 /// The text of all arguments.
-pub(crate) static COMPOSE: Entry = Entry { stands_for: OWN, ..Entry::pure("String", "", compose) };
+pub(crate) static COMPOSE: Entry =
+    Entry { stands_for: OWN, ..Entry::pure("String", "*->t", compose) };
 
 /// Fails with a text: the first argument is the text as far as it is known at translation, the others
 /// are the parts.
-pub(crate) static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "", fail) };
+pub(crate) static FAIL: Entry = Entry { stands_for: OWN, ..Entry::pure("assert", "t*", fail) };
 
 /// As `ModelicaInternal_print`: the file, then the text in parts.
 pub static PRINT: Entry =
-    Entry { stands_for: OWN, ..Entry::writing("ModelicaInternal_print", "", print) };
+    Entry { stands_for: OWN, ..Entry::writing("ModelicaInternal_print", "t*", print) };
+
+/// The end of a signature: parts follow.
+pub(super) const PARTS: char = '*';
+/// Elements of a row for a number with a format, and without.
+const WITH_FORMAT: u32 = 2;
+const WITHOUT_FORMAT: u32 = 5;
 
 /// What tells these from the functions of libraries: no declaration includes it.
 const OWN: &str = "strings in parts";
@@ -42,6 +49,22 @@ fn print(call: &mut Call<'_>) -> Result<(), Fault> {
     }
 }
 
+/// Whether arguments are parts.
+pub(super) fn are_parts(slots: &[Slot]) -> bool {
+    let mut slots = slots.iter();
+    while let Some(slot) = slots.next() {
+        let fits = match (slot.kind, &*slot.dims) {
+            (Kind::Number, [WITH_FORMAT]) => slots.next().is_some_and(|format| format.fits('f')),
+            (Kind::Number, [size]) => *size == WITHOUT_FORMAT,
+            _ => slot.fits('t'),
+        };
+        if !fits {
+            return false;
+        }
+    }
+    true
+}
+
 fn joined(call: &Call<'_>, parts: &[Slot]) -> Result<String, Fault> {
     let mut words = String::new();
     let mut parts = parts.iter();
@@ -49,7 +72,7 @@ fn joined(call: &Call<'_>, parts: &[Slot]) -> Result<String, Fault> {
         let first = slot.first as usize;
         match (slot.kind, &*slot.dims) {
             (Kind::Text, _) => words += &call.strings[first],
-            (_, [2]) => {
+            (_, [WITH_FORMAT]) => {
                 let format = parts.next().map_or("", |slot| &call.strings[slot.first as usize]);
                 words += &written(&call.numbers[first..first + 2], Some(format))?;
             }

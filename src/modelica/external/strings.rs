@@ -78,7 +78,7 @@ fn scan_identifier(call: &mut Call<'_>) -> Result<(), Fault> {
         }
         _ => 0,
     };
-    let found = call.text(0)[start..start + n].to_owned();
+    let found = String::from_utf8_lossy(&bytes[start..start + n]).into_owned();
     let next = if n == 0 { call.number(1) } else { (start + n + 1) as f64 };
     call.set(2, next);
     call.set_text(3, &found);
@@ -102,7 +102,8 @@ fn scan_integer(call: &mut Call<'_>) -> Result<(), Fault> {
     let digits = if call.truth(2) { start } else { behind_sign(bytes, start) };
     let end = digits + run(bytes, digits, u8::is_ascii_digit);
     let is_real = matches!(bytes.get(end), Some(b'.' | b'e' | b'E'));
-    let text = &call.text(0)[start..end];
+    // A start within a letter of several bytes is the end, too.
+    let text = call.text(0).get(start..end).unwrap_or_default();
     // Integers of the language have 32 bits where these functions come from.
     let number = match text.parse::<i32>() {
         Ok(value) if end > digits && !is_real => Some((f64::from(value), end)),

@@ -30,7 +30,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("mat", &["units", "diag"]),
     ("value", &["budget", "name", "diag"]),
-    ("external", &["mat", "singular_values", "value", "diag"]),
+    ("external", &["budget", "mat", "singular_values", "value", "diag"]),
     ("plot", &["diag"]),
     ("sim", &["registry", "diag"]),
     ("ga", &["singular_values", "registry", "diag"]),
