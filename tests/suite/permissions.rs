@@ -435,3 +435,18 @@ fn a_script_of_dots_owns_nothing_else() {
         assert_eq!(text(&here, "notes.txt"), "mine", "{name}");
     }
 }
+
+/// Functions without outputs are called for what they do, at events alone, too.
+#[test]
+fn a_model_makes_and_removes_at_an_event() {
+    for call in ["createDirectory", "removeFile", "remove"] {
+        let model = format!(
+            "model M Real x(start = 1, fixed = true); equation der(x) = -x; when time > 0.5 then \
+             Modelica.Utilities.Files.{call}(\"made\"); end when; end M;"
+        );
+        let here = folder(&[("M.mo", &model)]);
+        let (code, out, errors) = gapi(&here, &["simulate", "M.mo", "--output", "m.csv"]);
+        assert_eq!(code, 0, "{call}: {out}{errors}");
+        assert_eq!(here.path().join("made").is_dir(), call == "createDirectory");
+    }
+}

@@ -233,7 +233,8 @@ impl<'a> TapeBuilder<'a> {
             return known;
         }
         self.compute_entries(arguments);
-        let d = self.registers.row(self.registers.functions().n_outputs(function));
+        // What is called to write has a place for an output that it does not have.
+        let d = self.registers.row(self.registers.functions().n_outputs(function).max(1));
         self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
         let arguments = self.pool.entries(arguments).iter().map(|a| self.register(*a)).collect();
         self.tape.calls.push(Call { function, inputs, arguments, d });
