@@ -496,3 +496,74 @@ proptest! {
         }
     }
 }
+
+/// An archive of entries that are not compressed (APPNOTE of PKZIP, 4.3).
+fn archive(entries: &[(&str, &str)]) -> Vec<u8> {
+    let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+    for (name, content) in entries {
+        let mut crc = flate2::Crc::new();
+        crc.update(content.as_bytes());
+        let offset = bytes.len() as u32;
+        // Version, flags, method, time and date.
+        let mut header = vec![20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0];
+        header.extend(crc.sum().to_le_bytes());
+        header.extend([(content.len() as u32).to_le_bytes(); 2].concat());
+        header.extend([name.len() as u8, 0, 0, 0]);
+        bytes.extend([b"PK\x03\x04", &header[..], name.as_bytes(), content.as_bytes()].concat());
+        directory.extend([b"PK\x01\x02\x14\0", &header[..], &[0; 10][..]].concat());
+        directory.extend([&offset.to_le_bytes()[..], name.as_bytes()].concat());
+    }
+    let (count, start) = (entries.len() as u16, bytes.len() as u32);
+    let ends = [count.to_le_bytes(), count.to_le_bytes()].concat();
+    let size = (directory.len() as u32).to_le_bytes();
+    bytes.extend([&directory[..], b"PK\x05\x06\0\0\0\0", &ends, &size].concat());
+    bytes.extend([&start.to_le_bytes()[..], &[0, 0]].concat());
+    bytes
+}
+
+/// Twenty cells share a text of 16 MiB.
+#[test]
+fn texts_that_cells_share_are_counted_as_often_as_they_are_read() {
+    const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    const OFFICE: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006";
+    let book = |text: &str| {
+        let relation = |id: &str, kind: &str, target: &str| {
+            format!("<Relationship Id=\"{id}\" Type=\"{OFFICE}/{kind}\" Target=\"{target}\"/>")
+        };
+        let relations = |all: &str| {
+            format!("<Relationships xmlns=\"{PACKAGE}/relationships\">{all}</Relationships>")
+        };
+        let rows: String = (1..=20)
+            .map(|row| format!("<row r=\"{row}\"><c r=\"A{row}\" t=\"s\"><v>0</v></c></row>"))
+            .collect();
+        archive(&[
+            ("[Content_Types].xml", &format!("<Types xmlns=\"{PACKAGE}/content-types\"/>")),
+            ("_rels/.rels", &relations(&relation("rId1", "officeDocument", "xl/workbook.xml"))),
+            (
+                "xl/workbook.xml",
+                &format!(
+                    "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets><sheet name=\"S\" \
+                     sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+                ),
+            ),
+            (
+                "xl/_rels/workbook.xml.rels",
+                &relations(
+                    &(relation("rId1", "worksheet", "worksheets/sheet1.xml")
+                        + &relation("rId2", "sharedStrings", "sharedStrings.xml")),
+                ),
+            ),
+            (
+                "xl/sharedStrings.xml",
+                &format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>"),
+            ),
+            (
+                "xl/worksheets/sheet1.xml",
+                &format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>"),
+            ),
+        ])
+    };
+    let message = mat::read_named("large.xlsx", &book(&"a".repeat(16 << 20))).unwrap_err().message;
+    assert_eq!(message, "`large.xlsx`: the cells of the sheet `S` contain more than 256 MiB");
+}

@@ -41,7 +41,7 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         bail!(BAD_TABLE, "the spreadsheet has no sheet");
     };
     let mut rows: BTreeMap<u32, BTreeMap<u32, String>> = BTreeMap::new();
-    let mut count = 0;
+    let (mut count, mut bytes_of_texts) = (0, 0);
     let mut cells = workbook.worksheet_cells_reader(sheet).map_err(|error| unreadable(&error))?;
     while let Some(cell) = cells.next_cell().map_err(|error| unreadable(&error))? {
         count += 1;
@@ -50,6 +50,16 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         }
         let (row, column) = cell.get_position();
         let text = text(cell.get_value());
+        // Any number of cells may share one text.
+        bytes_of_texts += text.len();
+        if bytes_of_texts as u64 > MAX_INFLATED {
+            bail!(
+                BAD_TABLE,
+                "the cells of the sheet `{sheet}` contain more than {} MiB",
+                MAX_INFLATED >> 20;
+                help: "save it as .csv"
+            );
+        }
         if !text.is_empty() {
             rows.entry(row).or_default().insert(column, text);
         }
@@ -88,8 +98,11 @@ fn filled(
     rows: BTreeMap<u32, BTreeMap<u32, String>>,
     sheet: &str,
 ) -> Result<Vec<(usize, Vec<String>)>, Fault> {
-    let width =
-        rows.values().filter_map(|row| row.keys().next_back()).max().map_or(0, |last| last + 1);
+    let width = rows
+        .values()
+        .filter_map(|row| row.keys().next_back())
+        .max()
+        .map_or(0, |last| last.saturating_add(1));
     if rows.len().saturating_mul(width as usize) > MOST_CELLS {
         bail!(BAD_TABLE, "the sheet `{sheet}` has more than {MOST_CELLS} cells");
     }
