@@ -294,12 +294,81 @@ fn resumed_after_kills(wanted: u64) {
                 break;
             }
         }
-        for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
-            let read = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
-            assert!(read(&out) == read("whole"), "{file} differs in {out} after {kills} kills");
-        }
+        same_results(folder.path(), &out, &format!("{kills} kills"));
     }
     assert!(resumed > 0, "none of {kills} kills hit a run with a checkpoint");
+}
+
+/// The results of a run are those of the one that was not disturbed, byte by byte.
+fn same_results(folder: &Path, out: &str, after: &str) {
+    for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
+        let read = |out: &str| fs::read(folder.join(out).join(file)).unwrap();
+        assert!(read(out) == read("whole"), "{file} differs in {out} after {after}");
+    }
+}
+
+/// What a run has written down that was killed while it searched.
+fn journal_of_a_killed_run(folder: &Path, length: std::time::Duration) -> Vec<u8> {
+    for part in [0.7, 0.6, 0.5, 0.4, 0.3, 0.8, 0.9] {
+        let mut child = command(folder, &["cooling.toml", "--out", "cut", "--overwrite"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(length.mul_f64(part));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        match fs::read(folder.join("cut/run.journal")) {
+            Ok(journal) if journal.len() > 1000 => return journal,
+            _ => {}
+        }
+    }
+    panic!("no run was killed while it searched");
+}
+
+/// Journals that are damaged in the suite; `GAPILIB_DAMAGED` sets another number.
+const DAMAGED: u64 = 9;
+
+/// What a damaged journal still holds is used, and nothing of what it does not.
+#[test]
+fn damaged_journals_resume_to_the_same_end() {
+    let wanted = std::env::var("GAPILIB_DAMAGED").map_or(DAMAGED, |text| text.parse().unwrap());
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    cooling(folder.path());
+    let started = std::time::Instant::now();
+    let (code, text) = run(folder.path(), &["cooling.toml", "--out", "whole", "--threads", "2"]);
+    assert_eq!(code, 0, "{text}");
+    let whole = journal_of_a_killed_run(folder.path(), started.elapsed());
+    let mut rng = gapilib::internals::ga::Mrg32k3a::new(&[54321.0; 6]).unwrap();
+    let (mut shorter, mut refused) = (0, 0);
+    for number in 0..wanted {
+        let mut journal = whole.clone();
+        let at = (rng.uniform() * journal.len() as f64) as usize;
+        let n = (1 + (rng.uniform() * 200.0) as usize).min(journal.len() - at);
+        match number % 5 {
+            0 => journal[at] ^= 1 << (number % 8),
+            1 => journal.truncate(at),
+            2 => drop(journal.drain(at..at + n)),
+            3 => journal[at..at + n].fill(0xff),
+            _ => {
+                let copy = journal[at..at + n].to_vec();
+                journal.splice(at..at, copy);
+            }
+        }
+        let out = format!("damaged{number}");
+        fs::create_dir(folder.path().join(&out)).unwrap();
+        fs::write(folder.path().join(&out).join("run.journal"), &journal).unwrap();
+        let (code, text) = run(folder.path(), &["cooling.toml", "--out", &out, "--resume"]);
+        match code {
+            0 => same_results(folder.path(), &out, &format!("damage {number}")),
+            // Its head is damaged: it may be anybody's file, which is not written over unasked.
+            _ => assert!(text.contains("is not a checkpoint"), "{number}: {text}"),
+        }
+        shorter += u64::from(text.contains("resumed after"));
+        refused += u64::from(!text.contains("resumed after"));
+        fs::remove_dir_all(folder.path().join(&out)).unwrap();
+    }
+    assert!(shorter > refused, "{shorter} of {wanted} damaged journals were used");
 }
 
 /// A file larger than 4 KiB cannot be written, as on a full disk.
