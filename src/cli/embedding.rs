@@ -115,11 +115,7 @@ impl Embedding {
 pub fn command(arguments: Vec<OsString>) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
-        Err(error) => {
-            // What cannot be shown need not be.
-            let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(2);
-        }
+        Err(error) => return super::terminal::print_usage(&error),
     };
     let ended = super::on_large_stack(move || dispatch(&cli));
     (0..=u8::MAX).find(|code| ExitCode::from(*code) == ended).unwrap_or(1)

@@ -95,11 +95,7 @@ pub fn main() -> ExitCode {
 fn command() -> ExitCode {
     match Cli::try_parse() {
         Ok(cli) => on_large_stack(move || dispatch(&cli)),
-        Err(error) => {
-            // Without a terminal to print to, the code says it.
-            let _ = error.print();
-            ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
-        }
+        Err(error) => ExitCode::from(terminal::print_usage(&error)),
     }
 }
 
@@ -127,6 +123,22 @@ fn on_large_stack(work: impl FnOnce() -> ExitCode + Send + 'static) -> ExitCode 
     }
 }
 
+/// The default limit of memory, for commands that read what is foreign and have no options for limits.
+fn default_limits(command: &Command) -> Result<Option<limits::Watch>, ExitCode> {
+    let is_limited = matches!(
+        command,
+        Command::Teach(_)
+            | Command::Lesson(_)
+            | Command::New(_)
+            | Command::Report(_)
+            | Command::Journal(_)
+            | Command::Compare(_)
+            | Command::Verify(_)
+            | Command::Fmt(_)
+    );
+    is_limited.then(|| limits::enforce(&options::Limits::default())).transpose()
+}
+
 fn dispatch(cli: &Cli) -> ExitCode {
     let lists = matches!(
         cli.command,
@@ -144,6 +156,10 @@ fn dispatch(cli: &Cli) -> ExitCode {
         );
         return ExitCode::from(2);
     }
+    let _watch = match default_limits(&cli.command) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
         Command::Teach(arguments) => teach::teach(arguments, &cli.global),

@@ -2,8 +2,9 @@
 //! that dies leaves behind unlocked.
 
 use super::disk;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read as _, Seek as _, Write as _};
+use crate::script::access::policy::{Refusal, refusal_of};
+use std::fs::{File, TryLockError};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -29,7 +30,8 @@ impl Drop for Lock {
 }
 
 impl Lock {
-    /// Locks a folder, and removes what a killed run has left half written in it.
+    /// Locks a folder, whose path has no links, and removes what a killed run has left half written
+    /// in it.
     ///
     /// # Errors
     ///
@@ -39,12 +41,11 @@ impl Lock {
         let mut file = opened(&path)?;
         match tried(&file) {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(locked(&mut file, folder)),
+            Err(TryLockError::WouldBlock) => return Err(locked(folder)),
             // Some file systems have no locks; they are used as before.
             Err(TryLockError::Error(_)) => return Ok(Lock(file)),
         }
         file.set_len(0)?;
-        file.rewind()?;
         writeln!(file, "process {}", std::process::id())?;
         disk::remove_temporary_files(folder);
         Ok(Lock(file))
@@ -67,37 +68,23 @@ fn tried(file: &File) -> Result<(), TryLockError> {
 /// Opens the file that is locked, which belongs to the program alone: writing into one that has
 /// another name would change a file of the user.
 fn opened(path: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false);
-    #[cfg(unix)]
-    {
-        use rustix::fs::OFlags;
-        use std::os::unix::fs::OpenOptionsExt as _;
-        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits() as i32);
-    }
-    let is_link = fs::symlink_metadata(path).is_ok_and(|found| !found.is_file());
-    let refused = |why: &str| {
-        let message = format!("`{}` {why}; remove it, or choose another folder", path.display());
-        Err(io::Error::other(message))
-    };
-    if is_link {
-        return refused("is not a file");
-    }
-    let file = options.open(path)?;
-    if !file.metadata()?.is_file() {
-        return refused("is not a file");
-    }
-    #[cfg(unix)]
-    if std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 1 {
-        return refused("has a second name elsewhere (a hard link)");
-    }
-    Ok(file)
+    disk::open_own(path).map_err(|error| {
+        let why = match refusal_of(&error) {
+            Some(Refusal::System) => "it is not a file",
+            Some(refusal) => refusal.reason(),
+            None => return error,
+        };
+        let shown = path.display();
+        let message =
+            format!("`{shown}` cannot be used: {why}; remove it, or choose another folder");
+        io::Error::other(message)
+    })
 }
 
-fn locked(file: &mut File, folder: &Path) -> io::Error {
-    let mut holder = String::new();
+fn locked(folder: &Path) -> io::Error {
     // Without its name the message still says what is wrong.
-    let _ = file.read_to_string(&mut holder);
+    let holder = disk::read_named(&folder.join(FILE)).unwrap_or_default();
+    let holder = String::from_utf8_lossy(&holder);
     let holder = match holder.trim() {
         "" => String::new(),
         holder => format!(" ({holder})"),
@@ -115,6 +102,7 @@ fn locked(file: &mut File, folder: &Path) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn the_second_run_is_told_who_holds_the_folder() {

@@ -5,7 +5,7 @@
 //! to it: the same file is the same problem, however much was changed in it. Beside the folders the
 //! link `latest` leads to the one that was written last.
 
-use super::disk::{read_named, write_beside};
+use super::disk::{self, read_named, real_path, write_own};
 use super::lock::{self, Lock};
 use super::terminal;
 use crate::script::world::normalized;
@@ -26,6 +26,8 @@ const MOST: usize = 10_000;
 pub(super) struct Output {
     /// The folder, absolute.
     pub folder: PathBuf,
+    /// The same without links, as it was when the folder was chosen.
+    pub real: PathBuf,
     origin: String,
     /// The link that is to lead to it.
     latest: Option<PathBuf>,
@@ -86,7 +88,8 @@ impl Output {
             stem if stem.trim_matches('.').is_empty() => "run".into(),
             _ => stem,
         };
-        if is_elsewhere(&all) {
+        let real = real_path(&all);
+        if !real.starts_with(real_path(all.parent().unwrap_or(&all))) {
             return Err(format!(
                 "`{}` is a link to another folder\n = help: name the folder with `--out`, or \
                  remove the link",
@@ -97,9 +100,9 @@ impl Output {
             1 => all.join(&*stem),
             k => all.join(format!("{stem}-{k}")),
         });
+        let outputs = folders.map(|folder| Output::at(folder, command, &input));
         // A link that came with the folder would make another one the output folder.
-        let folders = folders.filter(|folder| !is_elsewhere(folder));
-        let mut outputs = folders.map(|folder| Output::at(folder, command, &input));
+        let mut outputs = outputs.filter(|output| output.real.starts_with(&real));
         let own = outputs.find(|output| match output.holder() {
             Some(origin) => origin == output.origin,
             None => is_free(&output.folder),
@@ -111,13 +114,15 @@ impl Output {
 
     /// A folder within this one, for a further run of the same problem.
     pub(super) fn within(&self, name: &str) -> Output {
-        Output { folder: self.folder.join(name), origin: self.origin.clone(), latest: None }
+        let (folder, real) = (self.folder.join(name), self.real.join(name));
+        Output { folder, real, origin: self.origin.clone(), latest: None }
     }
 
     fn at(folder: PathBuf, command: &str, input: &Path) -> Output {
         let file = way(&folder, input);
         let origin = serde_json::json!({ "command": command, "input": file.to_string_lossy() });
-        Output { folder, origin: format!("{origin:#}\n"), latest: None }
+        let real = real_path(&folder);
+        Output { folder, real, origin: format!("{origin:#}\n"), latest: None }
     }
 
     /// Whose results the folder holds, as its `origin.json` says.
@@ -136,7 +141,7 @@ impl Output {
     ///
     /// Another run writes into it.
     pub(super) fn lock_if_there(&self) -> io::Result<Option<Lock>> {
-        if self.folder.is_dir() { Lock::of(&self.folder).map(Some) } else { Ok(None) }
+        if self.folder.is_dir() { Lock::of(&self.real).map(Some) } else { Ok(None) }
     }
 
     /// Says in the folder whose results it holds, before the first of them is written, and keeps
@@ -146,17 +151,17 @@ impl Output {
     ///
     /// The folder cannot be made or written, or another run writes into it.
     pub(super) fn claim(&self, lock: Option<Lock>) -> io::Result<Lock> {
-        fs::create_dir_all(&self.folder)?;
+        disk::create_own_folders(&self.real)?;
         let lock = match lock {
             Some(lock) if self.folder.join(lock::FILE).exists() => lock,
-            _ => Lock::of(&self.folder)?,
+            _ => Lock::of(&self.real)?,
         };
         self.describe().map(|()| lock)
     }
 
     fn describe(&self) -> io::Result<()> {
         if self.holder().as_ref() != Some(&self.origin) {
-            write_beside(&self.folder.join(ORIGIN), self.origin.as_bytes())?;
+            write_own(&self.real.join(ORIGIN), self.origin.as_bytes())?;
         }
         // Without the link the output still says where the results are.
         self.latest.as_ref().map_or(Ok(()), |link| relink(link, &self.folder)).or(Ok(()))
@@ -181,13 +186,6 @@ pub(super) fn latest_of(folder: &Path) -> PathBuf {
 /// The text of a file, no pipe and no device.
 fn text_of(path: &Path) -> Option<String> {
     String::from_utf8(read_named(path).ok()?).ok()
-}
-
-/// Whether a path leads out of the folder that it is in.
-fn is_elsewhere(path: &Path) -> bool {
-    // A link that leads nowhere may lead to a folder that is made later.
-    let real = || Some(path.canonicalize().ok()?.starts_with(path.parent()?.canonicalize().ok()?));
-    path.is_symlink() && real() != Some(true)
 }
 
 #[cfg(unix)]
@@ -288,5 +286,28 @@ mod tests {
         );
         assert!(of("gapi identify", "a.mos", false).is_err());
         assert!(of("gapi run", "b.mos", true).is_ok());
+    }
+
+    /// As another user can do it in a folder that both may write.
+    #[test]
+    #[cfg(unix)]
+    fn a_link_that_takes_the_place_of_the_folder_is_not_followed() {
+        let here = tempfile::tempdir().expect("a folder");
+        let root = here.path().canonicalize().expect("an absolute path");
+        let (all, victim) = (root.join("results"), root.join("victim"));
+        fs::create_dir(&victim).expect("made");
+        let swapped = |put_away: &Path| {
+            let output = Output::below(&all, "gapi run", &root.join("a.mos")).expect("room");
+            output.claim(None).expect("written");
+            fs::rename(put_away, root.join("away")).expect("renamed");
+            std::os::unix::fs::symlink(&victim, put_away).expect("a link");
+            assert!(output.claim(None).is_err());
+            assert!(!output.lock_if_there().is_ok_and(|lock| lock.is_some()));
+            assert_eq!(fs::read_dir(&victim).expect("readable").count(), 0);
+            fs::remove_file(put_away).expect("removed");
+            fs::remove_dir_all(root.join("away")).expect("removed");
+        };
+        swapped(&all.join("a"));
+        swapped(&all);
     }
 }

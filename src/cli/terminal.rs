@@ -260,3 +260,20 @@ fn checked(written: std::io::Result<()>) {
 pub(super) fn eprint(text: &str) {
     let _ = std::io::stderr().lock().write_all(visible(text).as_bytes());
 }
+
+/// Says what is wrong with the command line, or the help that was asked for; the exit code. Arguments
+/// may be names of files that a shell has found.
+pub(super) fn print_usage(error: &clap::Error) -> u8 {
+    if error.use_stderr() {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let text = match wanted && std::io::stderr().is_terminal() {
+            true => error.render().ansi().to_string(),
+            false => error.render().to_string(),
+        };
+        let _ = std::io::stderr().lock().write_all(visible_coloured(&text).as_bytes());
+    } else {
+        // Without a terminal to print to, the code says it.
+        let _ = error.print();
+    }
+    u8::try_from(error.exit_code()).unwrap_or(2)
+}

@@ -107,6 +107,10 @@ impl SystemWorld {
     ) -> io::Result<Self> {
         let world = SystemWorld::with_screen(screen, interrupt, &output.folder, threads)?;
         world.own_output();
+        if !world.disk.owns(&output.real) {
+            let folder = output.folder.display();
+            return Err(io::Error::other(format!("a link has taken the place of `{folder}`")));
+        }
         let lock = output.lock_if_there()?;
         Ok(SystemWorld { results: Some((output, lock)), ..world })
     }

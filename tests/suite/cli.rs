@@ -791,3 +791,13 @@ fn journals_are_described() {
     let (code, _, errors) = gapi(&here, &["journal", "d.csv"]);
     assert!(code == 1 && errors.contains("is not a journal"), "{errors}");
 }
+
+/// A shell gives the names of files for `*`, and a name may look like an option.
+#[test]
+fn wrong_arguments_are_shown_as_text() {
+    let here = folder(&[]);
+    let (code, _, errors) = gapi(&here, &["check", "--\u{1b}]0;title\u{7}\u{202e}"]);
+    assert_eq!(code, 2, "{errors}");
+    assert!(errors.contains("unexpected argument"), "{errors}");
+    assert!(!errors.contains(['\u{1b}', '\u{7}', '\u{202e}']), "{errors:?}");
+}

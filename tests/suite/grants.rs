@@ -280,6 +280,7 @@ fn places() -> Vec<Place> {
         Place { path: "s1/shard.part", files: vec![], command: &["report", "--merge", "s1", "s2"] },
         Place { path: "x.mo", files: vec![], command: &["fmt", "."] },
         Place { path: "scripts", files: vec![], command: &["run", "--parse-only", "."] },
+        Place { path: "lessons", files: vec![], command: &["lesson", "1"] },
     ]
 }
 

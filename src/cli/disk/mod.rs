@@ -115,6 +115,11 @@ impl Disk {
         rows.chain([("functions in C".to_owned(), functions)]).collect()
     }
 
+    /// Whether a folder is an output folder.
+    pub(super) fn owns(&self, real: &Path) -> bool {
+        self.state().policy.own_folders().any(|own| own == real)
+    }
+
     /// # Errors
     /// The path is refused, or cannot be resolved.
     pub(super) fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
@@ -163,7 +168,7 @@ impl Disk {
             return;
         }
         let own = state.policy.own_folders().next().map(|own| own.join(RECORD));
-        let bytes = own.and_then(|file| Place::of(&file, false).ok()?.read().ok());
+        let bytes = own.and_then(|file| unlinked(&file).ok()?.read().ok());
         let record = Record::read(&String::from_utf8_lossy(&bytes.unwrap_or_default()));
         record.unchanged().for_each(|path| state.policy.note_recorded(path.to_owned()));
         state.record = Some(record);
@@ -267,14 +272,11 @@ impl Disk {
 
 /// Writes the record in the output folder, which is made if it is missing.
 fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
-    fs::create_dir_all(own)?;
-    let place = Place::of(&own.join(RECORD), false)?;
+    create_own_folders(own)?;
+    let record = own.join(RECORD);
     match lines {
-        Lines::Further(line) => Stepwise(&place.open_to_append(false)?).write_all(line.as_bytes()),
-        Lines::All(lines) => {
-            let mut content = |file: &mut dyn io::Write| file.write_all(lines.as_bytes());
-            place.write(&mut content, Safety::OnDisk, |_| Ok(()))
-        }
+        Lines::Further(line) => Stepwise(&open_own(&record)?).write_all(line.as_bytes()),
+        Lines::All(lines) => write_own(&record, lines.as_bytes()),
     }
 }
 
@@ -315,6 +317,42 @@ pub(super) fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
     let mut content = |file: &mut dyn io::Write| file.write_all(bytes);
     Place::of(&path, false)?.replace_link().write(&mut content, Safety::OnDisk, |_| Ok(()))
+}
+
+/// The path of a file or folder without links, as it is now; the path itself where that is not known.
+pub(super) fn real_path(path: &Path) -> PathBuf {
+    Place::of(path, true).map_or_else(|_| path.to_owned(), |place| place.real)
+}
+
+/// A path that had no links when it was chosen, unless a link has taken the place of one of its folders
+/// since then.
+fn unlinked(path: &Path) -> io::Result<Place> {
+    let place = Place::of(path, false)?;
+    if place.real == path { Ok(place) } else { Err(Refusal::Link.into()) }
+}
+
+/// Makes an output folder, and those it lies in.
+pub(super) fn create_own_folders(real: &Path) -> io::Result<()> {
+    unlinked(real)?.create_folders().map(drop)
+}
+
+/// Opens a file of the program itself in an output folder, to write behind its end: no link, no file
+/// with further names, and nothing where a link leads that was put there since the folder was chosen.
+pub(super) fn open_own(path: &Path) -> io::Result<File> {
+    match unlinked(path)?.open_to_append(false) {
+        // Another run has made it just now.
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+            unlinked(path)?.open_to_append(false)
+        }
+        opened => opened,
+    }
+}
+
+/// Writes a file of the program itself in an output folder, as [`open_own`] opens it; a link of this
+/// name is replaced.
+pub(super) fn write_own(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut content = |file: &mut dyn io::Write| file.write_all(bytes);
+    unlinked(path)?.replace_link().write(&mut content, Safety::OnDisk, |_| Ok(()))
 }
 
 /// Reads a file that the command line names, no pipe and no device.

@@ -60,6 +60,17 @@ mod links {
     }
 
     #[test]
+    fn the_record_stays_in_the_output_folder_that_was_chosen() {
+        let (_folder, root, disk) = run();
+        fs::remove_dir(root.join("run/results")).expect("removed");
+        symlink(root.join("private"), root.join("run/results")).expect("a link");
+        let refused = disk.write(&root.join("run/new.csv"), b"x").expect_err("no record");
+        assert_eq!(refusal_of(&refused), Some(Refusal::Link));
+        assert_eq!(fs::read_dir(root.join("private")).expect("readable").count(), 2);
+        assert_eq!(fs::read_dir(root.join("run")).expect("readable").count(), 1);
+    }
+
+    #[test]
     fn links_and_dots_lead_nowhere_else() {
         let (_folder, root, disk) = run();
         symlink("../private/deep", root.join("run/d")).expect("a link");

@@ -6,6 +6,8 @@ use crate::{disk, named};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// The learner's folder where the command line names no other.
+pub(super) const FOLDER: &str = "lessons";
 /// The file that says what is passed.
 const PROGRESS: &str = "progress.toml";
 
@@ -109,8 +111,27 @@ impl Copies<'_> {
         self.write(PROGRESS, &progress.text())
     }
 
+    /// Whether a link leads out of the folder, or out of the working folder if nobody has named it.
+    fn leads_elsewhere(&self, file: &Path) -> bool {
+        let real = |path: &Path| {
+            std::path::absolute(path)
+                .map_or_else(|_| path.to_owned(), |path| disk::real_path(&path))
+        };
+        let folder = real(self.folder);
+        let is_named = self.folder != Path::new(FOLDER);
+        let is_inside = file.parent().is_none_or(|parent| real(parent).starts_with(&folder));
+        !is_inside || !is_named && !folder.starts_with(real(Path::new(".")))
+    }
+
     fn write(&self, name: &str, text: &str) -> Result<(), String> {
         let file = self.file(name);
+        if self.leads_elsewhere(&file) {
+            return Err(format!(
+                "`{}` is not written: a link leads out of the folder\n = help: remove the link, or \
+                 name another folder with `--folder`",
+                file.display()
+            ));
+        }
         let folders = file.parent().map_or(Ok(()), disk::create_named_folders);
         let written = folders.and_then(|()| disk::write_beside(&file, text.as_bytes()));
         written.map_err(|error| failed(&file, &error))

@@ -52,7 +52,7 @@ pub(super) struct LessonArgs {
     #[arg(long, requires = "number", group = "instead")]
     pub watch: bool,
     /// Folder for the copies and their output
-    #[arg(long, default_value = "lessons", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(long, default_value = copies::FOLDER, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
 }
 
