@@ -192,7 +192,7 @@ fn run(
     let mut simulated = with_progress(span, options, global, |options| {
         simulation::simulate(session, &model, &options).map_err(|error| vec![error])
     })?;
-    problem::Driven::without_tables(&mut simulated.table);
+    problem::Driven::without_own_inputs(&mut simulated.table);
     session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));

@@ -70,6 +70,12 @@ fn write_events(sorted: &CausalizedDae, out: &mut String) -> std::fmt::Result {
         let (start, interval) = (text(sorted, sample.start), text(sorted, sample.interval));
         writeln!(out, "event {} = sample({start}, {interval})", name(sample.variable))?;
     }
+    for recording in &events.recordings {
+        let knots = recording.knots.len();
+        for track in &recording.tracks {
+            writeln!(out, "event {} is recorded at {knots} knots", name(track.value))?;
+        }
+    }
     for rounding in &events.roundings {
         let argument = text(sorted, rounding.argument);
         writeln!(out, "event {} = floor({argument})", name(rounding.variable))?;

@@ -56,6 +56,7 @@ impl Program {
         let Compilation { mut causalized, pool, registers, sequence, observed, .. } = compilation;
         let relations_of_blocks = relations_of_blocks(&pool, &causalized);
         let memoryless = memoryless(&pool, &causalized, &relations.relations);
+        let reads_slopes = reads_slopes(&pool, &causalized);
         causalized.dae.pool = pool;
         let mut program = Program {
             variables: variables(&causalized, &observed),
@@ -95,6 +96,7 @@ impl Program {
             assertions,
             log_assertions,
             events,
+            reads_slopes,
             literal: Literal::default(),
         };
         program.fill_defaults();
@@ -481,6 +483,23 @@ impl ResultsOfCalls {
             self.0.entry((function, arguments)).or_insert(call.d);
         }
     }
+}
+
+/// Whether the slope of a recorded input is read by more than the equation of the input itself.
+fn reads_slopes(pool: &Pool, causalized: &CausalizedDae) -> bool {
+    let tracks = causalized.dae.events.recordings.iter().flat_map(|recording| &recording.tracks);
+    let mut slopes = tracks.filter_map(|track| track.slope);
+    let values = || {
+        causalized.blocks.iter().flat_map(|block| {
+            let residuals = match block {
+                Block::Loop(torn) => torn.residuals.as_slice(),
+                _ => &[],
+            };
+            let assigned = block.assignments().iter().map(|assignment| assignment.value);
+            assigned.chain(residuals.iter().map(|(residual, _)| *residual))
+        })
+    };
+    slopes.any(|slope| values().filter(|value| pool.depends_on(*value, slope)).nth(1).is_some())
 }
 
 fn depend_on_time(pool: &Pool, needed: &[Assignment], outputs: &[Expr]) -> bool {

@@ -176,6 +176,8 @@ pub struct Program {
     /// Warnings: they do not end a simulation.
     pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,
+    /// Whether equations contain the derivatives of recorded inputs, which jump at every knot.
+    pub(crate) reads_slopes: bool,
     /// What became of its relations inside `noEvent`.
     #[serde(skip)]
     pub(super) literal: Literal,

@@ -12,7 +12,7 @@ use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape::Tape;
 use crate::bytecode::Functions;
-use crate::lower::Dae;
+use crate::lower::{Dae, Recording};
 use crate::sim::Pattern;
 use std::cell::Cell;
 
@@ -227,6 +227,18 @@ impl CompiledTransport {
     }
 }
 
+impl Recording {
+    fn is_valid(&self, limits: &Limits<'_>) -> bool {
+        let variables = self.tracks.iter().flat_map(|track| [Some(track.value), track.slope]);
+        let mut registers = variables.chain([self.since]).flatten().map(|variable| variable.0);
+        !self.knots.is_empty()
+            && self.knots.is_sorted()
+            && self.tracks.iter().all(|track| track.samples.len() == self.knots.len())
+            && self.tracks.iter().all(|track| track.slope.is_none() || self.since.is_some())
+            && registers.all(|register| limits.has(register, 1))
+    }
+}
+
 impl Events {
     fn is_valid(&self, limits: &Limits<'_>, dae: &Dae) -> bool {
         let of_model = &dae.events;
@@ -248,6 +260,7 @@ impl Events {
             && self.asserted.iter().all(|(_, values)| values.is_valid(limits))
             && self.log_assertions.iter().all(|assertion| assertion.is_valid(limits))
             && self.terminations.has(of_model.terminations.len(), limits)
+            && of_model.recordings.iter().all(|recording| recording.is_valid(limits))
             && self.delays.len() == of_model.delays.len()
             && self.delays.iter().all(|d| d.value.has(1, limits) && d.time.has(1, limits))
             && self.transports.len() == of_model.transports.len()

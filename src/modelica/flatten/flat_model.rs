@@ -8,6 +8,7 @@
 //! intrinsics (MLS §3.7, §10.3). Enumeration literals are replaced by
 //! [`ast::ExpressionKind::Integer`] ordinals.
 
+use super::recorded::RecordedInput;
 use crate::eval::Function;
 use crate::external::Resources;
 use crate::name::Name;
@@ -40,6 +41,8 @@ pub struct FlatModel {
     pub parts: Vec<Part>,
     /// Functions called, directly and indirectly, by full name.
     pub functions: IndexMap<Name, Arc<Function>>,
+    /// Inputs whose values are recorded samples: they have no binding.
+    pub recorded: Vec<RecordedInput>,
     /// The files that it may use.
     pub resources: Resources,
     /// The `experiment` annotation.

@@ -32,6 +32,7 @@ mod lookup;
 mod object_equations;
 mod print;
 mod record_values;
+mod recorded;
 mod shapes;
 mod types;
 mod units;
@@ -43,6 +44,7 @@ pub use declared::{Declared, Member};
 pub use flat_expression::flat_reference;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
+pub use recorded::RecordedInput;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::fault;

@@ -3,6 +3,7 @@
 use super::equation::{Assertion, Equation};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
+use std::sync::Arc;
 
 /// The part of a system that acts at events alone.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -14,6 +15,8 @@ pub struct Events {
     pub(crate) roundings: Vec<Rounding>,
     /// `sample(start, interval)`.
     pub samples: Vec<Sample>,
+    /// Recorded inputs.
+    pub(crate) recordings: Vec<Recording>,
     /// `delay(argument, time)`.
     pub delays: Vec<Delay>,
     /// `delay` by a time that varies, and `spatialDistribution`.
@@ -54,6 +57,31 @@ pub struct Sample {
     pub interval: Expr,
     /// Where it is written.
     pub span: Span,
+}
+
+/// Recorded inputs with the same knots. Between two knots such an input is
+/// `value + slope*(time - since)`.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Recording {
+    /// Times at which an input jumps or bends, seconds, ascending; two at one time are before and
+    /// after a jump.
+    pub knots: Arc<[f64]>,
+    /// The variable that holds the time of the last knot, where an input is linear between knots.
+    pub since: Option<VarId>,
+    /// The inputs.
+    pub tracks: Vec<Track>,
+}
+
+/// The samples of one input.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Track {
+    /// The variable that holds the sample of the last knot.
+    pub value: VarId,
+    /// The variable that holds the slope from there to the next knot; none for an input that is
+    /// held.
+    pub slope: Option<VarId>,
+    /// A sample for each knot.
+    pub samples: Arc<[f64]>,
 }
 
 /// `variable = delay(argument, time)` (MLS §3.7.4.1).

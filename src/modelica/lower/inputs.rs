@@ -3,18 +3,20 @@
 use super::dae::{Dae, Kind};
 use super::equation::Equation;
 use super::errors::NOT_SUPPORTED;
+use super::recordings::follow;
 use super::used_variables::used_variables;
 use crate::fault;
 use crate::flatten::{FlatModel, Variable};
 use crate::symbolic::VarId;
 use crate::syntax::ast::CausalityPrefix;
 
-/// An input at the top level without a binding has its start value, which is zero by default. So has
+/// An input at the top level without a binding follows its samples, if it has any; otherwise it has
+/// its start value, which is zero by default. So has
 /// an input of a component that is neither connected nor used by an equation, such as that of a
 /// reference system whose frequency is a parameter: the model is not balanced, but whatever the
 /// input is, nothing depends on it.
-pub(super) fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
-    let mut used = None;
+pub(super) fn unbound_inputs(dae: &mut Dae, flat: &FlatModel) {
+    let (mut used, mut recorded) = (None, Vec::new());
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
         if !matches!(variable.kind, Kind::Unknown | Kind::Discrete) {
@@ -31,8 +33,12 @@ pub(super) fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
         if !is_top_level && used.get_or_insert_with(|| used_or_differentiated(dae))[position] {
             continue;
         }
-        keep_start(dae, position, is_top_level);
+        match flat.recorded.iter().find(|input| *input.name == *dae.variables[position].name) {
+            Some(input) => recorded.push((VarId(position as u32), input)),
+            None => keep_start(dae, position, is_top_level),
+        }
     }
+    follow(dae, &recorded);
 }
 
 /// For every variable, whether equations contain it or its derivative.

@@ -32,6 +32,7 @@ mod message;
 mod number_values;
 mod real_values;
 mod record_values;
+mod recordings;
 mod shape;
 mod statement_function;
 mod symbolic_target;
@@ -64,6 +65,6 @@ use crate::flatten::FlatModel;
 /// What the language or this program does not allow in equations: see [`errors`].
 pub fn lower(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let mut dae = build::build(flat)?;
-    inputs::zero_inputs(&mut dae, flat);
+    inputs::unbound_inputs(&mut dae, flat);
     Ok(dae)
 }

@@ -136,8 +136,9 @@ impl System {
     pub(super) fn event(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let program = self.program.clone();
         if program.events.is_empty() {
+            let jumps = self.advance_recordings(t);
             let y_changed = self.at_instant(t, |own| own.settle(t, Stage::Event))?;
-            return Ok(EventOutcome::Continue { y_changed });
+            return Ok(EventOutcome::Continue { y_changed: y_changed | jumps });
         }
         for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
             *slot = self.registers[variable.0 as usize];
@@ -150,7 +151,8 @@ impl System {
             self.solve(Stage::Continuous)?;
         }
         self.update_previous();
-        let arrived = self.advance_histories(t) | self.load_transported(t, true);
+        let arrived =
+            self.advance_histories(t) | self.load_transported(t, true) | self.advance_recordings(t);
         let sampled = self.samples_due(t);
         let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
         match (sampled, outcome) {

@@ -9,6 +9,7 @@
 //!                        are isolated though the Jacobian is singular: multiple_roots; a start
 //!                        where the residual is flat: bracketing
 //! delay_buffer           the past of delayed expressions
+//! recordings             where the recorded inputs are
 //! state_selection        dynamic state selection
 //! sliding                both sides of relations that chatter
 //! sensitivity            forward sensitivities carried along
@@ -39,6 +40,7 @@ mod other_variables;
 mod partial_observation;
 mod postponement;
 mod profile;
+mod recordings;
 mod relations;
 mod sensitivity;
 mod sensitivity_state;

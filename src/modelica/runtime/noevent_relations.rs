@@ -64,6 +64,7 @@ impl System {
         next.switches[m..].fill(None);
         next.choices = self.choices.clone();
         next.clocks = self.clocks.clone();
+        next.knots_passed = self.knots_passed.clone();
         next.before = self.before.clone();
         next.previous_iterate = self.previous_iterate.clone();
         next.sampled = self.sampled;

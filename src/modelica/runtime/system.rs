@@ -85,6 +85,8 @@ pub struct System {
     full_pattern: OnceLock<Pattern>,
     /// The samples.
     pub(super) clocks: Vec<Clock>,
+    /// How many knots of each recording of inputs have been passed.
+    pub(super) knots_passed: Vec<usize>,
     /// Values that discrete variables had before an event.
     pub(super) before: Vec<f64>,
     /// Values that variables of discrete loops had in the pass before.
@@ -155,6 +157,7 @@ impl System {
             solves_loops: false,
             full_pattern: OnceLock::new(),
             clocks: Vec::with_capacity(program.events.samples.len()),
+            knots_passed: vec![0; program.sorted.dae.events.recordings.len()],
             before: vec![0.0; program.events.discrete.len()],
             previous_iterate: vec![0.0; program.events.iterated.len()],
             histories: vec![History::default(); program.events.delays.len()],
@@ -491,6 +494,7 @@ impl System {
             run(tape, &mut self.registers)?;
         }
         self.take_start_values_of_events();
+        self.start_recordings(t);
         self.has_changed.fill(false);
         self.held.fill(false);
         self.is_idle.fill(false);
@@ -616,6 +620,7 @@ impl DaeSystem for System {
             .flatten()
             .copied()
             .chain(self.scheduled())
+            .chain(self.next_knots())
             .chain(self.arriving_jumps());
         all.filter(later).min_by(f64::total_cmp)
     }

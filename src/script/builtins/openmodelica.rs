@@ -218,7 +218,7 @@ pub(super) fn run(
     let done = set.and_then(|()| simulation::simulate(session, model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
-    Driven::without_tables(&mut done.table);
+    Driven::without_own_inputs(&mut done.table);
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }

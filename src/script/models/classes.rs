@@ -7,8 +7,8 @@ use super::uses::LoadedSources;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::eval::Function;
 use crate::fault;
-use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
+use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
@@ -64,6 +64,8 @@ pub(crate) struct Enclosing {
     pub model: String,
     /// Names of its own elements, with what they are called instead.
     pub elements: Vec<(String, String)>,
+    /// Those of its inputs that have samples.
+    pub recorded: Vec<RecordedInput>,
     /// The source of the text that was generated for it.
     pub source: SourceId,
     /// The place that it was built for.
@@ -93,11 +95,16 @@ impl Classes {
         })
     }
 
-    /// What messages call the class of this name.
-    pub(crate) fn shown_name(&self, name: &Name) -> Option<&str> {
+    /// The class of this name, if a run has built it.
+    pub(crate) fn enclosing_named(&self, name: &Name) -> Option<&Enclosing> {
         let is_it =
             |enclosing: &&Enclosing| name.is_simple() && name.first() == Some(enclosing.name);
-        self.enclosing.iter().find(is_it).map(|enclosing| enclosing.model.as_str())
+        self.enclosing.iter().find(is_it)
+    }
+
+    /// What messages call the class of this name.
+    pub(crate) fn shown_name(&self, name: &Name) -> Option<&str> {
+        self.enclosing_named(name).map(|enclosing| enclosing.model.as_str())
     }
 
     /// A number that changes with the classes.

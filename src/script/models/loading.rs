@@ -1,11 +1,12 @@
 //! Loading classes: from files, folders and libraries, when somebody names them.
 
 use super::classes::Enclosing;
+use super::stored::digest;
 use super::uses::names_in;
 use crate::Session;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::Function;
-use crate::flatten::Library;
+use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::ClassDefinition;
@@ -242,7 +243,8 @@ impl Session {
         enclosing: Enclosing,
     ) -> Result<(), Diagnostic> {
         self.classes.invalidate();
-        let text = syntax::print::class(&class);
+        let mut text = syntax::print::class(&class);
+        enclosing.recorded.iter().for_each(|input| text += &in_short(input));
         self.classes.history.note("enclosing", &text);
         self.classes.sources.note(&[class.name.node.into()], &text);
         self.classes.enclosing.retain(|known| known.name != enclosing.name);
@@ -327,4 +329,11 @@ impl Session {
     pub fn source_file(&self, name: &Name) -> Option<PathBuf> {
         self.classes.file_of(&Name::new(name.first())).cloned()
     }
+}
+
+/// What tells the samples of an input from others.
+fn in_short(input: &RecordedInput) -> String {
+    let numbers = input.times.iter().chain(&*input.values);
+    let bytes: Vec<u8> = numbers.flat_map(|number| number.to_bits().to_le_bytes()).collect();
+    format!("{} {} {:?}", input.name, input.is_held, digest(&bytes))
 }

@@ -307,8 +307,9 @@ pub(crate) fn flattened(
             });
             errors.map(|error| placed(error, session.call_site())).collect::<Vec<_>>()
         })?;
-        if let Some(shown) = session.classes.shown_name(&name) {
-            shown.clone_into(&mut flattened.model.name);
+        if let Some(enclosing) = session.classes.enclosing_named(&name) {
+            enclosing.model.clone_into(&mut flattened.model.name);
+            enclosing.recorded.clone_into(&mut flattened.model.recorded);
         }
         if let Some(imbalance) = imbalance {
             let explained = causalize::explain_imbalance(&flattened.model, imbalance);

@@ -47,8 +47,8 @@ impl Driven {
         }
     }
 
-    /// Takes the tables of the inputs, which are no part of the model, out of its results.
-    pub fn without_tables(results: &mut ResultTable) {
+    /// Takes the inputs of the class around the model, which are no part of it, out of its results.
+    pub fn without_own_inputs(results: &mut ResultTable) {
         results.retain(|name| !name.starts_with("'data of "));
     }
 }

@@ -6,6 +6,7 @@
 use super::file::ValueEntry;
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
+use crate::flatten::RecordedInput;
 use crate::models::classes::Enclosing;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
@@ -125,6 +126,8 @@ pub(super) struct EnclosingClass {
     pub equations: String,
     /// Its own elements, with what they are called in messages.
     pub elements: Vec<(String, String)>,
+    /// Its own inputs, with their samples.
+    pub recorded: Vec<RecordedInput>,
 }
 
 impl EnclosingClass {
@@ -181,6 +184,7 @@ impl EnclosingClass {
             name: Ident::new(&name),
             model: base.class.to_string(),
             elements: self.elements.clone(),
+            recorded: self.recorded.clone(),
             source,
             place,
         };

@@ -29,6 +29,11 @@ use std::sync::Arc;
 /// of 13 published fits need a finer tolerance than 1e-4; 1e-9 itself was chosen, not measured.
 const TOLERANCE: f64 = 1e-9;
 
+/// Steps that a simulation may take for each row of its data, as long as it gets on. A house with two
+/// capacities under inputs of 15 minutes needs some 40 with the tolerance above, so that a year of them
+/// takes more than the million that are allowed in any case.
+const STEPS_PER_ROW: u64 = 1000;
+
 /// An experiment that was read.
 pub(super) struct Built {
     pub experiment: Experiment,
@@ -313,6 +318,8 @@ impl Source<'_> {
             ..SimulationOptions::default()
         };
         let mut settings = simulation::settings(&annotated, &options)?;
+        let for_rows = STEPS_PER_ROW * comparison.x.len() as u64;
+        settings.max_total_steps = settings.max_total_steps.max(for_rows);
         limit(session, entry, &mut settings)?;
         Ok(settings)
     }

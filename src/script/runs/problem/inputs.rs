@@ -15,7 +15,7 @@ use super::time_axis::{self, Origin};
 use crate::bail;
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
-use crate::flatten::{BaseType, FlatModel, Variability};
+use crate::flatten::{BaseType, FlatModel, RecordedInput, Variability};
 use crate::mat::{Column, MatFile};
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -80,7 +80,7 @@ struct Followed {
     is_decided: bool,
 }
 
-/// Tables for the inputs that follow columns, and those of which it is not known how they continue
+/// Samples for the inputs that follow columns, and those of which it is not known how they continue
 /// between samples.
 pub(super) fn inputs(
     entry: &ExperimentEntry,
@@ -104,7 +104,7 @@ pub(super) fn inputs(
         let input = (name.as_str(), &wanted.entry());
         let base = type_of_input(name, flat).at(place)?;
         let followed = followed(input, table, times, (flat, &base), notes).at(place)?;
-        declare((name, &base, place), &followed, enclosing).at(place)?;
+        declare((name, &base, place), &followed, enclosing);
         notes.warn_about(table, outside(name, &followed, x.values));
         if !followed.is_decided {
             undecided.push(Undecided { name: name.clone(), assumed: followed.between });
@@ -284,33 +284,27 @@ fn check_type(name: &str, base: &BaseType, column: &Column) -> Result<(), Fault>
     )
 }
 
+/// Lets an input of the model follow its samples, through an input of the class around the model.
 fn declare(
     (name, base, place): (&str, &BaseType, Span),
     followed: &Followed,
     enclosing: &mut EnclosingClass,
-) -> Result<(), Fault> {
-    let rows: Vec<String> = followed.samples.iter().map(|(t, v)| format!("{t:e},{v:e}")).collect();
-    let table = enclosing_class::own_name("data of", name);
-    let smoothness = match followed.between {
-        Between::Constant => "ConstantSegments",
-        Between::Linear => "LinearSegments",
+) {
+    let own = enclosing_class::own_name("data of", name);
+    let kind = match base {
+        BaseType::Boolean => "Boolean",
+        BaseType::Integer => "Integer",
+        _ => "Real",
     };
-    // Before `startTime`, which is 0 by default, the table has no values.
-    _ = writeln!(
-        enclosing.declarations,
-        "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], startTime = -Modelica.Constants.inf, shiftTime = 0, smoothness = Modelica.Blocks.Types.Smoothness.{smoothness}, extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
-        rows.join(";")
-    );
-    enclosing.elements.push((table.clone(), format!("the data of {name}")));
-    let value = match base {
-        BaseType::Boolean => format!("{table}.y[1] > 0.5"),
-        BaseType::Integer => format!("integer({table}.y[1] + 0.5)"),
-        _ => format!("{table}.y[1]"),
-    };
-    let value = enclosing_class::expression(&value, None);
-    let value = value.map_err(|error| fault!(BAD_OPTION, "{}", error.message))?;
-    enclosing.bind(name, value, place);
-    Ok(())
+    _ = writeln!(enclosing.declarations, "  input {kind} {own};");
+    enclosing.elements.push((own.clone(), format!("the data of {name}")));
+    enclosing.bind(name, enclosing_class::reference(&own, place), place);
+    enclosing.recorded.push(RecordedInput {
+        name: own.as_str().into(),
+        times: followed.samples.iter().map(|(time, _)| *time).collect(),
+        values: followed.samples.iter().map(|(_, value)| *value).collect(),
+        is_held: followed.between == Between::Constant,
+    });
 }
 
 /// What an entry says of the values between samples, or what the values look like; and whether

@@ -1,0 +1,210 @@
+//! Recorded inputs at run time: a cursor into the knots of each recording. It moves at events alone,
+//! so that the segment that ends at a knot goes on until the event there has been handled.
+
+use super::instants::same_time;
+use super::system::System;
+use crate::lower::Recording;
+
+impl System {
+    /// Places all recordings at `t`: a knot there has been passed.
+    pub(super) fn start_recordings(&mut self, t: f64) {
+        let program = self.program.clone();
+        let recordings = &program.sorted.dae.events.recordings;
+        self.knots_passed.clear();
+        for recording in recordings {
+            let passed = recording.passed(0, t);
+            self.knots_passed.push(passed);
+            self.set_segment(recording, passed);
+        }
+    }
+
+    /// Goes on to the segments that begin at `t`; whether an input jumps there, or its derivative
+    /// where equations contain it.
+    pub(super) fn advance_recordings(&mut self, t: f64) -> bool {
+        let program = self.program.clone();
+        let mut jumps = false;
+        for (at, recording) in program.sorted.dae.events.recordings.iter().enumerate() {
+            let before = self.knots_passed[at];
+            let passed = recording.passed(before, t);
+            if passed > before {
+                self.knots_passed[at] = passed;
+                self.set_segment(recording, passed);
+                jumps |= program.reads_slopes || recording.jumps((before, passed));
+            }
+        }
+        jumps
+    }
+
+    /// The next knot of each recording.
+    pub(super) fn next_knots(&self) -> impl Iterator<Item = f64> {
+        let recordings = self.program.sorted.dae.events.recordings.iter();
+        let pairs = recordings.zip(&self.knots_passed);
+        pairs.filter_map(|(recording, passed)| recording.knots.get(*passed).copied())
+    }
+
+    /// Values, slopes and the time they count from, where so many knots have been passed.
+    fn set_segment(&mut self, recording: &Recording, passed: usize) {
+        let (first, knots) = (passed.saturating_sub(1), &recording.knots);
+        if let Some(since) = recording.since {
+            self.registers[since.0 as usize] = knots[first];
+        }
+        for track in &recording.tracks {
+            self.registers[track.value.0 as usize] = track.samples[first];
+            if let Some(slope) = track.slope {
+                let next = (passed > 0 && passed < knots.len()).then_some(passed);
+                let rise = |next: usize| {
+                    let length = knots[next] - knots[first];
+                    let rise = track.samples[next] - track.samples[first];
+                    if length > 0.0 { rise / length } else { 0.0 }
+                };
+                self.registers[slope.0 as usize] = next.map_or(0.0, rise);
+            }
+        }
+    }
+}
+
+impl Recording {
+    /// How many knots lie up to `t`, at least so many.
+    fn passed(&self, known: usize, t: f64) -> usize {
+        let is_passed = |knot: &f64| *knot <= t || same_time(*knot, t);
+        // In a simulation mostly the next one, or it and the one after a jump.
+        if self.knots.get(known + 2).is_none_or(|knot| !is_passed(knot)) {
+            return known + self.knots[known..].iter().take_while(|knot| is_passed(knot)).count();
+        }
+        known + self.knots[known..].partition_point(is_passed)
+    }
+
+    /// Whether an input has another value after these knots than before them.
+    fn jumps(&self, (before, passed): (usize, usize)) -> bool {
+        let is_held = |slope: Option<_>| slope.is_none();
+        let first = before.saturating_sub(1);
+        self.tracks.iter().any(|track| match is_held(track.slope) {
+            true => track.samples[first] != track.samples[passed - 1],
+            false => track.samples[before..passed].windows(2).any(|pair| pair[0] != pair[1]),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::causalize::causalize;
+    use crate::codegen::Program;
+    use crate::flatten::{Library, RecordedInput, flatten};
+    use crate::sim::{OutputGrid, Settings, Statistics, Trajectory, simulate};
+    use crate::source::SourceId;
+    use crate::syntax::parse_stored_definition;
+    use std::sync::Arc;
+
+    /// A model of which inputs follow samples: name, whether they are held, times, values.
+    fn program(text: &str, inputs: &[(&str, bool, &[f64], &[f64])]) -> Arc<Program> {
+        let file = parse_stored_definition(SourceId::NONE, text).expect("Modelica");
+        let mut library = Library::new();
+        let names = library.load(&file).expect("a loadable file");
+        let mut flat = flatten(&library, &names[0], &[]).expect("a model").model;
+        let recorded = inputs.iter().map(|(name, is_held, times, values)| RecordedInput {
+            name: (*name).into(),
+            times: (*times).into(),
+            values: (*values).into(),
+            is_held: *is_held,
+        });
+        flat.recorded = recorded.collect();
+        Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles")
+    }
+
+    fn run(program: &Arc<Program>, names: &[&str], at: &[f64]) -> (Trajectory, Statistics) {
+        let mut system = program.system();
+        let found = names.iter().map(|name| program.find_variable(name).expect("a variable"));
+        system.observe_only(&found.collect::<Vec<_>>());
+        let settings = Settings {
+            stop: at[at.len() - 1],
+            output: OutputGrid::At(at.to_vec()),
+            tolerance: 1e-10,
+            ..Settings::default()
+        };
+        simulate(&mut system, &settings).expect("a simulation")
+    }
+
+    /// The values of a column in the rows of this time.
+    fn rows(trajectory: &Trajectory, column: usize, time: f64) -> Vec<f64> {
+        let rows = trajectory.time().iter().zip(trajectory.column(column));
+        rows.filter(|(t, _)| **t == time).map(|(_, value)| *value).collect()
+    }
+
+    const INTEGRATOR: &str = "model M input Real u; Real x(start = 1, fixed = true); \
+        equation der(x) = u; end M;";
+
+    #[test]
+    fn a_held_input_jumps_at_its_samples() {
+        let (times, values) = ([0.5, 1.0, 2.0, 3.0, 4.0], [3.0, -1.0, -1.0, 2.0, 0.0]);
+        let program = program(INTEGRATOR, &[("u", true, &times, &values)]);
+        let (found, statistics) = run(&program, &["u", "x"], &[0.0, 0.5, 1.0, 2.0, 2.5, 3.0, 6.0]);
+        assert_eq!(rows(&found, 0, 0.0), [3.0], "before the first sample it has its value");
+        assert_eq!(rows(&found, 0, 1.0), [3.0, -1.0]);
+        assert_eq!(rows(&found, 0, 2.5), [-1.0]);
+        assert_eq!(rows(&found, 0, 6.0), [0.0], "after the last sample it has its value");
+        // Neither the first sample nor one that equals the one before needs an event.
+        assert_eq!(statistics.time_events, 4);
+        for (time, x) in [(0.5, 2.5), (1.0, 4.0), (2.5, 2.5), (3.0, 2.0), (6.0, 4.0)] {
+            let last = rows(&found, 1, time).pop().expect("a row");
+            assert!((last - x).abs() < 1e-9, "{time}: {last}");
+        }
+    }
+
+    #[test]
+    fn a_linear_input_bends_at_its_samples_and_jumps_where_two_have_one_time() {
+        let (times, values) = ([0.0, 1.0, 2.0, 2.0, 3.0], [0.0, 2.0, 2.0, 5.0, 4.0]);
+        let program = program(INTEGRATOR, &[("u", false, &times, &values)]);
+        let (found, _) = run(&program, &["u", "x"], &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0]);
+        for (time, u) in [(0.5, 1.0), (1.5, 2.0), (2.5, 4.5), (4.0, 4.0)] {
+            assert_eq!(rows(&found, 0, time), [u]);
+        }
+        assert_eq!(rows(&found, 0, 2.0), [2.0, 5.0]);
+        for (time, x) in [(0.5, 1.25), (1.0, 2.0), (2.0, 4.0), (3.0, 8.5), (4.0, 12.5)] {
+            let last = rows(&found, 1, time).pop().expect("a row");
+            assert!((last - x).abs() < 1e-9, "{time}: {last}");
+        }
+    }
+
+    #[test]
+    fn the_derivative_of_a_linear_input_is_its_slope() {
+        // The position is prescribed: index reduction asks for the derivative of the input.
+        let text = "model M input Real u; Real x; Real v; Real w(start = 0, fixed = true); \
+            equation x = u; der(x) = v; der(w) = v*v; end M;";
+        let (times, values) = ([0.0, 1.0, 3.0], [0.0, 2.0, -2.0]);
+        let program = program(text, &[("u", false, &times, &values)]);
+        let (found, _) = run(&program, &["v", "w"], &[0.5, 1.0, 2.0, 3.0]);
+        assert_eq!(rows(&found, 0, 0.5), [2.0]);
+        assert_eq!(rows(&found, 0, 1.0), [2.0, -2.0]);
+        let w = rows(&found, 1, 3.0).pop().expect("a row");
+        assert!((w - 12.0).abs() < 1e-9, "{w}");
+    }
+
+    #[test]
+    fn events_see_discrete_inputs() {
+        let text = "model M input Boolean on; input Integer level; discrete Integer n(start = 0, \
+            fixed = true), m(start = 0, fixed = true); Real x(start = 0, fixed = true); \
+            equation der(x) = if on then level else 0; when edge(on) then n = pre(n) + 1; end when; \
+            when change(level) then m = level; end when; end M;";
+        let on = ("on", true, &[0.0, 1.0, 2.0, 4.0][..], &[0.0, 1.0, 0.0, 1.0][..]);
+        let level = ("level", true, &[0.0, 1.5, 5.0][..], &[2.0, 4.0, 4.0][..]);
+        let program = program(text, &[on, level]);
+        let (found, _) = run(&program, &["n", "m", "x"], &[0.5, 1.7, 3.0, 5.0]);
+        for (time, [n, m, x]) in
+            [(0.5, [0.0, 0.0, 0.0]), (1.7, [1.0, 4.0, 1.8]), (5.0, [2.0, 4.0, 7.0])]
+        {
+            let values = [0, 1, 2].map(|column| rows(&found, column, time).pop().expect("a row"));
+            assert_eq!(values[..2], [n, m], "{time}");
+            assert!((values[2] - x).abs() < 1e-9, "{time}: {}", values[2]);
+        }
+    }
+
+    #[test]
+    fn samples_are_kept_with_the_program() {
+        let (times, values) = ([0.0, 1.0], [1.0, 3.0]);
+        let program = program(INTEGRATOR, &[("u", false, &times, &values)]);
+        let bytes = program.to_bytes().expect("it can be kept");
+        let again = Arc::new(Program::from_bytes(&bytes).expect("it is whole"));
+        let (found, _) = run(&again, &["x"], &[1.0]);
+        assert!((rows(&found, 0, 1.0)[0] - 3.0).abs() < 1e-9);
+    }
+}
