@@ -374,3 +374,12 @@
 //! <a id="cranley-patterson-1976"></a>
 //! - **cranley-patterson-1976** — R. Cranley, T. N. L. Patterson: Randomization of number theoretic
 //!   methods for multiple integration. SIAM Journal on Numerical Analysis 13(6), 1976, 904–914.
+//!
+//! <a id="van-loan-1978"></a>
+//! - **van-loan-1978** — C. F. Van Loan: Computing integrals involving the matrix exponential. IEEE
+//!   Transactions on Automatic Control 23(3), 1978, 395–404.
+//!
+//! <a id="al-mohy-higham-2009"></a>
+//! - **al-mohy-higham-2009** — A. H. Al-Mohy, N. J. Higham: Computing the Fréchet derivative of the
+//!   matrix exponential, with an application to condition number estimation. SIAM Journal on Matrix
+//!   Analysis and Applications 30(4), 2009, 1639–1657.

@@ -172,6 +172,7 @@ fn run(
     let driven = input.map(|path| problem::driven(session, class, path, None)).transpose()?;
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
+    options.takes_exact_steps = driven.is_some();
     if let Some(driven) = &driven
         && model.program.experiment().stop_time.is_none()
     {
@@ -325,7 +326,11 @@ fn statistics(s: &Statistics) -> String {
         ("sliding modes", s.slides),
         ("accumulations of impacts (Zeno)", s.accumulations),
     ];
-    rows.iter().map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
+    let exact = ("of these with the exact solution", s.exact_steps);
+    let exact = Some(exact).filter(|(_, count)| *count > 0);
+    let (first, others) = rows.split_at(1);
+    let rows = first.iter().chain(&exact).chain(others);
+    rows.map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
 }
 
 /// Draws variables over time, one panel each.

@@ -537,7 +537,7 @@ fn retry(settings: &Settings) -> Option<Settings> {
     };
     let method = find_integrator(other).ok()?;
     let tolerance = (settings.tolerance * TIGHTER).max(1e-12);
-    Some(Settings { method, tolerance, ..settings.clone() })
+    Some(Settings { method, tolerance, takes_exact_steps: false, ..settings.clone() })
 }
 
 fn kind(error: &SimError) -> FailureKind {

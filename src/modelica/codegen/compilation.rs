@@ -10,6 +10,7 @@ use super::hoist::Hoisting;
 use super::instruction::Register;
 use super::iteration_variables::IterationVariables;
 use super::jacobian::differentiate_sequence;
+use super::linearity::linearity;
 use super::memory::Memory;
 use super::oscillations::oscillations;
 use super::program::{
@@ -29,8 +30,8 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
-use crate::lower::{Kind, Level, Variable};
-use crate::sim::Pattern;
+use crate::lower::{Dae, Kind, Level, Variable};
+use crate::sim::{Linearity, Pattern};
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -53,15 +54,14 @@ impl Program {
         (events.steps, events.roundings) = (blocks.at_events, relations.roundings);
         let values = compilation.values();
         let unread = compilation.unread(blocks.unread);
-        let Compilation { mut causalized, pool, registers, sequence, observed, .. } = compilation;
-        let relations_of_blocks = relations_of_blocks(&pool, &causalized);
-        let memoryless = memoryless(&pool, &causalized, &relations.relations);
-        let reads_slopes = reads_slopes(&pool, &causalized);
-        causalized.dae.pool = pool;
+        let Compilation { causalized, pool, registers, sequence, observed, .. } = compilation;
         let mut program = Program {
             variables: variables(&causalized, &observed),
             parameters: parameters(&causalized),
-            sorted: causalized,
+            relations_of_blocks: relations_of_blocks(&pool, &causalized),
+            memoryless: memoryless(&pool, &causalized, &relations.relations),
+            reads_slopes: reads_slopes(&pool, &causalized),
+            sorted: CausalizedDae { dae: Dae { pool, ..causalized.dae }, ..causalized },
             registers,
             sequence,
             integrated: continuous.sequence,
@@ -85,18 +85,16 @@ impl Program {
             rhs: continuous.rhs,
             jacobian: continuous.jacobian,
             pattern: continuous.pattern,
+            linearity: continuous.linearity,
             crossing_relations: relations.crossing_relations,
             crossings_vary_in_time: relations.crossings_vary_in_time,
             crossings: relations.crossings,
             oscillations: relations.oscillations,
-            relations_of_blocks,
-            memoryless,
             selections,
             observe,
             assertions,
             log_assertions,
             events,
-            reads_slopes,
             literal: Literal::default(),
         };
         program.fill_defaults();
@@ -151,6 +149,7 @@ struct Continuous {
     rhs: Outputs,
     jacobian: Outputs,
     pattern: Pattern,
+    linearity: Option<Linearity>,
 }
 
 /// Relations and roundings with their crossing functions.
@@ -231,6 +230,10 @@ impl Compilation {
 
         let unknowns: Vec<VarId> = causalized.states.iter().chain(&iteration).copied().collect();
         let needed = slice(pool, &sequence, &outputs);
+        let linearity = match iteration.is_empty() {
+            true => linearity(pool, causalized, &needed, &outputs),
+            false => None,
+        };
         let derivatives = differentiate_sequence(pool, &needed, &outputs, &unknowns, next);
         let mut rows = derivatives.rows;
         let zero = pool.constant(0.0);
@@ -241,7 +244,17 @@ impl Compilation {
         let (pattern, entries) = by_columns(&rows, unknowns.len());
         let extended = derivatives.sequence;
         let jacobian = compile_continuous(pool, registers, &extended, &entries, Hoisting::Total);
-        Continuous { sequence, residuals, unknowns, iteration, n_auxiliary, rhs, jacobian, pattern }
+        Continuous {
+            sequence,
+            residuals,
+            unknowns,
+            iteration,
+            n_auxiliary,
+            rhs,
+            jacobian,
+            pattern,
+            linearity,
+        }
     }
 
     fn relations(&mut self) -> Relations {

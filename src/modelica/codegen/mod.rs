@@ -5,6 +5,7 @@
 //! iteration_variables   which tearing variables stay unknowns of the DAE
 //! jacobian, sensitivity symbolic derivatives: forward mode, column by column
 //! tape_builder          expressions as instructions, common subexpressions once
+//! linearity             whether the right-hand side is affine between events
 //! hoist                 what depends on parameters alone runs once a simulation
 //! compilation           all of it, in order: Program::compile
 //! machine_code          Cranelift's code of the tapes
@@ -21,6 +22,7 @@ pub(crate) mod instruction;
 mod iteration_variables;
 pub(crate) mod jacobian;
 pub(crate) mod linear_system;
+mod linearity;
 #[cfg(feature = "jit")]
 mod machine_code;
 #[cfg(not(feature = "jit"))]

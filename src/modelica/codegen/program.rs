@@ -8,7 +8,7 @@ use crate::causalize::{Assignment, CausalizedDae};
 use crate::codegen::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use crate::flatten::{BaseType, Variability};
 use crate::lower::Kind;
-use crate::sim::Pattern;
+use crate::sim::{Linearity, Pattern};
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::CausalityPrefix;
 use std::sync::{Arc, OnceLock};
@@ -159,6 +159,8 @@ pub struct Program {
     pub(crate) rhs: Outputs,
     pub(crate) jacobian: Outputs,
     pub(crate) pattern: Pattern,
+    /// What is known of the right-hand side if it is affine between events.
+    pub(crate) linearity: Option<Linearity>,
     pub(crate) crossings: Outputs,
     /// Whether these depend on time otherwise than through states and unknowns of loops.
     pub(crate) crossings_vary_in_time: bool,
@@ -187,6 +189,15 @@ impl Program {
     /// Number of crossing functions of relations and roundings.
     pub(crate) fn n_crossings(&self) -> usize {
         self.crossings.outputs.len() - self.crossing_relations.len()
+    }
+
+    /// Whether nothing happens at events but that recorded inputs go on: there is nothing to iterate.
+    pub(crate) fn acts_by_recordings_alone(&self) -> bool {
+        self.events.is_empty()
+            && self.relations.is_empty()
+            && self.events.roundings.is_empty()
+            && self.steps.iter().all(|step| matches!(step, Step::Run(_)))
+            && self.selections.is_empty()
     }
 
     /// Whether a mean of values of a variable is a value of it.

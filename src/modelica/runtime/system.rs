@@ -17,7 +17,7 @@ use crate::codegen::sequence::{expressions, observing};
 use crate::diag::Fault;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
 use crate::symbolic::VarId;
 use std::sync::{Arc, OnceLock};
 
@@ -569,6 +569,16 @@ impl DaeSystem for System {
         }
     }
 
+    fn linearity(&self) -> Option<Linearity> {
+        let program = &self.program;
+        if !program.selections.is_empty() || self.has_past() {
+            return None;
+        }
+        let has_assertions = !program.assertions.is_empty() || !program.log_assertions.is_empty();
+        let is_watched = has_assertions || self.n_crossings() > 0;
+        program.linearity.map(|linearity| Linearity { is_watched, ..linearity })
+    }
+
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.postponed.fill(false);
         self.is_at_start = true;
@@ -626,6 +636,11 @@ impl DaeSystem for System {
     }
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        if self.program.acts_by_recordings_alone() {
+            self.is_at_start = false;
+            self.registers.calls.next_instant();
+            return Ok(EventOutcome::Continue { y_changed: self.advance_recordings(t) });
+        }
         self.load(t, y);
         self.is_at_start = false;
         self.registers.calls.next_instant();

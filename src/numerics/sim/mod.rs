@@ -90,5 +90,5 @@ pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;
-pub use system::{DaeSystem, EventOutcome, Pattern, Side, Treatment};
+pub use system::{DaeSystem, EventOutcome, Linearity, Pattern, Side, Treatment};
 pub use trajectory::Trajectory;

@@ -19,6 +19,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// The integration method, from [`find_integrator`](super::find_integrator).
     pub method: &'static Entry<dyn Integrator>,
+    /// Whether a system that is linear between events is solved exactly instead.
+    pub takes_exact_steps: bool,
     /// Step of the methods with fixed step, seconds; `None` for the distance of the output points.
     pub step: Option<f64>,
     /// First step of the methods with variable step, seconds; `None` lets the method choose.
@@ -71,6 +73,7 @@ impl Default for Settings {
             output: OutputGrid::Intervals(500),
             tolerance: 1e-4,
             method: integrators::DEFAULT,
+            takes_exact_steps: false,
             step: None,
             initial_step: None,
             max_step: f64::INFINITY,

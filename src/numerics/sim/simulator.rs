@@ -2,7 +2,7 @@
 
 use super::event::CrossingSearch;
 use super::instants::same_time;
-use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
+use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
@@ -47,6 +47,7 @@ pub struct Simulator {
     /// The integrator of the last run, by the name of its method.
     integrator: Option<(&'static str, Box<dyn Integrator>)>,
     without_unknowns: WithoutUnknowns,
+    exact: Exact,
     /// Slides where the method is explicit.
     implicit: Option<Box<dyn Integrator>>,
     crossings: CrossingSearch,
@@ -125,10 +126,14 @@ impl Simulator {
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
         let (n, is_explicit, solves_loops) = self.prepare(system, settings, out);
-        let integrator: &mut dyn Integrator = if n == 0 {
-            &mut self.without_unknowns
-        } else {
-            integrator(&mut self.integrator, settings)
+        let linearity = system.linearity().filter(|_| settings.takes_exact_steps && n > 0);
+        let integrator: &mut dyn Integrator = match linearity {
+            _ if n == 0 => &mut self.without_unknowns,
+            Some(linearity) => {
+                self.exact.begin(linearity);
+                &mut self.exact
+            }
+            None => integrator(&mut self.integrator, settings),
         };
         let mut statistics = Statistics::default();
         if let Some(kind) = refused(settings, integrator, system) {
@@ -150,7 +155,7 @@ impl Simulator {
             },
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
-            is_explicit,
+            is_explicit: is_explicit || linearity.is_some(),
             solves_loops,
             crossings: &mut self.crossings,
             watch: &mut self.watch,
@@ -162,7 +167,7 @@ impl Simulator {
             t: settings.start,
             output_number: 0,
             next_output: settings.output.point(settings.start, settings.stop, 0),
-            has_unknowns: n > 0,
+            ends_at_points: n == 0 || linearity.is_some(),
             last_event: f64::NEG_INFINITY,
             last_jump: f64::NEG_INFINITY,
             last_solved: f64::NEG_INFINITY,
@@ -264,7 +269,7 @@ pub struct Run<'a> {
     pub(super) integrator: &'a mut dyn Integrator,
     /// Takes the place of an explicit one in slides, and the other way round.
     pub(super) implicit: &'a mut dyn Integrator,
-    /// Whether the method asked for is explicit.
+    /// Whether the method is explicit, or exact.
     pub(super) is_explicit: bool,
     /// Whether the system solves its loops itself.
     pub(super) solves_loops: bool,
@@ -279,7 +284,8 @@ pub struct Run<'a> {
     /// The next output point and its number.
     next_output: Option<f64>,
     output_number: usize,
-    has_unknowns: bool,
+    /// Whether a step ends at every output point: nothing is interpolated.
+    ends_at_points: bool,
     last_event: f64,
     last_jump: f64,
     /// When algebraic unknowns were solved for because no step could be made.
@@ -367,7 +373,7 @@ impl Run<'_> {
         let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         limit = limit.min(self.t + self.problem.system.longest_step());
-        if !self.has_unknowns {
+        if self.ends_at_points {
             limit = self.next_output.map_or(limit, |point| limit.min(point));
         }
         self.integrator.step(&mut self.problem, limit)?;

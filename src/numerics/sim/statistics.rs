@@ -5,6 +5,8 @@
 pub struct Statistics {
     /// Accepted steps.
     pub steps: u64,
+    /// Of these, steps with the exact solution of a linear system.
+    pub exact_steps: u64,
     /// Steps rejected by the error test.
     pub error_failures: u64,
     /// Steps rejected because the corrector did not converge or an evaluation failed.

@@ -39,6 +39,11 @@ pub trait DaeSystem {
     fn pattern(&self) -> &Pattern;
     /// Writes the nonzeros of ∂(f, g)/∂y at (t, y), in the order of the pattern.
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+    /// What is known of (f, g) where it is affine in y and t between events; `None` where it is not,
+    /// or nobody knows.
+    fn linearity(&self) -> Option<Linearity> {
+        None
+    }
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
     /// Number of directions along which derivatives are carried. Where there are any, y holds
@@ -180,6 +185,17 @@ pub enum EventOutcome {
     Again,
     /// `terminate(…)` was called.
     Terminate,
+}
+
+/// What is known of a right-hand side A y + b + c t, with A, b and c constant between events.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Linearity {
+    /// Whether events change A; otherwise it follows from the parameters.
+    pub changes_at_events: bool,
+    /// Whether c is not zero.
+    pub varies_in_time: bool,
+    /// Whether something is looked for between output points: events or assertions.
+    pub is_watched: bool,
 }
 
 /// A crossing function that is zero on a surface.

@@ -1,7 +1,7 @@
 //! Simulations that begin where another one ended.
 
 use crate::runtime::System;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
 
 /// A system whose states and discrete variables have given values at the start, whatever its initial
 /// equations say; all other variables follow from them.
@@ -66,6 +66,10 @@ impl DaeSystem for Continued {
 
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.system.jacobian(t, y, values)
+    }
+
+    fn linearity(&self) -> Option<Linearity> {
+        self.system.linearity()
     }
 
     fn n_crossings(&self) -> usize {

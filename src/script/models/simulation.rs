@@ -44,6 +44,8 @@ pub struct SimulationOptions {
     pub tolerance: Option<f64>,
     /// Name of the integrator (`dassl`).
     pub method: Option<String>,
+    /// Whether a model that is linear between events is solved exactly, where no integrator is named.
+    pub takes_exact_steps: bool,
     /// Step of a fixed-step integrator, seconds.
     pub fixed_step: Option<f64>,
     /// Whether a simulation stops where events would follow each other without end.
@@ -371,6 +373,7 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
         output: intervals.map_or(defaults.output, OutputGrid::Intervals),
         tolerance,
         method,
+        takes_exact_steps: options.takes_exact_steps && options.method.is_none(),
         step: options.fixed_step.filter(|step| *step > 0.0),
         treats_chattering: !options.stops_at_chattering,
         ..Settings::default()

@@ -3,7 +3,9 @@
 pub(super) mod bdf;
 mod dopri5;
 mod euler;
+mod exact;
 mod explicit;
+mod exponential;
 mod mass_matrix;
 mod radau;
 mod rodas;
@@ -16,6 +18,7 @@ use super::step_budget::StepBudget;
 use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
+pub(super) use exact::Exact;
 use std::sync::atomic::Ordering;
 pub(super) use without_unknowns::WithoutUnknowns;
 

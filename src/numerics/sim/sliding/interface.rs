@@ -2,7 +2,7 @@
 
 use super::Sliding;
 use super::slide::nearest_mode;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
 
 /// How far a share may be outside 0 … 1: more than rounding.
 const OUTSIDE: f64 = 1e-6;
@@ -56,6 +56,10 @@ impl DaeSystem for Sliding<'_> {
         let evaluated = self.blended_jacobian(&slide, t, y, values);
         self.slide = Some(slide);
         evaluated
+    }
+
+    fn linearity(&self) -> Option<Linearity> {
+        self.inner.linearity()
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {

@@ -186,9 +186,7 @@ fn experiments(
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
         let built = source.build(session, notes)?;
-        if built.has_states {
-            all.noise = all.noise.max(built.experiment.settings.tolerance);
-        }
+        all.noise = all.noise.max(built.error);
         all.calibration.get_or_insert_with(|| Calibration::of(file, &built.program));
         if entry.validation {
             all.validation.push((built.experiment, built.series));
