@@ -12,11 +12,10 @@ use crate::ga::Genomes;
 
 /// Descents from different starts that must agree before a search ends early.
 const AGREEING: usize = 3;
-/// So many where the best minimum stands at a bound, and where it fits badly. All descents may end beside
-/// a good minimum with a small basin: oscillations that none has found are fitted best by a slow drift at
-/// the bounds.
-const AGREEING_AT_BOUND: usize = 8;
-const AGREEING_IF_BAD: usize = 15;
+/// So many where the best minimum stands at a bound or fits badly. All descents may end beside a good
+/// minimum with a small basin: oscillations that none has found are fitted best by a slow drift at the
+/// bounds.
+const AGREEING_IF_DOUBTFUL: usize = 8;
 /// So many where none of them ended at a minimum by its gradient: at a kink, on a flat part, within the
 /// errors of the simulation.
 const UNTESTED: usize = 8;
@@ -286,23 +285,29 @@ impl Pool {
     }
 
     /// Whether descents alone do not get on: most of them have not ended at minima, the best minimum was
-    /// reached by one in five of them or fewer, or it fits badly.
+    /// reached by one in five of them or fewer, or it fits badly while others were reached. A bad fit to
+    /// which all descents lead is a matter of the model or of the data.
     pub fn is_doubtful(&self) -> bool {
         let reports = self.reports();
         let at_minima = reports.iter().filter(|report| report.ending.is_at_minimum()).count();
-        let fits_badly = self.smallest() > BAD * elementary::powi(self.accuracy.size, 2);
-        fits_badly || 2 * at_minima < reports.len() || SELDOM * reached(&reports) <= reports.len()
+        let is_other =
+            |report: &DescentReport| report.group > 0 && report.ending != DescentEnd::Failed;
+        self.fits_badly() && reports.iter().any(is_other)
+            || 2 * at_minima < reports.len()
+            || SELDOM * reached(&reports) <= reports.len()
+    }
+
+    /// Whether the best of the descents leaves much of the measured values.
+    pub(crate) fn fits_badly(&self) -> bool {
+        self.smallest() > BAD * elementary::powi(self.accuracy.size, 2)
     }
 
     /// How many descents must agree on the best minimum.
     fn agreeing(&self) -> usize {
         let Some(best) = self.best().map(|best| &self.descents[best]) else { return AGREEING };
-        if best.sum() > BAD * elementary::powi(self.accuracy.size, 2) {
-            AGREEING_IF_BAD
-        } else if best.is_held() {
-            AGREEING_AT_BOUND
-        } else {
-            AGREEING
+        match best.is_held() || self.fits_badly() {
+            true => AGREEING_IF_DOUBTFUL,
+            false => AGREEING,
         }
     }
 

@@ -329,6 +329,7 @@ fn the_default_search_reaches_the_best_of_several_minima() {
 fn every_seed_reaches_the_best_of_several_minima() {
     reach_the_least(&[lynx_and_hare(), cell()], 20);
     reach_the_least(&with_several_minima(), 10);
+    reach_the_least(&with_much_noise(), 20);
 }
 
 /// The search ends when the known minima were reached often enough, and descents that lead to them are
@@ -369,4 +370,45 @@ fn a_valley_of_exact_fits_is_one_minimum() {
         assert!(found.simulations < 300, "{seed}: {}", found.simulations);
         assert_eq!(super::descents::reached(&found.descents), found.descents.len(), "{seed}");
     }
+}
+
+/// Errors in the data make every fit bad; where all descents lead to it, it is theirs, and nothing for a
+/// genetic search.
+#[test]
+fn a_bad_fit_to_which_all_descents_lead_ends_the_search() {
+    let positive = (0.1, 10.0, true);
+    let mut case =
+        curve("decay", &[positive, (0.01, 2.0, true)], &[3.0, 0.4], (5.0, 40, 0.01), |p, x| {
+            p[0] * (-p[1] * x).exp()
+        });
+    case.data[5] += 30.0;
+    for seed in 0..5 {
+        let found = case.search("genetic", None, seed);
+        let least: f64 =
+            found.descents.iter().map(|own| own.objective).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.5 * case.data.iter().map(|y| y * y).sum::<f64>(), "it fits badly");
+        assert!(found.descents.iter().all(|own| own.group == 0), "{:?}", found.descents);
+        assert!(found.simulations < 200, "{seed}: {}", found.simulations);
+    }
+}
+
+/// Noise of the size of the signal: every fit is bad, and most descents end beside the best.
+fn with_much_noise() -> Vec<Case> {
+    let (positive, phase) = ((0.1, 10.0, true), (-PI, PI, false));
+    vec![
+        curve(
+            "frequency in noise",
+            &[(0.1, 30.0, true), positive, phase],
+            &[2.3, 2.0, 0.5],
+            (6.0, 60, 1.0),
+            |p, x| p[1] * (p[0] * x + p[2]).sin(),
+        ),
+        curve(
+            "peak in noise",
+            &[positive, (0.0, 100.0, false), (0.3, 30.0, true)],
+            &[3.0, 71.0, 1.0],
+            (100.0, 201, 0.5),
+            |p, x| p[0] * (-((x - p[1]) / p[2]).powi(2)).exp(),
+        ),
+    ]
 }

@@ -34,6 +34,7 @@ const REDRAWN: usize = 3;
 /// part of the range: a diffusivity of 3e-14 in 0 .. 1e-9 is found, which the other points never show.
 const SMALL_EVERY: usize = 3;
 const SMALLEST: f64 = 1e-10;
+const DECADES: i32 = 10;
 /// Where the first descent begins in a range whose middle is zero.
 const BESIDE: f64 = 0.55;
 /// Individuals of a question remembered as candidates.
@@ -159,6 +160,9 @@ impl Polished {
                 false => batch.push(&row),
             }
         }
+        if !is_wide && self.pool.fits_badly() {
+            self.scan(batch);
+        }
         let best = self.pool.best_place().filter(|_| n > 1 && is_wide);
         let Some(best) = best else { return };
         let mut genome = best.to_vec();
@@ -170,6 +174,24 @@ impl Polished {
                 genome[gene] = other[gene];
             }
             batch.push(&genome);
+        }
+    }
+
+    /// The best minimum with one gene, whose linear range begins or ends at 0, at each order of magnitude:
+    /// all descents may end on a plateau far from the one that matters (3e-14 in 0 .. 1e-9).
+    fn scan(&self, batch: &mut Genomes) {
+        let Some(best) = self.pool.best_place() else { return };
+        for (gene, scale) in self.scales.iter().enumerate().filter(|(_, s)| !s.logarithmic) {
+            for decade in 1..=DECADES {
+                let small = elementary::powi(0.1, decade);
+                let mut genome = best.to_vec();
+                match (scale.min == 0.0, scale.max == 0.0) {
+                    (true, _) => genome[gene] = small,
+                    (_, true) => genome[gene] = 1.0 - small,
+                    _ => break,
+                }
+                batch.push(&genome);
+            }
         }
     }
 
