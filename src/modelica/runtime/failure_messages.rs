@@ -223,8 +223,12 @@ impl Program {
             return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
                 .at(self.first_span());
         };
+        let of_pre = match names.contains("`pre(") {
+            true => "; the one of `pre(v)` is that of `v`",
+            false => "",
+        };
         fault!(code, "the algebraic loop of {names} did not converge {when}";
-            help: "give these variables start values near the solution")
+            help: "give these variables start values near the solution{of_pre}")
         .at(span)
     }
 
