@@ -265,6 +265,7 @@ impl Source<'_> {
         if entry.steady_state {
             let class = enclosing.load(session, &base, here)?;
             let plain = simulation::translated(session, &class)?.program.clone();
+            setting.avoid_zeros(&parameters, &plain, &mut enclosing);
             let sums = dynamics::steady(file, entry, plain.sorted(), &mut enclosing);
             notes.about(
                 self.table,

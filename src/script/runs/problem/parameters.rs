@@ -8,7 +8,7 @@ use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry
 use super::flat::attribute;
 use super::segments::Segment;
 use crate::Session;
-use crate::codegen::Access;
+use crate::codegen::{Access, Program};
 use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, FlatModel, Variability};
@@ -20,6 +20,9 @@ use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
 use crate::syntax::visit::Rewrite as _;
 use std::fmt::Write;
+
+/// Parts of a range at which not both values are zero.
+const INSIDE: [f64; 2] = [0.5, 0.75];
 
 /// An experiment whose parameters are set.
 pub(super) struct Setting<'a> {
@@ -69,6 +72,26 @@ impl Setting<'_> {
         }
         self.values(enclosing)?;
         Ok(names)
+    }
+
+    /// Gives the free parameters that are zero in the model a value of their range: where all coefficients
+    /// of an equation of the steady state are zero, the compiler takes them as numbers, and the
+    /// parameters could not be varied.
+    pub(super) fn avoid_zeros(
+        &self,
+        names: &[(usize, String)],
+        program: &Program,
+        enclosing: &mut EnclosingClass,
+    ) {
+        for (free, name) in names {
+            let Ok(at) = program.find_parameter(name) else { continue };
+            let value = INSIDE.map(|part| self.free[*free].value(part));
+            let value = value.into_iter().find(|value| *value != 0.0);
+            if let (0.0, Some(value)) = (program.parameters()[at].default, value) {
+                let place = self.file.places.parameter(name);
+                enclosing.bind(name, Expression::new(ExpressionKind::Real(value), place), place);
+            }
+        }
     }
 
     /// The place of a free parameter among all of them.

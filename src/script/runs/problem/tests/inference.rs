@@ -4,7 +4,7 @@ use super::*;
 use crate::identify::problem::EndingKind;
 use crate::identify::problem::inference::compare;
 
-const EMPTIES: &str = "
+pub(super) const EMPTIES: &str = "
 model = \"Free\"
 files = [\"tank.mo\"]
 [parameters]
@@ -20,7 +20,7 @@ evaluations = 600
 ";
 
 /// q of the emptying tank with an error that alternates.
-fn data() -> String {
+pub(super) fn data() -> String {
     let mut sign = 1.0;
     let mut rows = Vec::new();
     for k in 0..17 {
@@ -130,6 +130,34 @@ fn a_steady_state_keeps_what_the_equations_conserve() {
     }
     let said = solution.findings.iter().find(|finding| finding.sentence.contains("conserve"));
     assert!(said.unwrap().sentence.ends_with("a + b = total"), "{said:?}");
+}
+
+/// A rate that is zero in the model leaves an equation of its rest without any coefficient; it is estimated
+/// nevertheless. The step from rest at x = z = 1/k2 is computed by small steps of Euler's method, which
+/// are as exact as the comparison.
+#[test]
+fn a_rate_that_is_zero_in_the_model_is_estimated_from_rest() {
+    let model = "model Side\n  parameter Real kb = 0, k2 = 2;\n  Real x, z;\nequation\n  der(x) = \
+                 (if time < 1 then 1 else 2) - k2*x - kb*(x - z);\n  der(z) = kb*(x - z);\nend \
+                 Side;\n";
+    let problem = "model = \"Side\"\nfiles = [\"m.mo\"]\n[parameters]\nkb = { min = 0.01, max = 10 }\nk2 = \
+                   { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\nx = \"time\"\n\
+                   outputs = { z = \"z\" }\nsteady_state = true\n";
+    let (kb, k2, h) = (0.5, 1.25, 1e-5);
+    let (mut x, mut z, mut time) = (1.0 / k2, 1.0 / k2, 1.0);
+    let data = table("time,z", |t| {
+        while time < t - 0.5 * h {
+            let flow = kb * (x - z);
+            (x, z, time) = (x + h * (2.0 - k2 * x - flow), z + h * flow, time + h);
+        }
+        z.to_string()
+    });
+    let files = [("p.toml", problem.to_owned()), ("d.csv", data), ("m.mo", model.to_owned())];
+    let solution = solved(&files);
+    for (name, expected) in [("kb", kb), ("k2", k2)] {
+        let found = value(&solution, name);
+        assert!((found / expected - 1.0).abs() < 2e-3, "{name} = {found}");
+    }
 }
 
 /// Rest at u = 1 from t = -1 on, and a step to 2 at t = 0: a goes from 1 to 2 with the rate k = 1.
