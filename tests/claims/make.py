@@ -255,6 +255,51 @@ def slope_against_bound():
 
 
 @problem
+def product_beside_a_bound():
+    x = np.arange(12.0) / 4
+    columns = [np.ones(12), x, x * x]
+    pulls = lambda e: 0.8 < -line(columns, e)[0][2] / line(columns, e)[1][2] < 1.8
+    y = np.round(2 + 0.5 * x + noise_where(pulls, 12, 0.05), 3)
+    _, wide, *_ = line(columns, y)
+    (m, d), errors, t, _, _ = line(columns[:2], y)
+    residuals = lambda p: p[0] + p[1] * x + p[2] * x * x - y
+    box, logs = [(0, 100), (-10, 10), (0, 10)], [False, False, False]
+    # The curvature counts: 12 points less 3 combinations.
+    errors = errors * math.sqrt(10 / 9)
+    (low, high), = profile(residuals, box, logs, 1, 9)[0]
+    (_, most), = profile(residuals, box, logs, 2, 9)[0]
+    assert wide[1] > 2 * errors[1]
+    return Problem(
+        "product_beside_a_bound",
+        f"""Only the product a b is determined, and the curvature c stands at the end 0 of its range. The
+        standard error of the slope d is that of the straight line, {100 * errors[1] / d:.2f} % with 9
+        degrees of freedom; with a
+        free curvature it would be {100 * wide[1] / d:.2f} %, which the interval beside it contradicts.""",
+        static("a = 1, b = 1, c = 1, d = 1", "a*b + d*x + c*x^2"),
+        {"a": between(0.1, 10), "b": between(0.1, 10), "c": between(0, 10), "d": between(-10, 10)},
+    ).data(x=x, y=y).of("a", STRUCTURAL, none=True).of("b", STRUCTURAL, none=True).of(
+        "c", PRACTICAL, (0, 1e-6), (OPEN, most), 0.05).of("d", TRUE, (d, 1e-4), (low, high), 0.1).reads(
+        r"(?m)^  d +\S+ +([.0-9]+) %", 100 * errors[1] / d, 0.06).says(r"a\*b").never("any value")
+
+
+@problem
+def fault_code():
+    x = np.arange(40.0) / 8
+    y = np.round(3 - 0.4 * x + noise(61, 40, 0.01), 3)
+    y[5] = 99
+    (a, b), _, _, least, _ = line([np.ones(40), x], y)
+    assert least > 0.5 * (y @ y)
+    return Problem(
+        "fault_code",
+        """One reading is 99, the fault code of an instrument. The fit is bad, and all descents lead to it:
+        that is a matter of the data, and no other minimum has to be looked for. The report names the
+        reading.""",
+        static("a = 1, b = 1", "a + b*x"), {"a": between(-50, 50), "b": between(-50, 50)},
+    ).data(x=x, y=y).of("a", [], (a, 1e-3)).of("b", [], (b, 1e-3)).says(
+        "row 6", "reached by (5 of 5|6 of 6|7 of 7|8 of 8|9 of 9|10 of 10) descents").never("not a minimum")
+
+
+@problem
 def beyond_upper_bound():
     x = np.arange(12.0)
     y = np.round(0.5 + 1.3 * x + noise(2, 12, 0.02), 3)

@@ -268,9 +268,12 @@ fn the_statistics_show_their_progress() {
     command.env("TERM", "xterm").env("NO_COLOR", "1");
     let mut session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
     let mut shown = String::new();
-    for text in
-        ["standard errors", "profile of k, 1 of 2", "profile of x0, 2 of 2", "bootstrap: fit "]
-    {
+    for text in [
+        "standard errors",
+        "intervals: profile of k, 1 of 2",
+        "intervals: profile of x0, 2 of 2",
+        "bootstrap: fit ",
+    ] {
         match session.exp_string(text) {
             Ok(before) => shown.push_str(&before),
             Err(error) => panic!("{text:?} does not come: {error}; {shown}"),

@@ -10,6 +10,8 @@ pub struct Grounds {
     /// How far the linear optimum lies beyond the end at which a parameter stands, in standard errors,
     /// and the reach of the linear interval to both sides.
     pub(super) pulls: Vec<Option<(f64, [f64; 2])>>,
+    /// Which parameters have a derivative that vanishes at the best values.
+    pub(super) flat: Vec<bool>,
     /// Degrees of freedom of the residual variance.
     pub(super) freedom: f64,
     /// The root of the rise of the sum of squares within the 95 % limit, in units of that variance.

@@ -146,7 +146,11 @@ pub fn profiles(
     let mut some = |places: &[usize]| -> Vec<One> {
         let one = |place: &usize| {
             let name = &problem.parameters[which[*place]].name;
-            evaluation.show(&format!("profile of {name}, {} of {}", place + 1, which.len()));
+            evaluation.show(&format!(
+                "intervals: profile of {name}, {} of {}",
+                place + 1,
+                which.len()
+            ));
             walk.one(which[*place], known, (&best, smallest))
         };
         let all: Result<Vec<One>, Fault> = places.iter().map(one).collect();

@@ -56,14 +56,20 @@ impl Solution {
         run: &mut Run,
         again: impl Fn(&Run) -> Result<Solution, Fault>,
     ) -> Result<Solution, Fault> {
+        if run.evaluation.is_cancelled() {
+            let names = self.parameters.iter().map(|own| own.name.as_str()).collect();
+            self.findings.push(not_profiled(names));
+            return Ok(self);
+        }
         let (importance, searched) = (self.importance.take(), self.fitness);
         if self.is_short_of_minimum(run) && run.refit()? {
             self = again(run)?;
         }
-        for _ in 0..BETTER_FITS {
+        for number in 0..=BETTER_FITS {
             self.add_profiles(run);
             let better = self.profiles.as_ref().and_then(|found| found.better.clone());
-            let Some((values, _)) = better else { break };
+            let may_go_on = number < BETTER_FITS && !run.evaluation.is_cancelled();
+            let Some((values, _)) = better.filter(|_| may_go_on) else { break };
             if !run.continue_from(&values)? {
                 break;
             }
@@ -71,9 +77,6 @@ impl Solution {
             let simulations = simulations + self.simulations_for_statistics;
             self = again(run)?;
             self.simulations_for_statistics += simulations;
-        }
-        if self.profiles.is_none() && run.evaluation.parts.shard().is_none() {
-            self.add_profiles(run);
         }
         self.importance = importance;
         if self.fitness < searched {
@@ -98,6 +101,10 @@ impl Solution {
                 self.profiles = Some(found).filter(|_| is_whole);
             }
             Ok(None) => {}
+            Err(_) if run.evaluation.is_cancelled() => {
+                let names = self.parameters.iter().map(|own| own.name.as_str()).collect();
+                self.findings.push(not_profiled(names));
+            }
             Err(fault) => self.findings.push(
                 Finding::new(FindingKind::Missing, format!("{}.", fault.message))
                     .severity(Severity::Information),
@@ -107,10 +114,13 @@ impl Solution {
 
     /// Profiles that were made although the linear interval seemed to hold decide, too.
     fn judge_anew(&mut self, found: &Profiles) {
-        let mut missing: Vec<String> = Vec::new();
-        for (k, profile) in found.profiles.iter().enumerate() {
+        let mut missing: Vec<&str> = Vec::new();
+        for profile in &found.profiles {
+            let Some(k) = self.parameters.iter().position(|own| own.name == profile.name) else {
+                continue;
+            };
             if profile.complete != [true; 2] {
-                missing.push(profile.name.clone());
+                missing.push(&profile.name);
                 continue;
             }
             let own = &self.parameters[k];
@@ -132,11 +142,7 @@ impl Solution {
             self.findings.extend(findings);
         }
         if !missing.is_empty() {
-            let sentence = format!(
-                "The profile likelihoods of {} were not computed: the run was stopped before.",
-                missing.join(", ")
-            );
-            self.findings.push(Finding::new(FindingKind::Missing, sentence));
+            self.findings.push(not_profiled(missing));
         }
     }
 
@@ -185,8 +191,13 @@ impl Solution {
             quantile: self.grounds.quantile,
             budget: u64::MAX,
         };
-        let is_known = |k: &usize| self.grounds.profiles.iter().any(|(known, _)| known == k);
-        let missing: Vec<usize> = (0..self.parameters.len()).filter(|k| !is_known(k)).collect();
+        // Where the profile of a member of a structural group ends, it is the ranges of the others that
+        // end it.
+        let has_one = |k: &usize| {
+            self.parameters[*k].verdict != Some(Verdict::StructurallyNonIdentifiable)
+                && self.grounds.profiles.iter().all(|(known, _)| known != k)
+        };
+        let missing: Vec<usize> = (0..self.parameters.len()).filter(has_one).collect();
         let found = profiles(&run.problem, &run.evaluation, &known, &missing)?;
         let found = found.map(|found| self.with_known(found, &missing));
         let found = found.ok_or_else(|| {
@@ -212,6 +223,15 @@ impl Solution {
         found.profiles = all.into_iter().map(|(_, profile)| profile).collect();
         found
     }
+}
+
+/// That the run was stopped before these profiles.
+fn not_profiled(names: Vec<&str>) -> Finding {
+    let sentence = format!(
+        "The profile likelihoods of {} were not computed: the run was stopped before.",
+        names.join(", ")
+    );
+    Finding::new(FindingKind::Missing, sentence)
 }
 
 /// That the run went to a better fit which its profiles came upon; `searched`: the objective at the

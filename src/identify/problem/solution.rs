@@ -3,7 +3,7 @@
 use super::grounds::Grounds;
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
-    Profiles, Severity, SolvedDescent, residual_test,
+    Profile, Profiles, Severity, SolvedDescent, residual_test,
 };
 use crate::elementary;
 use crate::ga::Generation;
@@ -45,6 +45,9 @@ pub struct Solution {
     /// What was known of the errors of measurement.
     #[serde(default = "one_variance")]
     pub error_model: ErrorModel,
+    /// Points less the parameters that the data determine; `None` where that is unknown.
+    #[serde(default)]
+    pub degrees_of_freedom: Option<f64>,
     /// The residuals against the given sigmas; `None` where not all are given.
     #[serde(default)]
     pub chi_square: Option<ChiSquare>,
@@ -318,6 +321,11 @@ impl Solution {
         let words = self.ending.words.clone();
         let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
         self.findings.insert(0, finding);
+    }
+
+    /// The profile of a parameter; members of structurally non-identifiable groups have none.
+    pub(crate) fn profile_of(&self, parameter: &SolvedParameter) -> Option<&Profile> {
+        self.profiles.as_ref()?.profiles.iter().find(|own| own.name == parameter.name)
     }
 
     /// Pairs of parameters that the data can hardly tell apart.

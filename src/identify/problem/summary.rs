@@ -54,6 +54,7 @@ impl Solution {
             series: solved_series(problem, &statistics, &simulated),
             validation,
             condition: statistics.condition.filter(|condition| condition.is_finite()),
+            degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
             chi_square: chi_square(problem, &statistics),
             negative_log_likelihood: negative_log_likelihood(run, &statistics),
             ..searched(run, stop)

@@ -250,12 +250,16 @@ fn profiles_of_a_line_have_the_linear_interval() {
 }
 
 #[test]
-fn profiles_show_what_is_not_bounded() {
-    let solution = profiled(|p, x| p[0] * p[1] * x + 1.0, &[2.0, 3.0], &NOISE);
+fn profiles_that_only_ranges_would_end_are_not_made() {
+    let solution = profiled(|p, x| p[0] * p[1] * x + p[2], &[2.0, 3.0, 1.0], &NOISE);
     let found = solution.profiles.as_ref().unwrap();
-    assert!(found.profiles.iter().all(|p| p.interval[1].is_none()), "{found:?}");
+    let names: Vec<&str> = found.profiles.iter().map(|own| own.name.as_str()).collect();
+    assert_eq!(names, ["p2"]);
     assert!(sentences(&solution).contains("the model depends only on p0*p1"));
-    assert!(solution.html().contains(">Profiles</h2>"));
+    let text = solution.text();
+    assert!(text.contains("95 % by profiles: p0 -; p1 -; p2 in 0.9"), "{text}");
+    let page = solution.html();
+    assert!(page.contains(">Profiles</h2>") && page.contains("Without profile: p0, p1."), "{page}");
     assert!(solution.profiles_csv().lines().count() > 10);
 }
 

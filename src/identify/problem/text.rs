@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{EndingKind, Profile, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
+use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::plot::{self, Comparison, Figure};
 use crate::table::{counted, digits_of, ends, quoted, significant};
 use std::fmt::Write;
@@ -16,13 +16,14 @@ impl Solution {
     /// The report that ends a run.
     pub fn text(&self) -> String {
         let mut text = format!("\n{}\n\n{}\n", self.title, self.parameter_table());
-        if let Some(profiles) = &self.profiles {
-            let row = |profile: &Profile| {
+        if self.profiles.is_some() {
+            let row = |own: &SolvedParameter| {
+                let Some(profile) = self.profile_of(own) else { return format!("{} -", own.name) };
                 let ends =
                     profile.interval.map(|end| end.map_or("-".into(), |e| significant(e, 4)));
                 format!("{} in {} .. {}", profile.name, ends[0], ends[1])
             };
-            let rows: Vec<String> = profiles.profiles.iter().map(row).collect();
+            let rows: Vec<String> = self.parameters.iter().map(row).collect();
             _ = writeln!(text, "  95 % by profiles: {}\n", rows.join("; "));
         }
         for (label, value) in self.facts() {

@@ -105,7 +105,8 @@ impl Solution {
         let pull = |k: usize| statistics.pull(k).zip(statistics.reach(k));
         let Grounds { freedom, quantile, .. } = self.grounds;
         let pulls = (0..n).map(pull).collect();
-        self.grounds = Grounds { pulls, linear, freedom, quantile, ..Grounds::default() };
+        let flat = self.flat(statistics);
+        self.grounds = Grounds { pulls, linear, flat, freedom, quantile, ..Grounds::default() };
         if is_without_noise(run, statistics) {
             self.judge_by_rank(&mut judged);
             return Ok(judged);
@@ -113,6 +114,16 @@ impl Solution {
         let open = self.doubtful(run, statistics, &judged);
         self.judge_by_profiles(run, statistics, (&open, &mut judged))?;
         Ok(judged)
+    }
+
+    /// Which parameters have a derivative that vanishes, so that its standard error exceeds the range.
+    fn flat(&self, statistics: &Statistics) -> Vec<bool> {
+        let deviations = statistics.uncertainty.iter().flat_map(|own| &own.standard_deviations);
+        let pairs = self.parameters.iter().zip(deviations);
+        let exceeds = |(own, deviation): (&SolvedParameter, &f64)| {
+            deviation.is_nan() || *deviation >= own.range[1] - own.range[0]
+        };
+        pairs.map(exceeds).collect()
     }
 
     /// What needs no profile, and the linear interval of all others.
@@ -363,6 +374,22 @@ impl Solution {
 }
 
 impl SolvedParameter {
+    /// Whether a linear interval ends where the data end that of the profile, up to the factor within
+    /// which it counts as valid. Where it does not, its standard error says something else than the
+    /// profile, and where a derivative vanishes it is one of rounding.
+    fn agrees_with(&self, linear: [f64; 2]) -> bool {
+        let distance = |end: f64| match self.logarithmic && end * self.value > 0.0 {
+            true => elementary::ln(end / self.value).abs(),
+            false => (end - self.value).abs(),
+        };
+        let ends = self.interval.unwrap_or(self.range);
+        let side = |side: usize| {
+            let ratio = distance(linear[side]) / distance(ends[side]);
+            ratio >= FACTOR.recip() && (self.open[side] || ratio <= FACTOR)
+        };
+        self.open != [true; 2] && side(0) && side(1)
+    }
+
     /// Whether the interval says more than an order of magnitude.
     pub(super) fn is_precise(&self) -> bool {
         let [low, high] = self.interval.unwrap_or(self.range);
@@ -430,8 +457,8 @@ impl SolvedParameter {
             self.pieces.push([low, high]);
             self.pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
         }
-        // Where a derivative vanishes, the standard error is one of rounding.
-        self.deviation = self.deviation.filter(|own| *own < max - min);
+        let agrees = linear.is_some_and(|linear| self.agrees_with(linear));
+        self.deviation = self.deviation.filter(|_| agrees);
         let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * (high - low);
         let linear = linear.filter(|ends| !(is_same(ends[0], low) && is_same(ends[1], high)));
         self.by_profile = true;

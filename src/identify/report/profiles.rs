@@ -16,22 +16,34 @@ const SHOWN: f64 = 2.5;
 const PARABOLA: usize = 60;
 
 impl Solution {
-    /// The profile of each parameter, by its name; empty without profiles.
+    /// The profiles of the parameters, by their names; empty without profiles.
     pub fn profile_figures(&self) -> Vec<(String, Figure)> {
-        let profiles = self.profiles.iter().flat_map(|profiles| &profiles.profiles);
-        let titled = |(parameter, profile): (&SolvedParameter, &Profile)| {
+        let titled = |parameter: &SolvedParameter| {
+            let profile = self.profile_of(parameter)?;
             let title = format!("{}: profile of {}", self.model, profile.name);
-            (profile.name.clone(), Figure { title, ..drawing(parameter, profile) })
+            Some((profile.name.clone(), Figure { title, ..drawing(parameter, profile) }))
         };
-        self.parameters.iter().zip(profiles).map(titled).collect()
+        self.parameters.iter().filter_map(titled).collect()
     }
 }
 
 pub fn section(view: &View) -> Option<Section> {
-    let profiles = view.solution.profiles.as_ref()?;
-    let pairs = || view.solution.parameters.iter().zip(&profiles.profiles);
+    view.solution.profiles.as_ref()?;
+    let all = || view.solution.parameters.iter().map(|own| (own, view.solution.profile_of(own)));
+    let without: Vec<&str> =
+        all().filter(|(_, found)| found.is_none()).map(|(own, _)| own.name.as_str()).collect();
     let content = html! {
-        div.figures.small { @for (parameter, profile) in pairs() { (one(parameter, profile)) } }
+        div.figures.small {
+            @for (parameter, profile) in all() {
+                @if let Some(profile) = profile { (one(parameter, profile)) }
+            }
+        }
+        @if !without.is_empty() {
+            p.note {
+                "Without profile: " (without.join(", ")) ". Where it ended, the search ranges of the \
+                 other parameters of the combination would end it, not the data."
+            }
+        }
         (explained(&PROFILE))
     };
     Some(Section { id: "profiles", heading: "Profiles", content, wide: true })

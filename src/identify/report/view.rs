@@ -103,23 +103,15 @@ impl View<'_> {
         }
     }
 
-    /// Measured points less estimated parameters; 0 where there are no more points.
-    pub fn freedom(&self) -> usize {
-        let points: usize = self.solution.series.iter().map(|series| series.points.len()).sum();
-        points.saturating_sub(self.solution.parameters.len())
-    }
-
     /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors: the
     /// quantile of the chi-square distribution where the standard deviations of the data are known;
     /// else twice that of F(2, ν), which has the closed form ν (0.05^(−2/ν) − 1).
     pub(crate) fn ellipse_radius_squared(&self) -> f64 {
-        match self.freedom() {
-            0 => CHI_SQUARE,
-            _ if self.solution.chi_square.is_some() => CHI_SQUARE,
-            freedom => {
-                let freedom = freedom as f64;
+        match self.solution.degrees_of_freedom.filter(|freedom| *freedom > 0.0) {
+            Some(freedom) if self.solution.chi_square.is_none() => {
                 freedom * (elementary::powf(0.05f64, -2.0 / freedom) - 1.0)
             }
+            _ => CHI_SQUARE,
         }
     }
 }

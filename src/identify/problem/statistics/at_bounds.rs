@@ -7,8 +7,14 @@
 //! Parameters that no end holds are eliminated; what remains is a small quadratic problem with signs,
 //! solved by projected Gauss-Seidel sweeps.
 //!
+//! Where parameters act only together, or not at all, the data determine the others as they would
+//! without them: such a group counts by an orthonormal basis of its columns, and no end holds a member
+//! of it, because the other members make up for that one.
+//!
 //! Reference: [Walter & Pronzato 1997](gapilib_base::bibliography#walter-pronzato-1997), chapter 5.
 
+use crate::problem::non_identifiable::NonIdentifiable;
+use crate::singular_values::SingularValues;
 use crate::{Uncertainty, uncertainty_given};
 use nalgebra::{DMatrix, DVector};
 
@@ -40,15 +46,57 @@ pub(in crate::problem) struct AtBounds {
     pub ends: Vec<AtEnd>,
     /// Standard errors and correlations of the others with those held.
     pub held: Uncertainty,
-    /// How far the 95 % interval of each parameter reaches below and above, in its unit.
+    /// How far the 95 % interval of each parameter reaches below and above, in its unit; infinitely
+    /// far where the data leave it open.
     pub reach: Vec<[f64; 2]>,
 }
 
 impl AtBounds {
-    /// From the weighted sensitivities, column by column, their variance, and the rise of the sum
-    /// of squares that a 95 % interval allows. `None` where no parameter stands at an end, or the
-    /// data leave a direction open.
+    /// From the weighted sensitivities, column by column, the groups that act only together, the
+    /// variance, and the rise of the sum of squares that a 95 % interval allows. `None` where no
+    /// parameter stands at an end that holds it, or the data leave a further direction open.
     pub fn of(
+        columns: &[Vec<f64>],
+        groups: &[NonIdentifiable],
+        residuals: Option<&[f64]>,
+        inward: &[Option<f64>],
+        variances: [f64; 2],
+    ) -> Option<AtBounds> {
+        let determined = Determined::of(columns, groups);
+        let mut own = vec![None; determined.columns.len()];
+        for (place, inward) in determined.places.iter().zip(inward) {
+            place.iter().for_each(|&place| own[place] = *inward);
+        }
+        let found = AtBounds::of_independent(&determined.columns, residuals, &own, variances)?;
+        Some(found.at(&determined.places))
+    }
+
+    /// The same of all parameters, of which `places` says where they are here.
+    fn at(self, places: &[Option<usize>]) -> AtBounds {
+        let n = places.len();
+        let parameter = |place: usize| places.iter().position(|own| *own == Some(place));
+        let end = |end: AtEnd| Some(AtEnd { parameter: parameter(end.parameter)?, ..end });
+        let count = self.reach.len();
+        let correlation = |at: usize| {
+            let pair = places[at / n].zip(places[at % n]);
+            pair.map_or(f64::NAN, |(a, b)| self.held.correlations[a * count + b])
+        };
+        let open = [f64::INFINITY; 2];
+        AtBounds {
+            ends: self.ends.into_iter().filter_map(end).collect(),
+            held: Uncertainty {
+                standard_deviations: places
+                    .iter()
+                    .map(|own| own.map_or(f64::INFINITY, |k| self.held.standard_deviations[k]))
+                    .collect(),
+                correlations: (0..n * n).map(correlation).collect(),
+            },
+            reach: places.iter().map(|own| own.map_or(open, |k| self.reach[k])).collect(),
+        }
+    }
+
+    /// The same, where every column has a direction of its own.
+    fn of_independent(
         columns: &[Vec<f64>],
         residuals: Option<&[f64]>,
         inward: &[Option<f64>],
@@ -89,6 +137,45 @@ impl AtBounds {
         let reach: Option<Vec<[f64; 2]>> = (0..n).map(sides).collect();
         Some(AtBounds { ends: ends.collect(), held, reach: reach? })
     }
+}
+
+/// What the data determine.
+struct Determined {
+    /// The columns of parameters by themselves, and bases of the groups.
+    columns: Vec<Vec<f64>>,
+    /// Which of them is that of each parameter; `None` for members of groups and those without effect.
+    places: Vec<Option<usize>>,
+}
+
+impl Determined {
+    fn of(columns: &[Vec<f64>], groups: &[NonIdentifiable]) -> Determined {
+        let is_member = |k: usize| groups.iter().any(|group| group.parameters.contains(&k));
+        let has_effect = |k: usize| columns[k].iter().any(|value| *value != 0.0);
+        let mut found = Determined { columns: Vec::new(), places: vec![None; columns.len()] };
+        for k in (0..columns.len()).filter(|&k| has_effect(k) && !is_member(k)) {
+            found.places[k] = Some(found.columns.len());
+            found.columns.push(columns[k].clone());
+        }
+        for group in groups {
+            found.columns.extend(basis(columns, group));
+        }
+        found
+    }
+}
+
+/// An orthonormal basis of what the columns of a group determine together.
+fn basis(columns: &[Vec<f64>], group: &NonIdentifiable) -> Vec<Vec<f64>> {
+    let members = &group.parameters;
+    let points = columns.first().map_or(0, Vec::len);
+    let norm = |k: usize| columns[k].iter().map(|v| v * v).sum::<f64>().sqrt();
+    let norms: Vec<f64> = members.iter().map(|&k| norm(k)).collect();
+    let rows = points.max(members.len());
+    let scaled = DMatrix::from_fn(rows, members.len(), |j, k| {
+        columns[members[k]].get(j).map_or(0.0, |value| value / norms[k])
+    });
+    let Some(found) = SingularValues::of(&scaled) else { return Vec::new() };
+    let rank = members.len().saturating_sub(group.excess);
+    (0..rank).map(|d| (0..points).map(|j| found.u[(j, d)]).collect()).collect()
 }
 
 /// Standard errors of the parameters that no end holds, in the order of all parameters; the others
@@ -218,7 +305,7 @@ mod tests {
     fn an_interval_is_narrow_on_the_side_where_the_end_holds() {
         let c = 0.8;
         let found =
-            AtBounds::of(&columns(c), Some(&[0.0, 0.0, 1.0]), &[None, Some(1.0)], [1.0, 4.0])
+            AtBounds::of(&columns(c), &[], Some(&[0.0, 0.0, 1.0]), &[None, Some(1.0)], [1.0, 4.0])
                 .unwrap();
         let [below, above] = found.reach[0];
         // δ₂ follows −c δ₁: upwards it would leave the range.
@@ -239,7 +326,7 @@ mod tests {
         // The slope s = Jᵀr presses the second parameter downwards, out of its range.
         let residuals = [0.0, -20.0, 0.0];
         let found =
-            AtBounds::of(&columns, Some(&residuals), &[None, Some(1.0)], [1.0, 4.0]).unwrap();
+            AtBounds::of(&columns, &[], Some(&residuals), &[None, Some(1.0)], [1.0, 4.0]).unwrap();
         for side in found.reach[0] {
             assert!((side - 2.0).abs() < 1e-9, "{side}");
         }
@@ -249,9 +336,9 @@ mod tests {
 
     #[test]
     fn without_an_end_or_with_an_open_direction_there_is_nothing() {
-        assert_eq!(AtBounds::of(&columns(0.5), None, &[None, None], [1.0, 4.0]), None);
+        assert_eq!(AtBounds::of(&columns(0.5), &[], None, &[None, None], [1.0, 4.0]), None);
         let open = [vec![1.0, 1.0, 1.0], vec![1.0, 1.0, 1.0]];
-        let found = AtBounds::of(&open, None, &[Some(1.0), None], [1.0, 4.0]);
+        let found = AtBounds::of(&open, &[], None, &[Some(1.0), None], [1.0, 4.0]);
         assert_eq!(found, None);
         // Open but for rounding, at a point that is a minimum but for rounding.
         let (a, b) = ([1.0, 0.3, 0.1, 0.7], [0.2, 1.0, 0.4, 0.1]);
@@ -259,6 +346,42 @@ mod tests {
         let columns = [sum.to_vec(), a.to_vec(), b.to_vec(), vec![0.0, 0.0, 1.0, 2.0]];
         let residuals = [1e-3, -1e-3, 2e-3, 1e-3];
         let inward = [Some(1.0), None, None, None];
-        assert_eq!(AtBounds::of(&columns, Some(&residuals), &inward, [1e-6, 4e-6]), None);
+        assert_eq!(AtBounds::of(&columns, &[], Some(&residuals), &inward, [1e-6, 4e-6]), None);
+    }
+
+    /// Two parameters of which only the sum acts, and one without effect, beside a pair with an end:
+    /// the pair has the intervals that it has with one parameter in place of the two.
+    #[test]
+    fn what_acts_only_together_does_not_hide_the_ends_of_others() {
+        use crate::problem::non_identifiable::{NonIdentifiable, rank};
+        use crate::problem::sensitivities::Sensitivities;
+        let [a, b] = [[1.0, 0.3, 0.0, 0.7], [0.2, 1.0, 0.4, 0.1]].map(Vec::from);
+        let sum = vec![0.3, 0.1, 1.0, 0.2];
+        let residuals = [0.0, -1.0, 0.0, 0.5];
+        let of = |columns: &[Vec<f64>], groups: &[NonIdentifiable], inward: &[Option<f64>]| {
+            AtBounds::of(columns, groups, Some(&residuals), inward, [1.0, 4.0])
+        };
+        let alone = [a.clone(), b.clone(), sum.clone()];
+        let expected = of(&alone, &[], &[None, Some(1.0), None]).unwrap();
+        let twice: Vec<f64> = sum.iter().map(|v| 2.0 * v).collect();
+        let columns = [sum, a, vec![0.0; 4], b, twice];
+        let best = Sensitivities { values: vec![1.0; 5], columns: columns.to_vec() };
+        let groups = rank(&best, &[], 1e-9).non_identifiable;
+        let inward = [Some(1.0), None, Some(1.0), Some(1.0), None];
+        let found = of(&columns, &groups, &inward).unwrap();
+        for (own, other) in [(1, 0), (3, 1)] {
+            for side in 0..2 {
+                let [own, other] = [found.reach[own][side], expected.reach[other][side]];
+                assert!((own - other).abs() <= 1e-9 * other, "{own} {other}");
+            }
+        }
+        let deviation = found.held.standard_deviations[1] / expected.held.standard_deviations[0];
+        assert!((deviation - 1.0).abs() < 1e-12, "{deviation}");
+        for open in [0, 2, 4] {
+            assert_eq!(found.reach[open], [f64::INFINITY; 2]);
+            assert!(found.held.standard_deviations[open].is_infinite());
+        }
+        let held: Vec<usize> = found.ends.iter().map(|end| end.parameter).collect();
+        assert_eq!(held, [3], "the other members make up for the first");
     }
 }
