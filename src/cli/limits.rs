@@ -17,9 +17,9 @@ const INTERVAL: Duration = Duration::from_millis(10);
 /// How long a run may take to notice that it has to stop; commands of scripts and steps of
 /// simulations look much more often than that.
 const NOTICE: Duration = Duration::from_secs(2);
-/// How long a run may take to notice that the user stops it: one simulation of a large model that cannot
-/// be cancelled, as for the curves of the report, must not cost the result.
-const HEARD: Duration = Duration::from_secs(15);
+/// How long a run may take to notice that the user stops it: while it prepares, and once it has written
+/// something. What cannot be cancelled then, as the writing of large files, must not cost the result.
+const HEARD: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(15)];
 /// How long it may take then to write what it has found.
 const ENDING: Duration = Duration::from_secs(60);
 /// A process that has grown to this multiple of its limit is not waited for.
@@ -36,6 +36,8 @@ pub(super) struct Stopping {
     pub reason: Arc<Mutex<Option<String>>>,
     /// Set when the run has seen the flag.
     pub noticed: Arc<AtomicBool>,
+    /// Set when the run has begun to write: before, it prepares, and there is nothing to be lost.
+    pub begun: Arc<AtomicBool>,
 }
 
 impl Stopping {
@@ -52,6 +54,7 @@ impl Stopping {
             *place = None;
         }
         self.noticed.store(false, Ordering::SeqCst);
+        self.begun.store(false, Ordering::SeqCst);
         self.flag.store(false, Ordering::SeqCst);
     }
 }
@@ -104,7 +107,8 @@ pub(super) fn end_unheard(stopping: Stopping) -> Watch {
             if stopping.flag.load(Ordering::Relaxed) {
                 let asked = asked.get_or_insert_with(Instant::now);
                 let is_limit = stopping.reason.lock().is_ok_and(|reason| reason.is_some());
-                if asked.elapsed() > HEARD && !is_limit {
+                let has_begun = stopping.begun.load(Ordering::Relaxed);
+                if asked.elapsed() > HEARD[usize::from(has_begun)] && !is_limit {
                     live::restore_terminal();
                     terminal::eprint("interrupted\n");
                     #[allow(clippy::exit, reason = "the thread that works does not listen")]

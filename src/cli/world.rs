@@ -124,6 +124,7 @@ impl SystemWorld {
     /// the file. A folder that was removed meanwhile is made again.
     fn claim(&mut self, path: &Path) -> io::Result<()> {
         self.changes += 1;
+        self.stopping.begun.store(true, Ordering::Relaxed);
         let Some((output, lock)) = &mut self.results else { return Ok(()) };
         let is_claimed = self.claimed && self.output.is_dir();
         if !is_claimed && self.disk.permits(path, Access::Write).is_ok() {

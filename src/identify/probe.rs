@@ -246,7 +246,7 @@ impl Ending<'_> {
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
-        draw_curves(&experiments, &mut solution, &[]);
+        draw_curves(&experiments, &mut solution, &[], None);
         let probe = sentence((who, best, before), &solution, at_minimum);
         solution.simulations_for_statistics += run.simulations;
         solution.script = Some(ScriptResult {

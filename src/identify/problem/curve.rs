@@ -1,46 +1,56 @@
 //! The simulated curve between the measured points, for drawing.
 
 use super::{Experiment, ModelSimulator, Observation, Series, Simulate, Solution, SolvedSeries};
+use crate::sim::TimeBudget;
 
 /// Points of a curve beside the measured ones: one for every third pixel of a figure.
 const POINTS: usize = 160;
 
 /// Simulates each experiment at the solution on a dense grid of X, and gives each of its series its
 /// curve; `kept`: the experiments of the validation. A curve that cannot be simulated stays empty;
-/// the measured points were.
+/// the measured points were. `hurry`: what all may take where the run was stopped.
 pub fn draw_curves(
     fitted: &[Experiment],
     solution: &mut Solution,
     kept: &[(Experiment, Vec<Series>)],
+    hurry: Option<TimeBudget>,
 ) {
     let values: Vec<f64> = solution.parameters.iter().map(|parameter| parameter.value).collect();
-    draw(fitted.iter(), &values, &mut solution.series);
-    draw(kept.iter().map(|(experiment, _)| experiment), &values, &mut solution.validation);
+    draw(fitted.iter(), (&values, hurry), &mut solution.series);
+    let kept = kept.iter().map(|(experiment, _)| experiment);
+    draw(kept, (&values, hurry), &mut solution.validation);
 }
 
 /// `series`: those of all experiments, one after the other.
 fn draw<'a>(
     experiments: impl Iterator<Item = &'a Experiment>,
-    values: &[f64],
+    (values, hurry): (&[f64], Option<TimeBudget>),
     series: &mut [SolvedSeries],
 ) {
     let mut rest = series;
     for experiment in experiments {
         let count = experiment.observations.len().min(rest.len());
         let (own, others) = rest.split_at_mut(count);
-        if let Some(curves) = curves(experiment, values) {
+        if let Some(curves) = curves(experiment, values, hurry) {
             own.iter_mut().zip(curves).for_each(|(series, curve)| series.curve = curve);
         }
         rest = others;
     }
 }
 
-fn curves(experiment: &Experiment, values: &[f64]) -> Option<Vec<Vec<[f64; 2]>>> {
+fn curves(
+    experiment: &Experiment,
+    values: &[f64],
+    hurry: Option<TimeBudget>,
+) -> Option<Vec<Vec<[f64; 2]>>> {
     let dense =
         |observation: &Observation| Observation { x: grid(&observation.x), ..observation.clone() };
     let observations: Vec<Observation> = experiment.observations.iter().map(dense).collect();
     let grids: Vec<Vec<f64>> = observations.iter().map(|dense| dense.x.clone()).collect();
-    let dense = Experiment { observations, ..experiment.clone() };
+    let mut dense = Experiment { observations, ..experiment.clone() };
+    if hurry.is_some() {
+        dense.settings.time_budget = hurry;
+    }
     let mut simulator = ModelSimulator::new(std::slice::from_ref(&dense)).ok()?;
     let mut row = vec![f64::NAN; grids.iter().map(Vec::len).sum()];
     simulator.simulate(values, &mut row).ok()?;

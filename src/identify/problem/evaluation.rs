@@ -170,6 +170,11 @@ impl Evaluation {
         self.cancel = flag;
     }
 
+    /// What ends simulations when it is set.
+    pub(super) fn cancel(&self) -> Option<Arc<AtomicBool>> {
+        self.cancel.clone()
+    }
+
     /// From now on what is being done is shown this way.
     pub fn show_by(&mut self, status: Option<Status>) {
         self.status = status;

@@ -11,7 +11,7 @@ use crate::sim::{
 };
 use crate::{Instance, Model, Path};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A failed simulation is tried once more with the tolerance times this and another integrator.
 const TIGHTER: f64 = 0.01;
@@ -313,6 +313,9 @@ impl Stage {
         let failed = |kind: FailureKind, cause: String| Failed { kind, cause, progress: 0.0 };
         let mut first = 0;
         for (column, x) in points.iter().enumerate() {
+            if settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                return Err(failed(FailureKind::Points, "it was cancelled".to_owned()));
+            }
             let out = &mut out[first..first + x.len()];
             first += x.len();
             let at = (values.as_slice(), settings.start);

@@ -267,6 +267,8 @@ mod findings_tests;
 #[cfg(test)]
 mod irregular_tests;
 #[cfg(test)]
+mod stopping_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod verdict_tests;

@@ -204,6 +204,7 @@ impl Run {
         let Some(best) = &self.best else { return Ok((None, 0)) };
         let mut evaluation = Evaluation::on(&self.problem, processors)?;
         evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
+        evaluation.cancel_by(self.evaluation.cancel());
         let (values, simulations) = match Refit::new(&self.problem, &evaluation) {
             Some(mut refit) => {
                 let found = refit.from(&best.values, None)?;

@@ -356,8 +356,9 @@ impl Run {
         let genome = self.batch.row(row);
         let now = self.evaluation.objectives_anew(&self.problem, genome, self.optimizer.wants());
         let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        // What a cancelled simulation says is not compared.
         let have_failed = now.iter().chain(before).all(|value| has_failed(*value));
-        if bits(&now) == bits(before) || have_failed {
+        if bits(&now) == bits(before) || have_failed || self.evaluation.is_cancelled() {
             return Ok(());
         }
         bail!(

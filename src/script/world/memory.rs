@@ -2,6 +2,7 @@
 
 use super::{Environment, FileReader, Files, Screen, Stamp};
 use crate::access::policy::{Access, Change, Grant, Policy};
+use crate::identify::problem::Status;
 use crate::runs::view::{Progress, View};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -60,11 +61,16 @@ pub struct MemoryWorld {
     patience: Cell<u64>,
     /// What becomes true when the user asks to stop.
     stop: Option<Arc<AtomicBool>>,
+    /// What long work has shown that it does, and what it does when the user asks to stop.
+    shown: Option<(Shown, String)>,
     /// How many more times the answer is that nobody asks to pause, and what is typed then.
     pause: (u64, VecDeque<String>),
     /// What was drawn, where anybody looks.
     views: Option<Views>,
 }
+
+/// What was shown of long work, in its order.
+pub(crate) type Shown = Arc<Mutex<Vec<String>>>;
 
 /// The views that were drawn, readable while a session owns the world.
 pub type Views = Arc<Mutex<Vec<View>>>;
@@ -85,6 +91,7 @@ impl Default for MemoryWorld {
             streams: Streams::default(),
             patience: Cell::new(u64::MAX),
             stop: None,
+            shown: None,
             pause: (u64::MAX, VecDeque::new()),
             views: None,
         }
@@ -122,6 +129,15 @@ impl MemoryWorld {
     #[must_use]
     pub(crate) fn stopped_by(mut self, flag: &Arc<AtomicBool>) -> MemoryWorld {
         self.stop = Some(Arc::clone(flag));
+        self
+    }
+
+    /// The same where the user asks to stop when such a line is shown; all lines are noted.
+    #[cfg(test)]
+    #[must_use]
+    pub(crate) fn stopped_when(mut self, line: &str, shown: &Shown) -> MemoryWorld {
+        self.stop = Some(Arc::default());
+        self.shown = Some((Arc::clone(shown), line.to_owned()));
         self
     }
 
@@ -335,6 +351,18 @@ impl Screen for MemoryWorld {
     }
 
     fn progress(&mut self, _progress: &Progress) {}
+
+    fn status(&mut self) -> Option<Status> {
+        let ((shown, last), stop) = (self.shown.clone()?, self.stop.clone()?);
+        Some(Arc::new(move |line: &str| {
+            if line == last {
+                stop.store(true, Ordering::Relaxed);
+            }
+            if let Ok(mut shown) = shown.lock() {
+                shown.push(line.to_owned());
+            }
+        }))
+    }
 
     fn wants_view(&mut self) -> bool {
         self.views.is_some()

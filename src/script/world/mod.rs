@@ -10,6 +10,8 @@ mod screen;
 
 pub use environment::{Environment, Store};
 pub use files::{Content, FileReader, Files, Stamp, normalized};
+#[cfg(test)]
+pub(crate) use memory::Shown;
 pub use memory::{MemoryWorld, Streams, Views};
 pub use screen::Screen;
 

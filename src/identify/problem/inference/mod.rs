@@ -39,6 +39,12 @@ pub use term::{Function, Operator, Term};
 use super::{FindingKind, Run, Solution};
 use crate::diag::Fault;
 
+/// The parts, as the reader of a report knows them.
+const BANDS: &str = "prediction bands";
+const NEXT: &str = "next measurement";
+const BOOTSTRAP: &str = "bootstrap";
+const POSTERIOR: &str = "posterior";
+
 /// What a problem wants to know beyond the estimates.
 #[derive(Default)]
 pub struct Inference {
@@ -63,22 +69,29 @@ pub struct Inference {
     pub logarithmic: Vec<usize>,
 }
 
-/// Infers at the best point of a run what the problem asks for.
+/// Infers at the best point of a run what the problem asks for. What was not made because the run was
+/// stopped is said.
 ///
 /// # Errors
 ///
 /// Settings that do not fit the problem.
 pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
     let wanted = &run.problem.inference;
-    let mut found = Inferred::default();
-    let Some(best) = &run.best else { return Ok(found) };
-    found.likelihood = Likelihood::of(run, &best.values);
-    found.findings.extend(prior_data::at_constraints(&run.problem, &best.values));
+    let Some(best) = run.best.as_ref().filter(|_| !run.evaluation.is_cancelled()) else {
+        return Ok(Inferred::stopped(wanted.parts()));
+    };
+    let mut found = Inferred {
+        likelihood: Likelihood::of(run, &best.values),
+        findings: prior_data::at_constraints(&run.problem, &best.values),
+        ..Inferred::default()
+    };
     if wanted.is_empty() {
         return Ok(found);
     }
+    run.evaluation.show("intervals: derivatives at the best values");
     let local = match Local::at(&run.problem, &run.evaluation, &best.values) {
         Ok(local) => local,
+        Err(_) if run.evaluation.is_cancelled() => return Ok(Inferred::stopped(wanted.parts())),
         Err(why) => {
             if wanted.more_than_bands() {
                 found.refusals.push(format!("Nothing is inferred beyond the estimates: {why}."));
@@ -86,39 +99,106 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
             return Ok(found);
         }
     };
-    if wanted.bands
-        && let Some(predict) = &wanted.predict
-    {
-        let refusals = &mut found.refusals;
-        found.bands = bands::bands(&run.problem, predict.as_ref(), &local, refusals)?;
+    let mut parts = Made { run, refusals: Vec::new(), stopped: Vec::new() };
+    if let Some(predict) = wanted.predict.as_ref().filter(|_| wanted.bands) {
+        let make = |refusals: &mut Vec<String>| {
+            bands::bands(&run.problem, predict.as_ref(), &local, refusals)
+        };
+        found.bands = parts.part(BANDS, make)?;
     }
     if let Some(settings) = &wanted.design {
-        let refusals = &mut found.refusals;
-        found.next_measurement =
-            design::next_measurement(&run.problem, settings, &local, refusals)?;
+        let make = |refusals: &mut Vec<String>| {
+            design::next_measurement(&run.problem, settings, &local, refusals)
+        };
+        found.next_measurement = parts.part(NEXT, make)?;
     }
     found.findings.extend(prior_data::compared(&run.problem, &local));
     if local.robust {
         found.likelihood = None;
-        if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
-            found.refusals.push(format!(
-                "There is no bootstrap and no posterior for the robust loss `{}`: minimise \
-                 `sum_of_squares` instead.",
-                run.problem.objectives[0].0
-            ));
-        }
-        return Ok(found);
     }
-    if let Some(settings) = &wanted.bootstrap {
-        found.bootstrap = bootstrap::bootstrap(run, settings, &local, &mut found.refusals)?;
-    }
-    if let Some(settings) = &wanted.posterior {
-        found.posterior = posterior::posterior(run, settings, &local, &mut found.refusals)?;
-    }
+    found.draw((&mut parts, &local), wanted)?;
+    found.refusals.append(&mut parts.refusals);
+    found.refusals.append(&mut Inferred::stopped(parts.stopped).refusals);
     Ok(found)
 }
 
+impl Inferred {
+    /// Bootstrap and posterior.
+    fn draw(
+        &mut self,
+        (parts, local): (&mut Made<'_>, &Local),
+        wanted: &Inference,
+    ) -> Result<(), Fault> {
+        let run = parts.run;
+        if local.robust {
+            if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
+                parts.refusals.push(format!(
+                    "There is no bootstrap and no posterior for the robust loss `{}`: minimise \
+                     `sum_of_squares` instead.",
+                    run.problem.objectives[0].0
+                ));
+            }
+            return Ok(());
+        }
+        if let Some(settings) = &wanted.bootstrap {
+            let make = |refusals: &mut _| bootstrap::bootstrap(run, settings, local, refusals);
+            self.bootstrap = parts.part(BOOTSTRAP, make)?;
+        }
+        if let Some(settings) = &wanted.posterior {
+            let make = |refusals: &mut _| posterior::posterior(run, settings, local, refusals);
+            self.posterior = parts.part(POSTERIOR, make)?;
+        }
+        Ok(())
+    }
+
+    /// Nothing but a sentence on the parts that were not made, because the run was stopped.
+    fn stopped(parts: Vec<&'static str>) -> Inferred {
+        let sentence =
+            || format!("Not computed, because the run was stopped before: {}.", parts.join(", "));
+        let refusals = if parts.is_empty() { Vec::new() } else { vec![sentence()] };
+        Inferred { refusals, ..Inferred::default() }
+    }
+}
+
+/// What was made of the parts that a problem wants.
+struct Made<'a> {
+    run: &'a Run,
+    /// What cannot be made.
+    refusals: Vec<String>,
+    /// What was not made because the run was stopped.
+    stopped: Vec<&'static str>,
+}
+
+impl Made<'_> {
+    /// Makes a part, unless the run was stopped before or meanwhile.
+    fn part<T: Default>(
+        &mut self,
+        name: &'static str,
+        make: impl FnOnce(&mut Vec<String>) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let mut refusals = Vec::new();
+        let evaluation = &self.run.evaluation;
+        evaluation.show(name);
+        let made = match evaluation.is_cancelled() {
+            true => Ok(T::default()),
+            false => make(&mut refusals),
+        };
+        if evaluation.is_cancelled() {
+            self.stopped.push(name);
+            return Ok(T::default());
+        }
+        self.refusals.append(&mut refusals);
+        made
+    }
+}
+
 impl Solution {
+    /// Says that nothing was inferred that the problem wants, because the run was stopped.
+    #[must_use]
+    pub fn without_inference(self, run: &Run) -> Solution {
+        Solution { inferred: Inferred::stopped(run.problem.inference.parts()), ..self }
+    }
+
     /// Adds what is inferred at the best point of its run.
     ///
     /// # Errors
@@ -150,14 +230,26 @@ impl Solution {
         if let Some(own) = steps {
             return Some(format!("{} acts in steps, or its derivative vanishes", own.name));
         }
-        let curved = self.parameters.iter().find(|own| own.by_profile && own.deviation.is_none());
-        curved.map(|own| format!("the derivative by {} vanishes at the best values", own.name))
+        let mut all = self.parameters.iter().zip(&self.grounds.flat);
+        let flat = all.find(|(own, is_flat)| own.by_profile && !own.at_bound && **is_flat);
+        flat.map(|(own, _)| format!("the derivative by {} vanishes at the best values", own.name))
     }
 }
 
 impl Inference {
     fn is_empty(&self) -> bool {
         !self.bands && self.priors.is_empty() && !self.more_than_bands()
+    }
+
+    /// The names of what is wanted.
+    fn parts(&self) -> Vec<&'static str> {
+        let all = [
+            (BANDS, self.bands && self.predict.is_some()),
+            (NEXT, self.design.is_some()),
+            (BOOTSTRAP, self.bootstrap.is_some()),
+            (POSTERIOR, self.posterior.is_some()),
+        ];
+        all.into_iter().filter(|(_, is_wanted)| *is_wanted).map(|(name, _)| name).collect()
     }
 
     /// Whether something was asked for that is not computed anyway.

@@ -98,7 +98,8 @@ pub(super) fn build(
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&fitted).map_err(one)?);
     let experiments = fitted.clone();
-    let inference = super::inference::inference(file, &fitted).map_err(one)?;
+    let cancel = session.world.interrupt_flag();
+    let inference = super::inference::inference(file, &fitted, cancel.as_ref()).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&fitted)?) as Box<dyn Simulate>);
     let usual = if objectives.len() > 1 { "nsga2" } else { METHODS[0].name };
     let method = operators::method(session, file, usual, parameters.len())?;

@@ -11,13 +11,15 @@ use crate::identify::problem::inference::{
 use crate::identify::problem::{Experiment, Free};
 use crate::registry::BAD_OPTION;
 use crate::{bail, fault};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Points of a design unless the file says how many.
 const POINTS: usize = 5;
 /// More points than this are an experiment of its own, which `repeat` speaks of.
 const MOST_POINTS: usize = 100;
 
-/// What the file wants to know of these experiments.
+/// What the file wants to know of these experiments; `cancel` ends their simulations when it is set.
 ///
 /// # Errors
 ///
@@ -25,6 +27,7 @@ const MOST_POINTS: usize = 100;
 pub(super) fn inference(
     file: &ProblemFile,
     experiments: &[Experiment],
+    cancel: Option<&Arc<AtomicBool>>,
 ) -> Result<Inference, Fault> {
     let (bands, band_variables) = match &file.bands {
         None | Some(BandsEntry::Wanted(true)) => (true, Vec::new()),
@@ -33,7 +36,10 @@ pub(super) fn inference(
     };
     band_variables.iter().try_for_each(|name| known("bands", name, experiments))?;
     let design = file.design.as_ref().map(|entry| design(entry, experiments)).transpose()?;
-    let predict = ModelPredictions { experiments: experiments.to_vec() };
+    let mut predict = ModelPredictions { experiments: experiments.to_vec() };
+    for experiment in &mut predict.experiments {
+        experiment.settings.cancel = cancel.cloned();
+    }
     Ok(Inference {
         predict: Some(Box::new(predict)),
         bands,

@@ -68,6 +68,12 @@ pub(super) fn try_others(
         let processors = session.world.processors();
         let (found, simulations) = run.objective_with(other.problem.simulator, &processors)?;
         solution.simulations_for_statistics += simulations;
+        if session.world.interrupted() {
+            let sentence = "Other interpolations of the inputs were not tried: the run was stopped \
+                            before.";
+            solution.findings.push(Finding::new(FindingKind::Missing, sentence));
+            return Ok(());
+        }
         solution.findings.push(finding(&names, assumed, [Some(solution.fitness), found]));
     }
     Ok(())

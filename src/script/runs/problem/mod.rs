@@ -51,6 +51,7 @@ use crate::identify::problem::{
 };
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
+use crate::sim::TimeBudget;
 use crate::source::{SourceId, Span};
 use crate::value::RecordValue;
 use crate::{bail, fault};
@@ -68,6 +69,8 @@ use std::sync::Arc;
 /// Files that not every run writes.
 const OPTIONAL: [&str; 5] =
     ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv", "searches.csv"];
+/// Seconds that each simulation for the report may take once the user has stopped the run.
+const HURRY: f64 = 0.5;
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
 
@@ -223,9 +226,7 @@ fn solve_built(
 ) -> Result<Solution, Fault> {
     let Built { problem, experiments, validation, origins, notes, calibration, undecided } = built;
     let folder = session.world.output_dir().join(&options.folder);
-    let mut run = Run::on(problem, &session.world.processors())?;
-    run.evaluation.parts = options.division.parts();
-    session.note_idle_ranks(run.evaluation.alone());
+    let mut run = prepared(session, problem, options)?;
     let importance = analysed(session, &run, &folder, options)?;
     let files = Journalled { folder: &folder, origins: &origins, every };
     searches::refuse_leftovers(session, &folder, options)?;
@@ -241,7 +242,7 @@ fn solve_built(
     let keep =
         |session: &mut Session, run: &Run| shards::keep(session, run, paths, (&origins, options));
     *why = failing::none_simulated(&run, &experiments);
-    let held_out = validated(&run, &validation)?;
+    let held_out = validated(&run, &validation, hurry(session))?;
     let mut solution = match Solution::of_search(&run, &ending.reason, held_out).map(with) {
         // The searches of this shard count, whatever became of the first one.
         Err(fault) if !ending.is_interrupted && options.searches > Some(1) => {
@@ -252,15 +253,17 @@ fn solve_built(
     };
     former::keep(session, &folder, &origins)?;
     write_quietly(session, &folder, &solution, seconds);
-    solving::draw_curves(&experiments, &mut solution, &validation);
+    solving::draw_curves(&experiments, &mut solution, &validation, hurry(session));
     if ending.is_interrupted {
-        solution = solution.without_statistics(&why_stopped(session, "the search"));
+        let why = why_stopped(session, "the search");
+        solution = solution.without_statistics(&why).without_inference(&run);
     } else {
-        let solved =
-            |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?).map(with);
+        let solved = |run: &Run| {
+            Solution::of(run, &ending.reason, validated(run, &validation, None)?).map(with)
+        };
         solution = with_statistics(session, &mut run, solution, &solved, all, options)?;
         interpolation::try_others(session, (&mut run, &mut solution), &undecided, again)?;
-        solving::draw_curves(&experiments, &mut solution, &validation);
+        solving::draw_curves(&experiments, &mut solution, &validation, hurry(session));
     }
     let is_interrupted = ending.is_interrupted || session.world.interrupted();
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
@@ -272,6 +275,19 @@ fn solve_built(
     }
     close(session, (&checkpoint, &folder), is_interrupted);
     Ok(solution)
+}
+
+/// The run before its first question.
+fn prepared(
+    session: &mut Session,
+    problem: solving::Problem,
+    options: &RunOptions,
+) -> Result<Run, Fault> {
+    let mut run = Run::on(problem, &session.world.processors())?;
+    run.evaluation.cancel_by(session.world.interrupt_flag());
+    run.evaluation.parts = options.division.parts();
+    session.note_idle_ranks(run.evaluation.alone());
+    Ok(run)
 }
 
 /// Keeps the journals of a run that ended at a limit, those of all its searches, for one with a higher
@@ -330,10 +346,10 @@ fn with_statistics(
     let made = statistics(session, run, solved, all, options);
     run.evaluation.show("");
     run.evaluation.show_by(None);
-    run.evaluation.cancel_by(None);
     match made {
         Err(_) if session.world.interrupted() => {
-            Ok(found.without_statistics(&why_stopped(session, "the statistics")))
+            let why = why_stopped(session, "the statistics");
+            Ok(found.without_statistics(&why).without_inference(run))
         }
         made => made,
     }
@@ -350,14 +366,11 @@ fn statistics(
     solving::conclude(run);
     let mut solution = Solution::settled(run, solved)?;
     let searched = solution.fitness;
-    if options.profile && !session.world.interrupted() {
+    if options.profile {
         solution = solution.with_profiles(run, solved)?;
     }
     solution.add_searches(all, searched);
-    if !session.world.interrupted() {
-        run.evaluation.show("bands and intervals");
-        solution.add_inference(run)?;
-    }
+    solution.add_inference(run)?;
     if session.world.interrupted() {
         let why = why_stopped(session, "the statistics");
         let sentence = format!("The report is not complete: {why}.");
@@ -413,6 +426,12 @@ fn analysed(
     let Some(name) = &options.sensitivity else { return Ok(None) };
     let analysis = solving::analysis(name)?;
     let found = analysis.importance(&run.problem, &run.evaluation, options.samples)?;
+    if session.world.interrupted() {
+        session.print(
+            "\nThe sensitivity analysis was not made: the run was stopped before it ended.\n",
+        );
+        return Ok(None);
+    }
     let Some(found) = found else {
         session.print("\nA part of the sensitivity analysis belongs to other shards.\n");
         return Ok(None);
@@ -481,18 +500,31 @@ fn open(
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
 
-/// The experiments kept for validation, at the best values.
+/// What a simulation for the report may take once the user has stopped the run.
+fn hurry(session: &Session) -> Option<TimeBudget> {
+    let clock = session.world.clock().filter(|_| session.world.interrupted())?;
+    Some(TimeBudget { seconds: HURRY, clock })
+}
+
+/// The experiments kept for validation, at the best values; `hurry`: what each may take.
 fn validated(
     run: &Run,
     validation: &[(solving::Experiment, Vec<solving::Series>)],
+    hurry: Option<TimeBudget>,
 ) -> Result<Vec<SolvedSeries>, Fault> {
     let Some(best) = &run.best else { return Ok(Vec::new()) };
     let mut solved = Vec::new();
     for (experiment, series) in validation {
-        let mut simulator = ModelSimulator::new(std::slice::from_ref(experiment))?;
+        let mut experiment = experiment.clone();
+        if hurry.is_some() {
+            experiment.settings.time_budget = hurry;
+        }
+        let mut simulator = ModelSimulator::new(std::slice::from_ref(&experiment))?;
         let mut row = vec![f64::NAN; series.iter().map(|series| series.x.len()).sum()];
         // A simulation that fails shows as NaN; that is the result of the validation.
-        let _ = simulator.simulate(&best.values, &mut row);
+        if simulator.simulate(&best.values, &mut row).is_err() && hurry.is_some() {
+            continue;
+        }
         let mut rest = row.as_slice();
         for series in series {
             let (own, others) = rest.split_at(series.x.len());

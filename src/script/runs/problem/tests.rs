@@ -5,6 +5,7 @@ use crate::value::FromValue as _;
 use crate::world::{Files as _, MemoryWorld};
 
 mod inference;
+mod stopping;
 mod values;
 
 const MODEL: &str = "model Tank
@@ -46,7 +47,7 @@ fn shipped(world: MemoryWorld, path: &Path) -> MemoryWorld {
 }
 
 /// Times 0, 0.25 … 4 with a value each.
-fn table(header: &str, row: impl Fn(f64) -> String) -> String {
+fn table(header: &str, mut row: impl FnMut(f64) -> String) -> String {
     let lines: Vec<String> =
         (0..17).map(|k| f64::from(k) / 4.0).map(|t| format!("{t},{}", row(t))).collect();
     format!("{header}\n{}\n", lines.join("\n"))
