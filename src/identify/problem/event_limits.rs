@@ -68,14 +68,18 @@ impl Limit {
         Some(values[row] + distance * beside.map_or(0.0, rate))
     }
 
-    /// The rows of the event: one at the stamp, else the nearest one between the neighboring stamps
-    /// at which the compared column jumps.
+    /// The rows of the event: one at the stamp, first of all one at which the compared column jumps; else
+    /// the nearest one between the neighboring stamps at which it jumps.
     fn event(&self, trajectory: &Trajectory, y: usize, time: f64) -> Option<Range<usize>> {
         let (times, values) = (trajectory.time(), trajectory.column(y));
-        // Result files often hold time in single precision.
-        let rounding = f64::from(f32::EPSILON) * time.abs();
         let [low, high] = self.neighbors;
-        let mut nearest: Option<(f64, Range<usize>)> = None;
+        // Result files often hold time in single precision; not those that tell stamps apart which are
+        // nearer: a ball that bounces has two events at once, of which one is the jump.
+        let gaps = self.neighbors.map(|own| (own - time).abs()).into_iter();
+        let gap = gaps.filter(|gap| *gap > 0.0).fold(f64::INFINITY, f64::min);
+        let single = f64::from(f32::EPSILON) * time.abs();
+        let rounding = single.min(0.5 * gap);
+        let mut nearest: Option<((bool, bool, f64), Range<usize>)> = None;
         let mut row = times.partition_point(|t| *t < low.min(time - rounding));
         while row < times.len() && times[row] <= high.max(time + rounding) {
             let end = times.partition_point(|t| *t <= times[row]);
@@ -84,11 +88,10 @@ impl Limit {
             let [before, after] = [values[row], values[end - 1]];
             let jumps = (after - before).abs() > SMALLEST_JUMP * before.abs().max(after.abs());
             let is_meant = distance <= rounding || is_between && jumps;
-            if end - row > 1
-                && is_meant
-                && nearest.as_ref().is_none_or(|(least, _)| distance < *least)
-            {
-                nearest = Some((distance, row..end));
+            let rank = (distance > single, !jumps, distance);
+            let is_nearest = nearest.as_ref().is_none_or(|(least, _)| rank < *least);
+            if end - row > 1 && is_meant && is_nearest {
+                nearest = Some((rank, row..end));
             }
             row = end;
         }
@@ -126,6 +129,35 @@ mod tests {
         assert_eq!(at(&[0.5, 1.0, 1.0, 1.0], 0), [0.5, 1.0, 10.0, 10.0]);
         assert_eq!(at(&[0.5, 1.0, 1.0, 2.0], 1), [3.0, 3.0, 5.0, 5.0]);
         assert_eq!(at(&[0.5, 1.0, 2.0], 0), [0.5, 10.0, 8.0], "a single row is the right limit");
+    }
+
+    /// Two events a rounding apart, at the first of which y jumps, simulated a little too early.
+    #[test]
+    fn of_two_events_at_once_the_jump_is_meant() {
+        let mut trajectory = Trajectory::new(1);
+        for (t, y) in [(0.0, 0.0), (1.0, 1.0), (1.0, 10.0)] {
+            trajectory.push(t, &[y]);
+        }
+        for t in [1.0 + 3e-11, 1.0 + 3e-11, 2.0] {
+            trajectory.push(t, &[10.0]);
+        }
+        let times = [0.5, 1.0 + 2e-11, 1.0 + 2e-11, 1.0 + 5e-11, 1.0 + 5e-11, 1.5];
+        let limits = limits(&times);
+        let found = |at: usize| limits[at].unwrap().value(&trajectory, [0, 0], times[at]).unwrap();
+        for (at, expected) in [(1, 1.0), (2, 10.0), (3, 10.0), (4, 10.0)] {
+            assert!((found(at) - expected).abs() < 1e-9, "{at}: {}", found(at));
+        }
+    }
+
+    #[test]
+    fn an_event_at_the_stamp_is_meant_whatever_else_jumps() {
+        let mut trajectory = Trajectory::new(1);
+        for (t, y) in [(0.0, 0.0), (0.9, 0.9), (0.9, 9.0), (1.0, 10.0), (1.0, 10.0), (2.0, 11.0)] {
+            trajectory.push(t, &[y]);
+        }
+        let times = [0.5, 1.0, 1.0, 1.5];
+        let found = limits(&times)[1].unwrap().value(&trajectory, [0, 0], 1.0);
+        assert_eq!(found, Some(10.0));
     }
 
     #[test]

@@ -4,6 +4,10 @@ use super::verdicts::{ByProfile, Judged};
 use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
 use crate::table::{ends, significant};
 
+/// Standard errors that are not counted any more: where a bound causes the whole misfit, their number is
+/// one of rounding (5.6e6 in data in kW for a range that was meant in W).
+const MANY: f64 = 1e3;
+
 /// What must be known about a parameter.
 pub(crate) fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {
     let name = &parameter.name;
@@ -104,12 +108,15 @@ fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2]) -> Finding {
     let end = significant(if upper { max } else { min }, 5);
     let side = if upper { "upper" } else { "lower" };
     let name = &parameter.name;
+    let distance = match pull < MANY {
+        true => significant(pull, 2),
+        false => format!("more than {MANY}"),
+    };
     let sentence = format!(
         "{name} lies at the {side} end {end} of its search range: the optimum lies beyond it, by \
-         {} standard errors for a linear model, so it has no interval, and the intervals of the \
-         others are valid for {name} = {end}. Widen the range, or question the model if the bound \
-         is physical.",
-        significant(pull, 2)
+         {distance} standard errors for a linear model, so it has no interval, and the intervals of \
+         the others are valid for {name} = {end}. Widen the range, or question the model if the bound \
+         is physical."
     );
     let finding = Finding::new(FindingKind::AtBound, sentence);
     finding.parameters([name.as_str()]).statistic(pull, limit)
