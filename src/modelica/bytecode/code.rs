@@ -62,7 +62,7 @@ pub enum Instruction {
     Load { d: Register, base: Register, offset: Register },
     /// To the register `base` plus an offset.
     Store { base: Register, offset: Register, a: Register },
-    /// The number of turns of a loop over `start : step : stop`, three registers from `range` on.
+    /// The number of iterations of a loop over `start : step : stop`, three registers from `range` on.
     Turns { d: Register, range: Register },
     /// On to another instruction.
     Jump { target: u32 },

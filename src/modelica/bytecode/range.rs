@@ -2,10 +2,10 @@
 
 use super::failure::Reason;
 
-/// Most turns of a loop.
+/// Most iterations of a loop.
 const MAX_TURNS: f64 = 1e15;
 
-/// The number of turns over `start : step : stop` (MLS §10.4.3).
+/// The number of iterations over `start : step : stop` (MLS §10.4.3).
 pub(super) fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
     if start.is_nan() || step.is_nan() || stop.is_nan() {
         return Err(Reason::Unassigned);

@@ -196,7 +196,7 @@ unsafe extern "C" fn row_lacks(first: *const f64, n: usize, parts: usize) -> u64
     u64::from(row.chunks_exact(parts).any(|number| number[0].is_nan()))
 }
 
-/// The number of turns of a loop over a range of three registers; NaN if it cannot be made.
+/// The number of iterations of a loop over a range of three registers; NaN if it cannot be made.
 unsafe extern "C" fn turns_of(range: *const f64, parts: usize) -> f64 {
     // SAFETY: the row lies in the frame.
     let range = unsafe { std::slice::from_raw_parts(range, 3 * parts) };

@@ -1,5 +1,5 @@
 //! What all translations to machine code share: the module that holds the code, functions of this
-//! process that the code calls, and the switch that turns them off.
+//! process that the code calls, and the switch that disables them.
 
 #![allow(unsafe_code, reason = "the memory of machine code is freed by hand")]
 
