@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// tenths of a second.
 pub(crate) const DEFAULT_INSTRUCTIONS: u64 = 20_000_000;
 
-/// The same for whoever simulates models of others on the command line: the multipoles of a borehole
+/// The same for simulations started from the command line: the multipoles of a borehole
 /// with four pipes (IBPSA) take 400 million, half a second.
 pub(crate) const LONG_CALL_INSTRUCTIONS: u64 = 1_000_000_000;
 /// Statements of the interpreter in place of so many instructions.

@@ -13,8 +13,8 @@ pub struct Ident(&'static str);
 static INTERNED: LazyLock<Mutex<FxHashSet<&'static str>>> = LazyLock::new(Default::default);
 
 impl Ident {
-    /// The identifier with this text. Texts live as long as the program; their number is bounded
-    /// by the distinct identifiers read.
+    /// The identifier with this text. Interned strings live as long as the program; their number is
+    /// bounded by the distinct identifiers read.
     pub fn new(text: &str) -> Ident {
         let mut interned = match INTERNED.lock() {
             Ok(guard) => guard,

@@ -193,7 +193,7 @@ impl Options {
         self.choices.shift_remove(name)
     }
 
-    /// An error that names what nobody took.
+    /// An error that names the first option that was not read.
     pub fn finish(self) -> Result<(), Fault> {
         let Some(name) = self.numbers.keys().chain(self.choices.keys()).next() else {
             return Ok(());

@@ -81,9 +81,9 @@ impl SingularValues {
     }
 }
 
-/// Turns every pair of columns; whether any was not orthogonal.
+/// Rotates every pair of columns that is not orthogonal; whether there was one.
 fn sweep(work: &mut DMatrix<f64>, v: &mut DMatrix<f64>) -> bool {
-    let mut turned = false;
+    let mut rotated = false;
     for p in 0..work.ncols() {
         for q in p + 1..work.ncols() {
             let (alpha, beta) = (work.column(p).norm_squared(), work.column(q).norm_squared());
@@ -92,7 +92,7 @@ fn sweep(work: &mut DMatrix<f64>, v: &mut DMatrix<f64>) -> bool {
             if gamma.abs() <= ORTHOGONAL * alpha.sqrt() * beta.sqrt() || gamma == 0.0 {
                 continue;
             }
-            turned = true;
+            rotated = true;
             let zeta = (beta - alpha) / (2.0 * gamma);
             let tangent = zeta.signum() / (zeta.abs() + elementary::hypot(zeta, 1.0));
             let cosine = 1.0 / elementary::hypot(tangent, 1.0);
@@ -100,7 +100,7 @@ fn sweep(work: &mut DMatrix<f64>, v: &mut DMatrix<f64>) -> bool {
             rotate(v, [p, q], cosine, cosine * tangent);
         }
     }
-    turned
+    rotated
 }
 
 fn rotate(matrix: &mut DMatrix<f64>, [p, q]: [usize; 2], cosine: f64, sine: f64) {

@@ -1,7 +1,7 @@
 //! Modelica source and places in it.
 //!
 //! A [`Span`] is a pair of byte offsets into one text of a [`SourceMap`]; line and column are
-//! computed only when somebody looks at them.
+//! computed only on demand.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ thread_local! {
 
 /// Writes something with places to a file: the result with the sources that the numbers of sources in
 /// the file stand for, by their positions.
-pub fn noting_sources<T>(write: impl FnOnce() -> T) -> (T, Vec<SourceId>) {
+pub fn with_source_table<T>(write: impl FnOnce() -> T) -> (T, Vec<SourceId>) {
     let former = SOURCES.take();
     let result = write();
     (result, SOURCES.replace(former))
@@ -36,7 +36,7 @@ pub fn with_sources<T>(sources: Vec<SourceId>, read: impl FnOnce() -> T) -> T {
     result
 }
 
-/// As a position: see [`noting_sources`].
+/// As a position: see [`with_source_table`].
 impl serde::Serialize for SourceId {
     fn serialize<S: serde::Serializer>(&self, target: S) -> Result<S::Ok, S::Error> {
         if *self == SourceId::NONE {
@@ -123,8 +123,7 @@ pub struct Source {
     line_starts: Arc<[u32]>,
 }
 
-/// All sources read so far. Clones share them, so that a text can be added where somebody else only
-/// reads.
+/// All sources read so far. Clones share them, so that one clone can add a text while others read.
 #[derive(Debug, Clone, Default)]
 pub struct SourceMap {
     sources: Arc<boxcar::Vec<Source>>,
@@ -169,10 +168,10 @@ impl SourceMap {
             .unwrap_or("")
     }
 
-    /// Whether the first thing behind a span in its text, blanks aside, is this character.
-    pub fn is_followed_by(&self, span: Span, wanted: char) -> bool {
+    /// Whether the first character after a span, white space aside, is this one.
+    pub fn is_followed_by(&self, span: Span, expected: char) -> bool {
         let rest = self.get(span.source).and_then(|source| source.text.get(span.end as usize..));
-        rest.is_some_and(|rest| rest.trim_start().starts_with(wanted))
+        rest.is_some_and(|rest| rest.trim_start().starts_with(expected))
     }
 
     /// `file:line`, for traces; `<built-in>` where the place is not known.

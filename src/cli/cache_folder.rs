@@ -1,9 +1,10 @@
-//! The user's folder for what can be made again, and the key that tells what this program has put
-//! there from what somebody else has.
+//! The user's folder for what can be made again, and the key that distinguishes what this program
+//! has put there from what others have.
 //!
-//! Folder and key are used only if they belong to the user and nobody else can write them, as ssh and
-//! git require it. The key lies in the home folder, not in the cache: a folder of a stranger that
-//! becomes the cache (`XDG_CACHE_HOME` below the working folder) brings no entries along that count.
+//! Folder and key are used only if they belong to the user and no other user can write them, as ssh
+//! and git require it. The key lies in the home folder, not in the cache: a folder of a stranger
+//! that becomes the cache (`XDG_CACHE_HOME` below the working folder) brings no entries along that
+//! count.
 
 use sha2::{Digest, Sha256};
 use std::fs::{self, File, OpenOptions};
@@ -56,7 +57,7 @@ pub(super) fn of(kind: &str) -> Option<PathBuf> {
     (is_private(&base) && is_private(&folder)).then_some(folder)
 }
 
-/// The same, made so that nobody else can put anything there.
+/// The same, created so that no other user can put anything there.
 ///
 /// # Errors
 /// There is no such folder, it cannot be made, or others can write it.
@@ -81,7 +82,7 @@ fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Whether a folder is no link and belongs to the user, and nobody else can write it.
+/// Whether a folder is no link and belongs to the user, and no other user can write it.
 #[cfg(unix)]
 fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir() && is_of_user(&found, 0o022))
@@ -139,7 +140,7 @@ fn key() -> io::Result<[u8; LENGTH]> {
     Ok(key)
 }
 
-/// The key, if it is a file that nobody else can read.
+/// The key, if it is a file that no other user can read.
 #[cfg(unix)]
 fn opened(path: &Path) -> io::Result<File> {
     use rustix::fs::OFlags;

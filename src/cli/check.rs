@@ -228,7 +228,7 @@ fn check_model(session: &mut Session, model: &Name) -> bool {
     false
 }
 
-/// What is missing if only values of parameters are, which whoever uses the class gives.
+/// What is missing if only values of parameters are, which users of the class give.
 fn values_left_open(errors: &[Diagnostic]) -> Option<String> {
     let is_open =
         |error: &Diagnostic| ["parameter-without-value", "value-needed"].contains(&error.code.slug);

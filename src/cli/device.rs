@@ -23,7 +23,7 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_device(path, PATIENCE, LONGEST)
 }
 
-/// A thread opens and reads, as both may wait without end; whoever waits for it in vain leaves it.
+/// A thread opens and reads, as both may wait without end; a caller that waits in vain abandons it.
 fn read_device(path: &Path, patience: Duration, longest: usize) -> io::Result<Vec<u8>> {
     let (sender, pieces) = mpsc::sync_channel(WAITING);
     let place = path.to_owned();

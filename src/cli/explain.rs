@@ -19,18 +19,18 @@ pub(super) struct ExplainArgs {
 
 /// Prints the explanation of one code, or the list of all.
 pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {
-    let Some(wanted) = &arguments.code else {
+    let Some(slug) = &arguments.code else {
         let list: String = codes::all().iter().map(|code| format!("{}\n", code.slug)).collect();
         terminal::print(&list);
         return ExitCode::SUCCESS;
     };
-    if let Some(code) = codes::all().into_iter().find(|code| code.slug == wanted) {
+    if let Some(code) = codes::all().into_iter().find(|code| code.slug == slug) {
         terminal::print(&format!("# {}\n\n{}\n", code.slug, code.explanation.trim()));
         return ExitCode::SUCCESS;
     }
     let slugs: Vec<&str> = codes::all().iter().map(|code| code.slug).collect();
-    let hint = suggest::did_you_mean(wanted, slugs)
+    let hint = suggest::did_you_mean(slug, slugs)
         .unwrap_or_else(|| "`gapi explain` lists all codes".to_owned());
-    terminal::eprint(&format!("error: there is no code `{wanted}`\nhelp: {hint}\n"));
+    terminal::eprint(&format!("error: there is no code `{slug}`\nhelp: {hint}\n"));
     ExitCode::from(2)
 }

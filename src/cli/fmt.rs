@@ -105,7 +105,7 @@ pub(super) fn fmt(arguments: &FmtArgs) -> ExitCode {
     };
     let outcomes: Vec<Outcome> =
         files.iter().map(|(path, language)| one(arguments, path, *language)).collect();
-    let count = |wanted| outcomes.iter().filter(|outcome| **outcome == wanted).count();
+    let count = |kind| outcomes.iter().filter(|outcome| **outcome == kind).count();
     let (changed, failed) = (count(Outcome::Changed), count(Outcome::Failed));
     if !arguments.diff {
         let verb = if arguments.check { "not formatted" } else { "formatted" };

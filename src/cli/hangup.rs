@@ -1,5 +1,5 @@
 //! Terminals that are closed while a command uses them: the window, the connection, the pane of a
-//! multiplexer. Their device reports a hang-up from then on, and whoever reads it reads nothing for
+//! multiplexer. Their device reports a hang-up from then on, and a reader gets empty reads for
 //! ever, as fast as the processor can.
 
 use std::io::IsTerminal as _;

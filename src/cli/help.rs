@@ -2,7 +2,7 @@
 
 use super::options::DialectName;
 use super::terminal;
-use crate::ga::operators::{self, Kind};
+use crate::ga::operators::{self, OperatorKind};
 use crate::registry::Setting;
 use crate::script::builtins;
 use clap::Args;
@@ -37,8 +37,8 @@ const LEDGERS: [(DialectName, &str, &str); 2] = [
 
 /// Prints what is asked for.
 pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
-    if let Some(wanted) = arguments.compat {
-        let all = LEDGERS.iter().filter(|(name, ..)| wanted.is_none_or(|wanted| wanted == *name));
+    if let Some(name) = arguments.compat {
+        let all = LEDGERS.iter().filter(|(known, ..)| name.is_none_or(|name| name == *known));
         all.for_each(|(_, title, ledger)| terminal::print(&table(title, ledger)));
         return ExitCode::SUCCESS;
     }
@@ -46,8 +46,8 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
         terminal::print(&builtins::reference());
         return ExitCode::SUCCESS;
     }
-    if let Some(wanted) = &arguments.operators {
-        return operators_of(wanted.as_deref());
+    if let Some(kind) = &arguments.operators {
+        return operators_of(kind.as_deref());
     }
     match &arguments.name {
         None => {
@@ -72,9 +72,9 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
 }
 
 /// The operators of one kind, or of all.
-fn operators_of(wanted: Option<&str>) -> ExitCode {
+fn operators_of(name: Option<&str>) -> ExitCode {
     let kinds = operators::KINDS.iter();
-    let chosen = kinds.filter(|kind| wanted.is_none_or(|wanted| wanted == kind.name));
+    let chosen = kinds.filter(|kind| name.is_none_or(|name| name == kind.name));
     let text: Vec<String> = chosen.map(described).collect();
     if text.is_empty() {
         let known = operators::KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
@@ -87,7 +87,7 @@ fn operators_of(wanted: Option<&str>) -> ExitCode {
 
 /// A kind of operator: its entries with their settings and sources, and the declaration of a
 /// function of the user.
-fn described(kind: &Kind) -> String {
+fn described(kind: &OperatorKind) -> String {
     let mut text = format!("{}: {}\n", kind.name, kind.summary);
     for entry in (kind.entries)() {
         let aliases = match entry.aliases {

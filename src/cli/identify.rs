@@ -39,7 +39,7 @@ A problem file:
 
 /// The examples, and the operators that the tables have.
 fn identify_help() -> String {
-    let list = |kind: &operators::Kind| {
+    let list = |kind: &operators::OperatorKind| {
         let names: Vec<&str> = (kind.entries)().iter().map(|entry| entry.name).collect();
         format!("  {:10} {}\n", kind.name, names.join(", "))
     };
@@ -162,7 +162,7 @@ fn run_options(arguments: &IdentifyArgs) -> RunOptions {
     }
 }
 
-/// Solves one problem into its folder below `results`, or into `folder` within the one that is wanted.
+/// Solves one problem into its folder below `results`, or into `folder` within the given one.
 /// The limit of time counts from `started`.
 pub(super) fn solve_one(
     arguments: &IdentifyArgs,
@@ -174,8 +174,8 @@ pub(super) fn solve_one(
     if arguments.plain {
         terminal.forbid_view();
     }
-    let wanted = arguments.out.as_ref().map(|out| out.join(folder));
-    let output = Output::of("gapi identify", problem, wanted.as_deref(), arguments.overwrite);
+    let folder = arguments.out.as_ref().map(|out| out.join(folder));
+    let output = Output::of("gapi identify", problem, folder.as_deref(), arguments.overwrite);
     let output = match output {
         Ok(output) => output,
         Err(message) => {

@@ -1,5 +1,5 @@
 //! Whether a launcher of MPI jobs (`mpirun`, `mpiexec`, `srun`) has started several processes
-//! together, told from the variables that it sets.
+//! together, recognised by the variables that it sets.
 
 use super::terminal;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
 //! Limits of time and memory: a thread that watches the process, asks the run to stop, and ends the
-//! process where nobody listens, as in the loops of loading, flattening and compiling.
+//! process where the request is not checked, as in the loops of loading, flattening and compiling.
 
 use super::live;
 use super::memory;
@@ -228,14 +228,14 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_limited_where_nobody_asked_for_it() {
+    fn memory_is_limited_by_default() {
         let watched = Watched::of(&limits(None));
         let machine = std::fs::read_to_string("/proc/meminfo").expect("Linux tells");
         let total = machine.split_whitespace().nth(1).expect("MemTotal").parse::<u64>();
         let total = total.expect("a number of kibibytes") / 1024;
         let limit = watched.limits.memory_limit.expect("a limit");
         assert!(watched.is_default && limit > 0 && u64::from(limit) <= total / 4 * 3, "{limit}");
-        // A process that has more than such a limit reports that nobody asked for it.
+        // A process that has more than such a limit reports that it was not requested.
         let reached = Watched { limits: limits(Some(1)), is_default: true };
         let message = wait(&reached, Instant::now(), &AtomicBool::new(false)).expect("reached");
         assert!(message.contains("1 MiB, three quarters of the available memory"), "{message}");

@@ -1,5 +1,5 @@
-//! One run at a time writes into an output folder: an advisory lock of the system, which a process
-//! that dies leaves behind unlocked.
+//! One run at a time writes into an output folder: an advisory lock of the system, which the system
+//! releases when a process dies.
 
 use super::disk;
 use crate::script::access::policy::{Refusal, refusal_of};
@@ -105,7 +105,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn the_second_run_is_told_who_holds_the_folder() {
+    fn the_second_run_learns_which_process_has_locked_the_folder() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Lock::of(folder.path()).expect("free");
         let refused = Lock::of(folder.path()).expect_err("locked").to_string();

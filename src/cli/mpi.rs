@@ -59,7 +59,7 @@ fn lead(link: Link, command: impl FnOnce() -> ExitCode) -> ExitCode {
     match Ranks::connect(Box::new(link), &about(1)) {
         Ok(ranks) => {
             let ranks = RANKS.get_or_init(|| ranks);
-            Wanted::here().warn_of_binding();
+            RankOptions::here().warn_of_binding();
             let code = command();
             ranks.end();
             code
@@ -76,7 +76,7 @@ fn lead(link: Link, command: impl FnOnce() -> ExitCode) -> ExitCode {
 fn follow(link: &Link) {
     let stop = Arc::new(AtomicBool::new(false));
     signals::catch_all(&stop);
-    let Wanted { threads, limits, .. } = Wanted::here();
+    let RankOptions { threads, limits, .. } = RankOptions::here();
     // The time is that of rank 0, which saves what it has found before it ends all ranks.
     let limits = Limits { time_limit: None, ..limits };
     let _in_order = InOrder;
@@ -105,21 +105,22 @@ impl Drop for InOrder {
     }
 }
 
-/// What the command line wants of a rank; it is the same for all, and rank 0 says what is wrong with it.
-struct Wanted {
+/// The options of a rank on the command line; they are the same for all, and rank 0 reports what is
+/// wrong with them.
+struct RankOptions {
     threads: usize,
     limits: Limits,
     quiet: bool,
 }
 
-impl Wanted {
-    fn here() -> Wanted {
+impl RankOptions {
+    fn here() -> RankOptions {
         let (threads, limits, quiet) = match Cli::try_parse().map(|cli| cli.command) {
             Ok(Command::Run(own)) => (own.threads, own.freedom.limits, own.quiet),
             Ok(Command::Identify(own)) => (own.threads, own.limits, own.quiet),
             _ => (None, Limits::default(), true),
         };
-        Wanted { threads: threads.map_or(1, usize::from), limits, quiet }
+        RankOptions { threads: threads.map_or(1, usize::from), limits, quiet }
     }
 
     /// Launchers bind ranks to cores, Open MPI up to two of them to one core each.

@@ -34,20 +34,20 @@ pub(super) struct Output {
 }
 
 impl Output {
-    /// The folder for the results of `command` on the file `input`: the one that is wanted, else
-    /// one of its own below `results`.
+    /// The folder for the results of `command` on the file `input`: the one that is given, else a
+    /// separate one below `results`.
     ///
     /// # Errors
     ///
-    /// The folder that is wanted holds the results of another problem, and `overwrite` was not
-    /// asked; the working directory cannot be read.
+    /// The given folder holds the results of another problem, and `overwrite` is not set; the
+    /// working directory cannot be read.
     pub(super) fn of(
         command: &str,
         input: &Path,
-        wanted: Option<&Path>,
+        given: Option<&Path>,
         overwrite: bool,
     ) -> Result<Output, String> {
-        match wanted {
+        match given {
             None => Output::below(Path::new(RESULTS), command, input),
             Some(folder) => {
                 let (folder, input) = (absolute(folder)?, absolute(input)?);
@@ -127,7 +127,7 @@ impl Output {
 
     /// Whose results the folder holds, as its `origin.json` says.
     fn holder(&self) -> Option<String> {
-        text_of(&self.folder.join(ORIGIN))
+        content_of(&self.folder.join(ORIGIN))
     }
 
     /// Whether it holds results of version 0.1.0, which did not say whose they were.
@@ -175,7 +175,7 @@ pub(super) fn latest_of(folder: &Path) -> PathBuf {
     if folder.join("result.json").exists() || !latest.exists() {
         return folder.to_owned();
     }
-    let latest = match text_of(&latest) {
+    let latest = match content_of(&latest) {
         Some(name) => folder.join(name.trim()),
         None => latest,
     };
@@ -184,7 +184,7 @@ pub(super) fn latest_of(folder: &Path) -> PathBuf {
 }
 
 /// The text of a file, no pipe and no device.
-fn text_of(path: &Path) -> Option<String> {
+fn content_of(path: &Path) -> Option<String> {
     String::from_utf8(read_named(path).ok()?).ok()
 }
 

@@ -18,7 +18,7 @@ const GRACE: Duration = Duration::from_secs(5);
 pub(super) struct Watch {
     /// The stages entered and when, seconds after the beginning.
     entered: Mutex<Vec<(Stage, Instant)>>,
-    /// Whether the work is no longer wanted.
+    /// Whether the work is cancelled.
     pub cancel: Arc<AtomicBool>,
 }
 
@@ -46,7 +46,7 @@ impl Watch {
     /// Seconds from the beginning of one stage to that of another; `None` unless both began.
     pub(super) fn seconds(&self, from: Stage, to: Stage) -> Option<f64> {
         let entered = self.entered.lock().expect("no panic under the lock");
-        let begin = |wanted| Some(entered.iter().find(|(stage, _)| *stage == wanted)?.1);
+        let begin = |sought| Some(entered.iter().find(|(stage, _)| *stage == sought)?.1);
         Some(begin(to)?.duration_since(begin(from)?).as_secs_f64())
     }
 }
@@ -88,7 +88,7 @@ fn within<T: Send + 'static>(
     let shared = watch.clone();
     let worker = move || {
         let result = with_stack(STACK - (4 << 20), || job(&shared));
-        // Nobody listens any more if it took too long.
+        // The receiver is gone if it took too long.
         let _ = sender.send(result);
     };
     if thread::Builder::new().stack_size(STACK).spawn(worker).is_err() {

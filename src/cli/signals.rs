@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 /// Sets the flag at these signals; at a second one the process ends at once.
 pub(super) fn catch(interrupt: &Arc<AtomicBool>) {
     for signal in [SIGTERM, SIGHUP] {
-        // `nohup` wants a run to go on.
+        // `nohup` keeps a run going.
         if !is_ignored(signal) {
             // Where they cannot be caught they end the process as they always did.
             let _ = flag::register_conditional_shutdown(signal, 130, Arc::clone(interrupt));

@@ -269,7 +269,7 @@ fn with_progress<T>(
                     (f64::from_bits(reached.load(Ordering::Relaxed)) - start) / (stop - start);
                 terminal.progress(&Progress {
                     label: "simulating".to_owned(),
-                    // Never all of it: what is written behind the last point takes time as well.
+                    // Never all of it: what is written after the last point takes time as well.
                     done: (share * 1000.0).clamp(0.0, 999.0) as u64,
                     total: 1000,
                     ..Progress::default()

@@ -137,8 +137,8 @@ fn read(file: &Path) -> Result<Trace, Trouble> {
 
 /// The folder of the run.
 fn output(arguments: &TeachArgs) -> Result<Output, Trouble> {
-    let (wanted, overwrite) = (arguments.out.as_deref(), arguments.overwrite);
-    Output::of("gapi teach", &arguments.input, wanted, overwrite).map_err(Trouble::Message)
+    let (folder, overwrite) = (arguments.out.as_deref(), arguments.overwrite);
+    Output::of("gapi teach", &arguments.input, folder, overwrite).map_err(Trouble::Message)
 }
 
 /// Where the report of the run may lie: that of a recorded trace is the one that is named, or the

@@ -33,11 +33,11 @@ pub(super) struct Terminal {
 impl Terminal {
     /// A terminal that follows the user's options about colours.
     pub(super) fn new(colour: Colour, quiet: bool) -> Terminal {
-        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let is_allowed = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         let colour = match colour {
             Colour::Always => true,
             Colour::Never => false,
-            Colour::Auto => wanted && std::io::stderr().is_terminal(),
+            Colour::Auto => is_allowed && std::io::stderr().is_terminal(),
         };
         let interrupt = Arc::new(AtomicBool::new(false));
         let live = Live::new(Arc::clone(&interrupt));
@@ -119,11 +119,11 @@ impl Screen for Terminal {
     }
 
     fn wants_pause(&mut self) -> bool {
-        let wants = self.live.pause_was_pressed();
-        if wants {
+        let was_pressed = self.live.pause_was_pressed();
+        if was_pressed {
             self.end_view();
         }
-        wants
+        was_pressed
     }
 
     fn ask(&mut self, prompt: &str) -> Option<String> {
@@ -245,8 +245,8 @@ pub(super) fn output_failed() -> bool {
     OUTPUT_FAILED.load(Ordering::SeqCst)
 }
 
-/// Says once that standard output cannot be written. A reader that went away (`| head`) has what it
-/// wanted.
+/// Says once that standard output cannot be written. A reader that closed the pipe (`| head`) needs
+/// no more.
 fn checked(written: std::io::Result<()>) {
     let Err(error) = written else { return };
     let is_new = error.kind() != std::io::ErrorKind::BrokenPipe
@@ -265,8 +265,8 @@ pub(super) fn eprint(text: &str) {
 /// may be names of files that a shell has found.
 pub(super) fn print_usage(error: &clap::Error) -> u8 {
     if error.use_stderr() {
-        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        let text = match wanted && std::io::stderr().is_terminal() {
+        let is_allowed = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let text = match is_allowed && std::io::stderr().is_terminal() {
             true => error.render().ansi().to_string(),
             false => error.render().to_string(),
         };

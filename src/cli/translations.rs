@@ -102,7 +102,7 @@ impl Store for Translations {
 
 /// Removes what was not used for longest until there is room for so many bytes, and what processes
 /// left that were killed.
-fn make_room(folder: &Path, wanted: u64) {
+fn make_room(folder: &Path, needed: u64) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut known: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
     for entry in entries.flatten() {
@@ -120,7 +120,7 @@ fn make_room(folder: &Path, wanted: u64) {
     known.sort();
     let mut taken: u64 = known.iter().map(|(_, length, _)| length).sum();
     for (_, length, path) in known {
-        if taken + wanted <= MOST {
+        if taken + needed <= MOST {
             break;
         }
         taken -= length;

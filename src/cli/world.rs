@@ -248,11 +248,11 @@ impl Files for SystemWorld {
     }
 
     fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
-        let wanted = self.absolute(path);
-        if !wanted.is_dir() {
+        let folder = self.absolute(path);
+        if !folder.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotFound, "no such directory"));
         }
-        self.current = wanted;
+        self.current = folder;
         Ok(())
     }
 

@@ -29,7 +29,7 @@ pub trait Model: Send + Sync {
     fn driven(&self) -> Option<(&str, &str)> {
         None
     }
-    /// How its `experiment` annotation wants it simulated.
+    /// The simulation settings of its `experiment` annotation.
     fn settings(&self) -> Settings;
     /// Whether its `experiment` annotation gives a stop time; without one it is simulated as far as
     /// the measured points reach.

@@ -20,7 +20,7 @@ pub enum Plan {
     OneByOne,
 }
 
-/// The varied parameters, and behind them that which stands for X where it is an input.
+/// The varied parameters, and after them the one that stands for X where it is an input.
 pub(crate) fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
     let driver = model.driven().map(|(_, parameter)| parameter.to_owned());
     varied.iter().cloned().chain(driver).collect()

@@ -59,7 +59,7 @@ pub struct Ending<'a> {
     pub noise: f64,
     /// What simulates.
     pub processors: Processors,
-    /// What is wanted behind the script's search.
+    /// What is requested after the script's search.
     pub probe: Probe,
     /// Whether the user interrupted the run.
     pub interrupted: bool,

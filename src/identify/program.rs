@@ -5,7 +5,7 @@ use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::{Diagnostic, Fault};
 use crate::runtime::System;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
-use crate::source::noting_sources;
+use crate::source::with_source_table;
 use rustc_hash::FxHashSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -157,8 +157,8 @@ impl Model for CompiledModel {
     }
 
     fn portable(&self) -> Result<PortableModel, String> {
-        // Messages of simulations name no places, so that the texts may stay here.
-        let (bytes, _) = noting_sources(|| self.program.to_bytes());
+        // Messages of simulations name no places, so that the source table may stay here.
+        let (bytes, _) = with_source_table(|| self.program.to_bytes());
         let Some(program) = bytes else {
             return Err("calls functions in C, or is too large".to_owned());
         };
@@ -224,7 +224,7 @@ impl Instance for CompiledInstance {
 
     fn explain(&self, error: &SimError) -> String {
         let message = self.system.program().explain(error).message.clone();
-        // The time is told apart, so that equal causes can be counted.
+        // The time is kept apart, so that equal causes can be counted.
         let when = format!("at t = {}", error.time);
         let shortened = message.replace(&format!(" ({when})"), "").replace(&format!(" {when}"), "");
         shortened.trim_end().to_owned()

@@ -41,7 +41,7 @@ pub enum Echo {
 /// What an error does to a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strictness {
-    /// The script goes on; the run ends with exit code 1 if nobody read the error.
+    /// The script goes on; the run ends with exit code 1 if the error was not read.
     #[default]
     Usual,
     /// The first error ends the run.
@@ -91,7 +91,7 @@ pub struct Options {
     pub permissions: Permissions,
     /// Whether what the simulations answer is kept on the way.
     pub journaling: Journaling,
-    /// What ends an identification behind the script's own search.
+    /// What ends an identification after the script's own search.
     pub probe: Probe,
     /// Whether an identification is reported at the end.
     pub reporting: Reporting,

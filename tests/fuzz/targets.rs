@@ -115,7 +115,7 @@ pub(crate) fn read_spreadsheet(bytes: &[u8]) {
 fn whole(file: &MatFile) {
     for matrix in file.arrays.values() {
         assert_eq!(matrix.values.len(), matrix.rows * matrix.columns);
-        matrix.text_rows();
+        matrix.row_strings();
     }
 }
 

@@ -2,7 +2,7 @@
 //! models that use them.
 
 use gapilib::Fault;
-use gapilib::internals::external::{self, Call, Kind, Object, Outside, Slot};
+use gapilib::internals::external::{self, Call, Object, Outside, Slot, SlotKind};
 use std::sync::Arc;
 
 /// An argument.
@@ -71,33 +71,33 @@ fn call_with(name: &str, args: &[Arg<'_>], outside: &mut dyn Outside) -> Result<
         slots.push(match arg {
             Number(value) => {
                 numbers.push(*value);
-                scalar(Kind::Number, first)
+                scalar(SlotKind::Number, first)
             }
             Array(dims, values) => {
                 numbers.extend(*values);
                 let dims = dims.iter().map(|n| *n as u32).collect();
-                Slot { kind: Kind::Number, first, dims }
+                Slot { kind: SlotKind::Number, first, dims }
             }
             Arg::Object(object) => {
                 numbers.push(objects.len() as f64);
                 objects.push(Object::clone(object));
-                scalar(Kind::Object, first)
+                scalar(SlotKind::Object, first)
             }
             Text(text) => {
                 texts.push((*text).into());
-                scalar(Kind::Text, texts.len() as u32 - 1)
+                scalar(SlotKind::Text, texts.len() as u32 - 1)
             }
             Arg::Out => {
                 texts.push("".into());
-                scalar(Kind::Text, texts.len() as u32 - 1)
+                scalar(SlotKind::Text, texts.len() as u32 - 1)
             }
         });
     }
     let result = entry.signature.split_once("->").map(|(_, kind)| Slot {
         kind: match kind {
-            "o" => Kind::Object,
-            "t" => Kind::Text,
-            _ => Kind::Number,
+            "o" => SlotKind::Object,
+            "t" => SlotKind::Text,
+            _ => SlotKind::Number,
         },
         first: if kind == "t" { texts.len() as u32 } else { 0 },
         dims: Box::new([]),

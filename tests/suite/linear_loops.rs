@@ -110,8 +110,8 @@ fn parameters_that_are_zero_are_not_divided_by() {
 fn what_cannot_be_set_becomes_a_number() {
     let sorted = causalize(&super::index_reduction::flat(AXIS)).unwrap();
     let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
-    assert_eq!(kind("e[2]"), gapilib::internals::lower::Kind::Constant(1.0));
-    assert_eq!(kind("r[3]"), gapilib::internals::lower::Kind::Parameter { tunable: true });
+    assert_eq!(kind("e[2]"), gapilib::internals::lower::VariableKind::Constant(1.0));
+    assert_eq!(kind("r[3]"), gapilib::internals::lower::VariableKind::Parameter { tunable: true });
 }
 
 #[test]

@@ -94,7 +94,7 @@ mod repl;
 mod report_page;
 mod results;
 mod resume;
-mod run_time_texts;
+mod run_time_strings;
 mod scalable;
 mod scale;
 mod script_fuzzing;

@@ -1,7 +1,7 @@
 //! Matrices in files: against files of other programs, an independent reader, and damage.
 
 use gapilib::Fault;
-use gapilib::internals::mat::{self, Kind, MatFile, Matrix, Storage, Version};
+use gapilib::internals::mat::{self, MatFile, Matrix, MatrixKind, Storage, Version};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ fn holds_plain_matrices(file: &MatFile) {
     assert_eq!((x.rows, x.columns, &*x.values), (5, 1, &[0.0, 0.25, 0.5, 0.75, 1.0][..]));
     assert_eq!(file.matrix("scalar").unwrap().values, [42.0]);
     let text = file.matrix("text").unwrap();
-    assert_eq!((text.kind, text.text_rows()), (Kind::Char, vec!["hello".to_owned()]));
+    assert_eq!((text.kind, text.row_strings()), (MatrixKind::Char, vec!["hello".to_owned()]));
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn reads_version_4_of_scipy_and_octave() {
     assert!(open("scipy_v4.mat").matrix("empty").unwrap().values.is_empty());
     let octave = open("octave_v4.mat");
     assert_eq!(octave.matrix("r").unwrap().values, [1.0, 2.0, 3.0, 4.0]);
-    assert_eq!(octave.matrix("names").unwrap().text_rows(), ["one", "three"]);
+    assert_eq!(octave.matrix("names").unwrap().row_strings(), ["one", "three"]);
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn reads_every_number_type_of_version_4() {
     is_a(&file, "i2", f64::trunc);
     is_a(&file, "u2", |a| a.abs().trunc());
     is_a(&file, "u1", |a| a.abs().trunc());
-    assert_eq!(file.matrix("names").unwrap().text_rows(), ["one", "three"]);
+    assert_eq!(file.matrix("names").unwrap().row_strings(), ["one", "three"]);
     assert_eq!(file.matrix("z").unwrap_err().code, mat::errors::UNREADABLE_MATRIX);
     assert_eq!(file.warnings, ["`z` is skipped: it is complex; save only its real part"]);
 }
@@ -71,7 +71,7 @@ fn reads_version_4_in_the_other_byte_order_and_by_rows() {
     is_a(&big, "i4", f64::trunc);
     is_a(&big, "i2", f64::trunc);
     is_a(&big, "u2", |a| a.abs().trunc());
-    assert_eq!(big.matrix("text").unwrap().text_rows(), ["hello"]);
+    assert_eq!(big.matrix("text").unwrap().row_strings(), ["hello"]);
     let rows = open("raw_v4_rows.mat");
     is_a(&rows, "A", |a| a);
     is_a(&rows, "f4", |a| a);
@@ -89,14 +89,14 @@ fn reads_versions_5_and_7_of_scipy() {
         ["i1", "i2", "i4", "i8"].iter().for_each(|i| is_a(&file, i, f64::trunc));
         ["u1", "u2", "u4", "u8"].iter().for_each(|u| is_a(&file, u, |a| a.abs().trunc()));
         is_a(&file, "flag", |a| f64::from(a > 0.0));
-        assert_eq!(file.matrix("flag").unwrap().kind, Kind::Logical);
-        assert_eq!(file.matrix("names").unwrap().text_rows(), ["one", "three"]);
-        assert_eq!(file.matrix("accent").unwrap().text_rows(), ["été η"]);
+        assert_eq!(file.matrix("flag").unwrap().kind, MatrixKind::Logical);
+        assert_eq!(file.matrix("names").unwrap().row_strings(), ["one", "three"]);
+        assert_eq!(file.matrix("accent").unwrap().row_strings(), ["été η"]);
         is_a(&file, "s.a", |a| a);
         assert_eq!(file.matrix("s.b.c").unwrap().values, [7.0]);
-        assert_eq!(file.matrix("s.t").unwrap().text_rows(), ["inner"]);
+        assert_eq!(file.matrix("s.t").unwrap().row_strings(), ["inner"]);
         is_a(&file, "cell{1}", |a| a);
-        assert_eq!(file.matrix("cell{2}").unwrap().text_rows(), ["x"]);
+        assert_eq!(file.matrix("cell{2}").unwrap().row_strings(), ["x"]);
         assert_eq!(file.column("many(2).a").unwrap().values, [2.0]);
         assert_eq!(file.column("many[1].a").unwrap().values, [1.0]);
         for (name, element) in [("cell", "`cell{1}`"), ("many", "`many(1)`")] {
@@ -123,7 +123,7 @@ fn reads_versions_6_and_7_of_octave() {
         is_a(&file, "flag", |a| f64::from(a > 0.0));
         is_a(&file, "i2", f64::round);
         assert_eq!(file.matrix("r").unwrap().values, [1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(file.matrix("names").unwrap().text_rows(), ["one", "three"]);
+        assert_eq!(file.matrix("names").unwrap().row_strings(), ["one", "three"]);
         is_a(&file, "s.a", |a| a);
         assert_eq!(file.matrix("s.b.c").unwrap().values, [7.0]);
         let mut skipped: Vec<&str> =
@@ -186,8 +186,8 @@ fn reads_version_7_3() {
     is_a(&file, "i2", f64::trunc);
     is_a(&file, "u8", |a| a.abs().trunc());
     is_a(&file, "flag", |a| f64::from(a > 0.0));
-    assert_eq!(file.matrix("flag").unwrap().kind, Kind::Logical);
-    assert_eq!(file.matrix("text").unwrap().text_rows(), ["hello"]);
+    assert_eq!(file.matrix("flag").unwrap().kind, MatrixKind::Logical);
+    assert_eq!(file.matrix("text").unwrap().row_strings(), ["hello"]);
     assert!(file.matrix("empty").unwrap().values.is_empty());
     assert_eq!(file.matrix("run.t").unwrap().values, [0.0, 1.0, 2.0]);
     for name in ["shuffled", "checked"] {
@@ -294,7 +294,7 @@ fn reads_text_matrices() {
     let file = mat::read(text.as_bytes()).unwrap();
     assert_eq!(file.version, Version::Text);
     assert_eq!(file.matrix("x").unwrap().row_major(), [1.0, 25.0, 3.0, 4.0, 5.0, -6.0]);
-    assert_eq!(file.matrix("s").unwrap().text_rows(), ["ab", "hello"]);
+    assert_eq!(file.matrix("s").unwrap().row_strings(), ["ab", "hello"]);
     assert_eq!(file.matrix("empty").unwrap().columns, 2);
 }
 
@@ -449,7 +449,7 @@ proptest! {
         if let Ok(file) = mat::read(&bytes) {
             for matrix in file.arrays.values() {
                 prop_assert_eq!(matrix.values.len(), matrix.rows * matrix.columns);
-                matrix.text_rows();
+                matrix.row_strings();
             }
         }
     }

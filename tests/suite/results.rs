@@ -74,7 +74,10 @@ fn mat_reads_both_layouts_and_both_precisions() {
 fn mat_has_the_layout_that_other_programs_expect() {
     let bytes = results::format("mat").unwrap().write(&example()).unwrap();
     let file = mat::read(&bytes).unwrap();
-    assert_eq!(file.matrix("Aclass").unwrap().text_rows(), ["Atrajectory", "1.1", "", "binTrans"]);
+    assert_eq!(
+        file.matrix("Aclass").unwrap().row_strings(),
+        ["Atrajectory", "1.1", "", "binTrans"]
+    );
     let names: Vec<&String> = file.arrays.keys().collect();
     assert_eq!(names, ["Aclass", "name", "description", "dataInfo", "data_1", "data_2"]);
     let info = file.matrix("dataInfo").unwrap();

@@ -1,7 +1,7 @@
 //! Diagnostics: what went wrong, where, and what to do about it.
 //!
-//! An operation that knows no place returns a [`Fault`]; whoever knows the place turns it into a
-//! [`Diagnostic`] with [`At::at`]. Nothing here prints: [`render`] makes text.
+//! An operation that knows no place returns a [`Fault`]; a caller that knows the place makes a
+//! [`Diagnostic`] of it with [`At::at`]. Nothing here prints: [`render`] makes text.
 
 mod code;
 mod excerpt;

@@ -33,7 +33,8 @@ pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> Str
     text
 }
 
-/// Colours are the only commands that reach a terminal: the texts between them are made visible.
+/// Colours are the only commands that reach a terminal: control characters in the text between them
+/// are made visible.
 struct Shown(Buffer);
 
 impl io::Write for Shown {

@@ -3,17 +3,20 @@
 /// Longer names are not compared, in bytes.
 const LONGEST: usize = 300;
 
-/// The candidate nearest to `wanted`, if it is near enough to be a slip of the fingers: at most
+/// The candidate nearest to `misspelt`, if it is close enough for a typing error: at most
 /// one edit in three letters, case not counted. For a single letter only the case may differ.
-pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = wanted.to_lowercase();
-    let length = wanted.chars().count();
+pub fn nearest<'a>(
+    misspelt: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let lower = misspelt.to_lowercase();
+    let length = misspelt.chars().count();
     let limit = (length / 3).max(1);
-    // Nobody writes such a name, and comparing two takes the product of their lengths.
+    // Names have no such length, and a comparison takes the product of the lengths.
     let is_short = |name: &str| name.len() <= LONGEST;
     candidates
         .into_iter()
-        .filter(|candidate| *candidate != wanted && is_short(candidate) && is_short(wanted))
+        .filter(|candidate| *candidate != misspelt && is_short(candidate) && is_short(misspelt))
         .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
         .filter(|(edits, _)| *edits <= limit && (*edits == 0 || limit < length))
         .min_by_key(|(edits, _)| *edits)
@@ -22,10 +25,10 @@ pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) 
 
 /// The sentence for a diagnostic: ``did you mean `Resistor`?``.
 pub fn did_you_mean<'a>(
-    wanted: &str,
+    misspelt: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<String> {
-    nearest(wanted, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
+    nearest(misspelt, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
 }
 
 /// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`

@@ -40,7 +40,7 @@ impl Matching {
 
 /// A matching with as many pairs as possible. Earlier unknowns of an equation are preferred.
 pub fn match_equations(graph: &Bipartite) -> Matching {
-    let mut search = Search {
+    let mut search = Augmentation {
         graph,
         matching: Matching {
             equation_to_unknown: vec![None; graph.n_equations()],
@@ -57,7 +57,7 @@ pub fn match_equations(graph: &Bipartite) -> Matching {
     search.matching
 }
 
-struct Search<'a> {
+struct Augmentation<'a> {
     graph: &'a Bipartite,
     matching: Matching,
     /// How many unknowns of each equation are known to be matched: they stay so.
@@ -70,7 +70,7 @@ struct Search<'a> {
     path: Vec<usize>,
 }
 
-impl Search<'_> {
+impl Augmentation<'_> {
     fn augment(&mut self, root: usize) {
         self.path.clear();
         self.enter(root);

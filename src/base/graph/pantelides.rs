@@ -38,7 +38,7 @@ pub fn differentiate_equations(
     if regular.equation_to_unknown.iter().any(Option::is_none) {
         return Err(regular);
     }
-    let mut search = Search {
+    let mut search = Reduction {
         equations: (0..graph.n_equations()).map(|e| graph.unknowns(e).to_vec()).collect(),
         eq_to_derivative: vec![None; graph.n_equations()],
         var_to_derivative: var_to_derivative.to_vec(),
@@ -76,7 +76,7 @@ fn without_derivatives(graph: &Bipartite, var_to_derivative: &[Option<usize>]) -
     Bipartite::new(graph.n_unknowns(), (0..graph.n_equations()).map(row))
 }
 
-struct Search {
+struct Reduction {
     equations: Vec<Vec<usize>>,
     eq_to_derivative: Vec<Option<usize>>,
     var_to_derivative: Vec<Option<usize>>,
@@ -86,7 +86,7 @@ struct Search {
     met_variable: Vec<bool>,
 }
 
-impl Search {
+impl Reduction {
     /// Matches the equation to a highest derivative, others being rematched if need be.
     fn augment(&mut self, root: usize) -> bool {
         self.met_equation.fill(false);

@@ -1,5 +1,5 @@
 //! HTML pages that need nothing else: one document with its own style, scripts and data, and a
-//! Content-Security-Policy that lets the browser take exactly these and ask nobody for anything.
+//! Content-Security-Policy that lets the browser load exactly these and nothing from a network.
 //!
 //! Pages are written with [maud](https://maud.lambda.xyz): templates are checked when the program is
 //! compiled, and every value is escaped unless it is marked as markup. Style and script are allowed

@@ -2,7 +2,7 @@
 
 use super::figure::{Axis, Figure, Mark, Panel, Scale, Series};
 use super::look::{FILE, Look, PAGE, SMALL, SOLID};
-use super::svg::{Anchor, Letters, Svg, Writing, raised, text_width};
+use super::svg::{Anchor, Letters, Svg, Writing, label_width, raised};
 use super::ticks::{Ticks, power_of_ten};
 
 const RIGHT: f64 = 24.0;
@@ -113,7 +113,7 @@ fn ticks_of_y(panel: &Panel) -> Ticks {
 
 fn left_margin(y_ticks: &[Ticks]) -> f64 {
     let labels = y_ticks.iter().flat_map(|ticks| &ticks.major);
-    44.0 + labels.map(|(_, label)| text_width(label, 12.0)).fold(12.0, f64::max)
+    44.0 + labels.map(|(_, label)| label_width(label, 12.0)).fold(12.0, f64::max)
 }
 
 /// The named series, in rows that fit the width.
@@ -134,7 +134,7 @@ fn legend_rows(panels: &[Panel], room: f64) -> Vec<Vec<&Series>> {
 }
 
 fn legend_width(series: &Series) -> f64 {
-    34.0 + text_width(&series.name, 12.5) + 22.0
+    34.0 + label_width(&series.name, 12.5) + 22.0
 }
 
 fn draw_legend(svg: &mut Svg, entries: &[&Series], look: &'static Look, (mut x, y): (f64, f64)) {
@@ -314,7 +314,7 @@ impl Area<'_> {
     }
 }
 
-/// The points that can be told apart: of those within half a pixel the first, the lowest, the
+/// The points that are visibly distinct: of those within half a pixel the first, the lowest, the
 /// highest and the last.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut kept = Vec::new();

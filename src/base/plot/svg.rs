@@ -202,7 +202,7 @@ pub(crate) fn raised_letter(letter: char) -> char {
 }
 
 /// About how wide text is, in pixels, in the widest of the faces asked for.
-pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn label_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
         '(' | ')' | '[' | ']' | '/' | '-' | 'r' => 0.34,

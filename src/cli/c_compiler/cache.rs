@@ -22,7 +22,7 @@ const FOLDER: &str = "external";
 /// The ending of the file with the code of an object.
 const CODE: &str = "code";
 
-/// The folder, made so that nobody else can put anything there.
+/// The folder, created so that no other user can put anything there.
 fn made_folder() -> Result<PathBuf, Fault> {
     cache_folder::made(FOLDER).map_err(|error| cannot(&error))
 }

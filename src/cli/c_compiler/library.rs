@@ -57,14 +57,16 @@ impl Loaded {
 /// What the row of pointers points to, besides the numbers of the frame.
 enum Held {
     Numbers,
-    Texts(Vec<*const c_char>),
+    Strings(Vec<*const c_char>),
     Object(*mut c_void),
 }
 
 impl Held {
     fn of(cell: &Cell) -> Held {
         match cell {
-            Cell::Texts(texts) => Held::Texts(texts.iter().map(|text| text.as_ptr()).collect()),
+            Cell::Strings(strings) => {
+                Held::Strings(strings.iter().map(|text| text.as_ptr()).collect())
+            }
             Cell::Object(address) => Held::Object(std::ptr::with_exposed_provenance_mut(*address)),
             Cell::Reals(_) | Cell::Wholes(_) | Cell::Size(_) => Held::Numbers,
         }
@@ -72,12 +74,12 @@ impl Held {
 
     fn pointer(&mut self, cell: &mut Cell) -> *mut c_void {
         match (self, cell) {
-            (Held::Texts(texts), _) => texts.as_mut_ptr().cast(),
+            (Held::Strings(strings), _) => strings.as_mut_ptr().cast(),
             (Held::Object(object), _) => std::ptr::from_mut(object).cast(),
             (Held::Numbers, Cell::Reals(numbers)) => numbers.as_mut_ptr().cast(),
             (Held::Numbers, Cell::Wholes(numbers)) => numbers.as_mut_ptr().cast(),
             (Held::Numbers, Cell::Size(size)) => std::ptr::from_mut(size).cast(),
-            (Held::Numbers, Cell::Texts(_) | Cell::Object(_)) => std::ptr::null_mut(),
+            (Held::Numbers, Cell::Strings(_) | Cell::Object(_)) => std::ptr::null_mut(),
         }
     }
 }
@@ -112,8 +114,8 @@ impl CLibrary for Loaded {
                 (Cell::Object(address), Held::Object(object)) => {
                     *address = object.expose_provenance();
                 }
-                (Cell::Texts(texts), Held::Texts(pointers)) if done == 0 => {
-                    for (text, pointer) in texts.iter_mut().zip(pointers) {
+                (Cell::Strings(strings), Held::Strings(pointers)) if done == 0 => {
+                    for (text, pointer) in strings.iter_mut().zip(pointers) {
                         missing |= pointer.is_null();
                         if pointer != text.as_ptr() && !pointer.is_null() {
                             // SAFETY: a string of the call, alive until `gapi_release`.

@@ -21,8 +21,8 @@ use std::process::{Command, Output};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::SystemTime;
 
-/// Without contraction a product and a sum are rounded as everywhere else; a function that nobody
-/// declares would be called with wrong types.
+/// Without contraction a product and a sum are rounded as everywhere else; an undeclared function
+/// would be called with wrong types.
 const FLAGS: &[&str] = &[
     "-O2",
     "-fPIC",
@@ -41,8 +41,8 @@ const LENIENT: &[&str] = &[
 /// What the compiler or the linker says then.
 const UNDECLARED: &[&str] = &["implicit declaration of function", "undefined reference"];
 
-/// What all compilers took with a warning until 2022, and code of that time is written for: functions
-/// that nobody declares, which return int, and conversions between pointers and integers.
+/// What all compilers took with a warning until 2022, and code of that time is written for:
+/// undeclared functions, which return int, and conversions between pointers and integers.
 const TOLERANT: &[&str] = &[
     "-Wno-error=implicit-function-declaration",
     "-Wno-error=int-conversion",
@@ -287,7 +287,7 @@ fn run(
     ))
 }
 
-/// What the linker is told, relative paths absolute.
+/// The options of the linker, relative paths absolute.
 fn linking(unit: &Unit) -> Vec<String> {
     let mut arguments = Vec::new();
     for directory in unit.library_directories.iter().filter(|directory| directory.is_dir()) {
@@ -307,7 +307,7 @@ fn linking(unit: &Unit) -> Vec<String> {
     }
     arguments.push("-lm".to_owned());
     if !cfg!(target_os = "macos") {
-        // What nobody defines is found now, not when it is called.
+        // Undefined functions are found now, not when they are called.
         arguments.push("-Wl,--no-undefined".to_owned());
     }
     arguments
@@ -334,7 +334,7 @@ fn linked_files(unit: &Unit) -> Vec<PathBuf> {
     found
 }
 
-/// The files of the library behind the line markers of the preprocessor.
+/// The files of the library that the line markers of the preprocessor name.
 fn included_files(preprocessed: &[u8], folder: &Path) -> Vec<PathBuf> {
     let text = String::from_utf8_lossy(preprocessed);
     let mut found = std::collections::BTreeSet::new();

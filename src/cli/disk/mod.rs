@@ -229,7 +229,7 @@ impl Disk {
         }
     }
 
-    /// Opens a file to write behind its end.
+    /// Opens a file to append to it.
     pub(super) fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         if self.is_named_device(Access::Write, path) {
             return fs::OpenOptions::new().append(true).open(path)?.write_all(bytes);
@@ -336,7 +336,7 @@ pub(super) fn create_own_folders(real: &Path) -> io::Result<()> {
     unlinked(real)?.create_folders().map(drop)
 }
 
-/// Opens a file of the program itself in an output folder, to write behind its end: no link, no file
+/// Opens a file of the program itself in an output folder, to append to it: no link, no file
 /// with further names, and nothing where a link leads that was put there since the folder was chosen.
 pub(super) fn open_own(path: &Path) -> io::Result<File> {
     match unlinked(path)?.open_to_append(false) {
@@ -379,8 +379,8 @@ pub(super) fn create_named_folders(path: &Path) -> io::Result<()> {
     Place::of(&std::path::absolute(path)?, true)?.create_folders().map(drop)
 }
 
-/// Removes the files in a folder that writing has left behind which did not come to its end: whoever
-/// has locked the folder knows that nobody else writes in it.
+/// Removes the files in a folder that interrupted writing has left: the owner of the lock knows
+/// that no other run writes there.
 pub(super) fn remove_temporary_files(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if temporary::is_temporary(&entry.file_name()) {

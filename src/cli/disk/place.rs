@@ -43,14 +43,14 @@ pub(super) struct Place {
 }
 
 /// The folders walked through, from the root.
-struct Walk {
+struct PathWalk {
     folders: Vec<OwnedFd>,
     names: Vec<OsString>,
     /// What is still to be walked.
     ahead: VecDeque<OsString>,
 }
 
-impl Walk {
+impl PathWalk {
     fn enqueue(&mut self, path: &Path) {
         for component in path.components().rev() {
             match component {
@@ -108,7 +108,7 @@ impl Place {
     /// A folder cannot be entered, links go round.
     pub(super) fn of(path: &Path, follows: bool) -> io::Result<Place> {
         let root = fs::open("/", folder_flags(), Mode::empty())?;
-        let mut walk = Walk { folders: vec![root], names: Vec::new(), ahead: VecDeque::new() };
+        let mut walk = PathWalk { folders: vec![root], names: Vec::new(), ahead: VecDeque::new() };
         walk.enqueue(path);
         let mut links = 0;
         while let Some(part) = walk.ahead.pop_front() {
@@ -301,7 +301,7 @@ impl Place {
         file.sync_data()
     }
 
-    /// The file opened for writing behind its end, made if there is none. A file with further names
+    /// The file opened for appending, created if there is none. A file with further names
     /// is not changed unless `shared`: one of them may lie elsewhere.
     pub(super) fn open_to_append(&self, shared: bool) -> io::Result<File> {
         if !self.exists() && self.missing.is_empty() {

@@ -2,7 +2,7 @@
 //! replaces its own files and no others.
 //!
 //! The record lies in the output folder. A line names a file by its number in the file system and
-//! the time of its birth, as nobody can know them before: a record that came with a download
+//! the time of its birth, which cannot be known before: a record that came with a download
 //! describes no file of this machine.
 
 use std::collections::BTreeMap;
@@ -85,7 +85,7 @@ impl Record {
 
 /// What is to be written.
 pub(super) enum Lines {
-    /// Behind what is there.
+    /// After the existing lines.
     Further(String),
     /// In place of what is there.
     All(String),

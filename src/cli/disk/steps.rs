@@ -3,8 +3,8 @@
 use std::fs::File;
 use std::io;
 
-/// Stands before every call that changes the disk. `torn` leaves what the call may leave behind when
-/// it fails half-way.
+/// Precedes every call that changes the disk. `torn` leaves what the call may leave when it fails
+/// half-way.
 #[cfg(not(test))]
 pub(super) fn step(_torn: impl FnOnce()) -> io::Result<()> {
     Ok(())

@@ -4,7 +4,7 @@ use super::*;
 use crate::script::access::policy::refusal_of;
 
 #[test]
-fn a_failed_write_leaves_nothing_behind() {
+fn a_failed_write_leaves_no_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let missing = folder.path().join("no such folder").join("file");
     assert!(write_atomically(&missing, b"x").is_err());

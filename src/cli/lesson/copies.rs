@@ -67,7 +67,7 @@ impl Copies<'_> {
         Ok(kept)
     }
 
-    /// The texts of the learner's files: the script, and the others with their names. As scripts
+    /// The contents of the learner's files: the script, and the others with their names. As scripts
     /// are read: in UTF-8 or Latin-1.
     ///
     /// # Errors
@@ -111,7 +111,7 @@ impl Copies<'_> {
         self.write(PROGRESS, &progress.text())
     }
 
-    /// Whether a link leads out of the folder, or out of the working folder if nobody has named it.
+    /// Whether a link leads out of the folder, or out of the working folder if it was not named.
     fn leads_elsewhere(&self, file: &Path) -> bool {
         let real = |path: &Path| {
             std::path::absolute(path)

@@ -61,7 +61,7 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
     let copies = Copies { folder: &arguments.folder };
     let done = match &arguments.number {
         None => list(&copies),
-        Some(wanted) => match chosen(wanted) {
+        Some(name) => match chosen(name) {
             Ok(lesson) => work_on(lesson, arguments, &copies, global),
             Err(message) => {
                 terminal::eprint(&format!("error: {message}\n"));
@@ -76,9 +76,9 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
 }
 
 /// The lesson of this number, title or file.
-fn chosen(wanted: &str) -> Result<&'static Lesson, String> {
+fn chosen(name: &str) -> Result<&'static Lesson, String> {
     let all = lessons::all();
-    if let Ok(number) = wanted.parse::<usize>() {
+    if let Ok(number) = name.parse::<usize>() {
         let found = number.checked_sub(1).and_then(|k| all.get(k));
         return found
             .ok_or_else(|| format!("there is no lesson {number}, only 1 to {}", all.len()));
@@ -86,17 +86,17 @@ fn chosen(wanted: &str) -> Result<&'static Lesson, String> {
     let names = all.iter().flat_map(|lesson| names(lesson).map(|name| (name, lesson)));
     let names: Vec<(&str, &Lesson)> = names.collect();
     let named = |name: &str| names.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
-    if let Some((_, lesson)) = named(wanted) {
+    if let Some((_, lesson)) = named(name) {
         return Ok(lesson);
     }
-    let near = suggest::nearest(wanted, names.iter().map(|(name, _)| *name)).and_then(named);
+    let near = suggest::nearest(name, names.iter().map(|(name, _)| *name)).and_then(named);
     let near = near.map_or_else(String::new, |(_, lesson)| {
         format!(" = help: did you mean {}, \"{}\"?\n", lesson.number, lesson.title())
     });
     let numbers = all.iter().map(|lesson| format!("{:>5}  {}\n", lesson.number, lesson.title()));
     let numbers = numbers.collect::<String>();
     Err(format!(
-        "`{wanted}` is not a lesson\n{near} = help: give the number of one of these:\n{}",
+        "`{name}` is not a lesson\n{near} = help: give the number of one of these:\n{}",
         numbers.trim_end()
     ))
 }

@@ -68,17 +68,24 @@ fn of_help(
     diagnostic: &Diagnostic,
     (range, help): (Range<usize>, &str),
 ) -> Option<CodeAction> {
-    let wanted = quoted(help)?;
+    let suggested = quoted(help)?;
     if help.starts_with("did you mean `") {
-        let place = meant(document, range, wanted);
-        let title = format!("Change to `{wanted}`");
-        return Some(action(client, document, diagnostic, title, (place, wanted.to_owned()), true));
+        let place = meant(document, range, suggested);
+        let title = format!("Change to `{suggested}`");
+        return Some(action(
+            client,
+            document,
+            diagnostic,
+            title,
+            (place, suggested.to_owned()),
+            true,
+        ));
     }
-    let rest = help.strip_prefix("write `")?.strip_prefix(wanted)?.strip_prefix('`')?;
-    let title = format!("Write `{wanted}`");
+    let rest = help.strip_prefix("write `")?.strip_prefix(suggested)?.strip_prefix('`')?;
+    let title = format!("Write `{suggested}`");
     if rest.starts_with(" here") {
-        let blank = if wanted.starts_with(|c: char| c.is_alphanumeric()) { " " } else { "" };
-        let written = format!("{blank}{wanted}");
+        let blank = if suggested.starts_with(|c: char| c.is_alphanumeric()) { " " } else { "" };
+        let written = format!("{blank}{suggested}");
         return Some(action(
             client,
             document,
@@ -90,19 +97,20 @@ fn of_help(
     }
     let is_replacement = rest.is_empty() || rest.starts_with(": ") || rest.starts_with(" to ");
     is_replacement
-        .then(|| action(client, document, diagnostic, title, (range, wanted.to_owned()), true))
+        .then(|| action(client, document, diagnostic, title, (range, suggested.to_owned()), true))
 }
 
 /// The part of what is marked that a suggestion replaces: all for a dotted one, else the identifier
 /// that is most like it.
-fn meant(document: &Document, range: Range<usize>, wanted: &str) -> Range<usize> {
-    if wanted.contains('.') {
+fn meant(document: &Document, range: Range<usize>, suggested: &str) -> Range<usize> {
+    if suggested.contains('.') {
         return range;
     }
     let parts = identifiers(&document.text, range.clone());
-    let texts: Vec<&str> = parts.iter().map(|part| &document.text[part.clone()]).collect();
-    let nearest = suggest::nearest(wanted, texts.iter().copied());
-    let at = nearest.and_then(|nearest| texts.iter().position(|text| *text == nearest));
+    let identifiers_there: Vec<&str> =
+        parts.iter().map(|part| &document.text[part.clone()]).collect();
+    let nearest = suggest::nearest(suggested, identifiers_there.iter().copied());
+    let at = nearest.and_then(|nearest| identifiers_there.iter().position(|text| *text == nearest));
     at.map_or(range, |at| parts[at].clone())
 }
 

@@ -1,4 +1,4 @@
-//! What the client of a session understands, and where it wants libraries to be looked for.
+//! What the client of a session understands, and where libraries are searched for its workspace.
 
 use super::uri;
 use lsp_types::{

@@ -153,7 +153,7 @@ pub fn keyword(restriction: Restriction) -> &'static str {
     }
 }
 
-/// The string behind the name of a class.
+/// The description string of a class.
 pub fn comment(definition: &ClassDefinition) -> Option<&str> {
     match &definition.specifier {
         ClassSpecifier::Long(long) => long.description.as_deref(),

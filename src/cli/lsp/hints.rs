@@ -1,4 +1,4 @@
-//! Units behind numbers: `R = 100` is shown as `R = 100 Ohm` where the unit is that of the type.
+//! Units after numbers: `R = 100` is shown as `R = 100 Ohm` where the unit is that of the type.
 
 use super::attributes;
 use super::occurrences::{Entity, Occurrence};

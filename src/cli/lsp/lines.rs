@@ -22,7 +22,7 @@ impl Lines {
         Lines { starts: std::iter::once(0).chain(starts).collect() }
     }
 
-    /// The bytes of a line without its end; those behind the text for a line that there is not.
+    /// The bytes of a line without its end; for a line that does not exist, those after the text.
     pub fn content(&self, text: &str, line: usize) -> ops::Range<usize> {
         let Some(start) = self.starts.get(line).copied() else { return text.len()..text.len() };
         let end = self.starts.get(line + 1).copied().unwrap_or(text.len());
@@ -35,7 +35,7 @@ impl Lines {
         self.starts.partition_point(|start| *start <= offset).saturating_sub(1)
     }
 
-    /// The byte of a position. Behind the end of a line it is the end, within a character its
+    /// The byte of a position. After the end of a line it is the end, within a character its
     /// beginning.
     pub fn offset(&self, text: &str, position: Position) -> usize {
         let line = self.content(text, position.line as usize);

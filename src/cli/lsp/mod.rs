@@ -2,7 +2,7 @@
 //! ([3.17](https://microsoft.github.io/language-server-protocol/)): diagnostics, completion, hover,
 //! definitions and references, renaming, outline, formatting, actions, colours and units.
 //!
-//! Text goes in and types of the protocol come out. Whoever has a connection (`cli::connection`) keeps the
+//! Text goes in and types of the protocol come out. The connection (`cli::connection`) keeps the
 //! documents and hands the newest versions to a [`Workspace`], which keeps the classes in a session: an
 //! open document stands for its file, saved or not. Text that cannot be read is read without the lines
 //! that are wrong (`recovery`), so that everything but diagnostics works while someone types. All

@@ -74,39 +74,43 @@ pub fn answer(
     method: &str,
     params: Value,
 ) -> Result<Value, Refusal> {
-    let mut asked = Asked { workspace, all: documents };
+    let mut context = RequestContext { workspace, all: documents };
     match method {
         DocumentSymbolRequest::METHOD => {
-            asked.with::<DocumentSymbolRequest>(params, Asked::outline)
+            context.with::<DocumentSymbolRequest>(params, RequestContext::outline)
         }
-        Formatting::METHOD => asked.with::<Formatting>(params, Asked::formatting),
-        HoverRequest::METHOD => asked.with::<HoverRequest>(params, Asked::hover),
-        Completion::METHOD => asked.with::<Completion>(params, Asked::completion),
-        GotoDefinition::METHOD => asked.with::<GotoDefinition>(params, Asked::definition),
-        References::METHOD => asked.with::<References>(params, Asked::references),
+        Formatting::METHOD => context.with::<Formatting>(params, RequestContext::formatting),
+        HoverRequest::METHOD => context.with::<HoverRequest>(params, RequestContext::hover),
+        Completion::METHOD => context.with::<Completion>(params, RequestContext::completion),
+        GotoDefinition::METHOD => {
+            context.with::<GotoDefinition>(params, RequestContext::definition)
+        }
+        References::METHOD => context.with::<References>(params, RequestContext::references),
         DocumentHighlightRequest::METHOD => {
-            asked.with::<DocumentHighlightRequest>(params, Asked::highlights)
+            context.with::<DocumentHighlightRequest>(params, RequestContext::highlights)
         }
         PrepareRenameRequest::METHOD => {
-            asked.with::<PrepareRenameRequest>(params, Asked::prepare_rename)
+            context.with::<PrepareRenameRequest>(params, RequestContext::prepare_rename)
         }
-        Rename::METHOD => asked.with::<Rename>(params, Asked::rename),
+        Rename::METHOD => context.with::<Rename>(params, RequestContext::rename),
         SemanticTokensFullRequest::METHOD => {
-            asked.with::<SemanticTokensFullRequest>(params, Asked::tokens)
+            context.with::<SemanticTokensFullRequest>(params, RequestContext::tokens)
         }
-        CodeActionRequest::METHOD => asked.with::<CodeActionRequest>(params, Asked::actions),
-        InlayHintRequest::METHOD => asked.with::<InlayHintRequest>(params, Asked::hints),
+        CodeActionRequest::METHOD => {
+            context.with::<CodeActionRequest>(params, RequestContext::actions)
+        }
+        InlayHintRequest::METHOD => context.with::<InlayHintRequest>(params, RequestContext::hints),
         _ => Err(Refusal::unknown(method)),
     }
 }
 
 /// What a request works with.
-struct Asked<'a> {
+struct RequestContext<'a> {
     workspace: &'a mut Workspace,
     all: &'a Documents,
 }
 
-impl Asked<'_> {
+impl RequestContext<'_> {
     /// Decodes the parameters of a request, and encodes its result.
     fn with<R: Request>(
         &mut self,
@@ -184,9 +188,9 @@ impl Asked<'_> {
         let with_declaration = params.context.include_declaration;
         let places = navigation::references(self.workspace, &found, self.all);
         let locations = places.iter().flat_map(|places| {
-            let wanted =
+            let requested =
                 places.names.iter().filter(move |one| with_declaration || !one.is_declaration);
-            wanted.map(|one| Location {
+            requested.map(|one| Location {
                 uri: places.document.uri.clone(),
                 range: places.document.range(one.range.clone()),
             })

@@ -140,13 +140,13 @@ impl Known {
         if self.is_open || self.is_known(library, function) {
             return None;
         }
-        let wanted = function.name().to_string();
+        let name = function.name().to_string();
         let own = self.names.iter().map(|name| name.as_str());
         let names = builtins::names();
         let known = own.chain(names.iter().copied()).chain(functions::names());
         Some(
-            fault!(UNKNOWN_FUNCTION, "there is no function `{wanted}`")
-                .help_if(suggest::did_you_mean(&wanted, known))
+            fault!(UNKNOWN_FUNCTION, "there is no function `{name}`")
+                .help_if(suggest::did_you_mean(&name, known))
                 .at(function.span),
         )
     }

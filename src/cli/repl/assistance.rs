@@ -181,7 +181,7 @@ impl Completer for Assistance<'_, '_> {
 
 /// Whether the end of a text lies in a string.
 fn is_in_string(before: &str) -> bool {
-    tokens(before).last().is_some_and(|token| token.is_open && token.kind == Kind::Text)
+    tokens(before).last().is_some_and(|token| token.is_open && token.kind == TokenKind::Text)
 }
 
 fn pair(text: String) -> Pair {
@@ -225,20 +225,20 @@ fn is_complete(input: &str) -> bool {
             }
             _ => {}
         }
-        if token.kind != Kind::Blank {
+        if token.kind != TokenKind::Blank {
             previous = token.text;
         }
     }
     brackets <= 0 && blocks <= 0
 }
 
-/// Whether a statement may begin behind this token; an `if` elsewhere is an expression's.
+/// Whether a statement may begin after this token; an `if` elsewhere is an expression's.
 fn starts_statement(previous: &str) -> bool {
     matches!(previous, "" | ";" | "loop" | "then" | "else" | "algorithm" | "equation")
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum TokenKind {
     Blank,
     Word,
     Number,
@@ -252,7 +252,7 @@ struct Token<'t> {
     text: &'t str,
     /// The whole piece; `text` is only its beginning where it is an open string or comment.
     whole: &'t str,
-    kind: Kind,
+    kind: TokenKind,
     is_open: bool,
 }
 
@@ -261,26 +261,28 @@ fn tokens(input: &str) -> Vec<Token<'_>> {
     let mut rest = input;
     while let Some(first) = rest.chars().next() {
         let (kind, length, closed) = match first {
-            '"' => text_length(rest),
+            '"' => string_length(rest),
             '/' if rest.starts_with("//") => {
-                (Kind::Comment, rest.find('\n').unwrap_or(rest.len()), true)
+                (TokenKind::Comment, rest.find('\n').unwrap_or(rest.len()), true)
             }
             '/' if rest.starts_with("/*") => match rest.find("*/") {
-                Some(end) => (Kind::Comment, end + 2, true),
-                None => (Kind::Comment, rest.len(), false),
+                Some(end) => (TokenKind::Comment, end + 2, true),
+                None => (TokenKind::Comment, rest.len(), false),
             },
-            c if c.is_whitespace() => (Kind::Blank, length_of(rest, char::is_whitespace), true),
+            c if c.is_whitespace() => {
+                (TokenKind::Blank, length_of(rest, char::is_whitespace), true)
+            }
             c if c.is_alphabetic() || c == '_' => {
-                (Kind::Word, length_of(rest, |c| c.is_alphanumeric() || c == '_'), true)
+                (TokenKind::Word, length_of(rest, |c| c.is_alphanumeric() || c == '_'), true)
             }
             c if c.is_ascii_digit() => {
-                (Kind::Number, length_of(rest, |c| c.is_alphanumeric() || c == '.'), true)
+                (TokenKind::Number, length_of(rest, |c| c.is_alphanumeric() || c == '.'), true)
             }
-            other => (Kind::Other, other.len_utf8(), true),
+            other => (TokenKind::Other, other.len_utf8(), true),
         };
         let whole = &rest[..length];
         let text = match (closed, kind) {
-            (false, Kind::Comment) => "/*",
+            (false, TokenKind::Comment) => "/*",
             (false, _) => "\"",
             _ => whole,
         };
@@ -294,15 +296,15 @@ fn length_of(text: &str, belongs: impl Fn(char) -> bool) -> usize {
     text.find(|c| !belongs(c)).unwrap_or(text.len())
 }
 
-fn text_length(text: &str) -> (Kind, usize, bool) {
+fn string_length(text: &str) -> (TokenKind, usize, bool) {
     let mut escaped = false;
     for (at, character) in text.char_indices().skip(1) {
         match character {
-            '"' if !escaped => return (Kind::Text, at + 1, true),
+            '"' if !escaped => return (TokenKind::Text, at + 1, true),
             _ => escaped = character == '\\' && !escaped,
         }
     }
-    (Kind::Text, text.len(), false)
+    (TokenKind::Text, text.len(), false)
 }
 
 impl Highlighter for Assistance<'_, '_> {
@@ -313,11 +315,11 @@ impl Highlighter for Assistance<'_, '_> {
         let mut painted = String::with_capacity(line.len() * 2);
         for token in tokens(line) {
             let code = match token.kind {
-                Kind::Word if KEYWORDS.contains(&token.whole) => "1;34",
-                Kind::Word if builtins::names().binary_search(&token.whole).is_ok() => "36",
-                Kind::Number => "35",
-                Kind::Text => "32",
-                Kind::Comment => "2",
+                TokenKind::Word if KEYWORDS.contains(&token.whole) => "1;34",
+                TokenKind::Word if builtins::names().binary_search(&token.whole).is_ok() => "36",
+                TokenKind::Number => "35",
+                TokenKind::Text => "32",
+                TokenKind::Comment => "2",
                 _ => "",
             };
             match code {

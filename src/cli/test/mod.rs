@@ -110,8 +110,8 @@ fn list(found: &[Found]) -> ExitCode {
     if is_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Tests the scripts, several at a time; what came of them is printed in their order, where nobody is
-/// asked about it afterwards.
+/// Tests the scripts, several at a time; their outcomes are printed in their order, where no
+/// question about them follows.
 fn tested(found: Vec<Found>, arguments: &TestArgs, global: &Global, colour: bool) -> Vec<Tested> {
     let available = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or(available, usize::from).min(found.len()).max(1);

@@ -54,7 +54,7 @@ fn is_message(line: &str, kind: &str) -> bool {
     after_place.strip_prefix(kind).is_some_and(|rest| rest.starts_with(':'))
 }
 
-/// Where a string ends whose opening quote comes before the text: behind its closing quote.
+/// Where a string ends whose opening quote comes before the text: after its closing quote.
 fn end_of_string(text: &str) -> Option<usize> {
     let mut escaped = false;
     for (at, byte) in text.bytes().enumerate() {

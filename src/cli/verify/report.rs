@@ -74,11 +74,11 @@ impl Outcome {
         matches!(self, Outcome::Agreed { .. } | Outcome::Unjudged)
     }
 
-    fn has_passed(&self, wanted: Stage) -> bool {
+    fn has_passed(&self, passed: Stage) -> bool {
         match self {
             Outcome::Failed { stage, .. } => {
                 let reached = Stage::ALL.into_iter().find(|s| s.name() == *stage);
-                reached.is_some_and(|reached| reached > wanted)
+                reached.is_some_and(|reached| reached > passed)
             }
             Outcome::BadReference { .. } => false,
             _ => true,

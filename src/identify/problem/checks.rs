@@ -81,7 +81,7 @@ pub(crate) fn residual_findings(
     let all = series(problem, statistics);
     let alpha = FAMILY / (TESTS * all.len() + pairs(problem).len() + 1) as f64;
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
-    // What a prior says against the data is told of the prior.
+    // A contradiction between a prior and the data is reported of the prior.
     let is_prior = |k: usize| problem.series[k].experiment == PRIOR;
     for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_prior(*k)) {
         let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());

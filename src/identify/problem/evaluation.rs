@@ -47,7 +47,7 @@ pub struct Evaluation {
     /// What residuals are multiplied with, where there is a sum of squares.
     scales: Option<Vec<f64>>,
     n_objectives: usize,
-    /// `None` where one thread is wanted and the system has no others (browsers).
+    /// `None` where one thread is requested and the system has no others (browsers).
     pool: Option<rayon::ThreadPool>,
     workers: Vec<Mutex<Box<dyn Simulate>>>,
     /// The simulators of other ranks.
@@ -206,8 +206,7 @@ impl Evaluation {
         Some(answered)
     }
 
-    /// The objectives of one individual, simulated whatever is remembered, the way that the method
-    /// wants them.
+    /// The objectives of one individual, simulated anew in any case, as the method requires them.
     pub(super) fn objectives_anew(
         &self,
         problem: &Problem,

@@ -1,4 +1,5 @@
-//! Findings: what must be known about a solution, one sentence each, with the numbers behind it.
+//! Findings: what must be known about a solution, one sentence each, with the numbers on which it
+//! is based.
 
 use serde::{Deserialize, Serialize};
 

@@ -298,7 +298,8 @@ fn as_many_points_as_parameters_determine_nothing() {
     assert!(solution.parameters.iter().all(|p| p.verdict.is_none() && p.deviation.is_none()));
 }
 
-/// Where k beyond its range is wanted, the report says so; at a bound of nature it does not.
+/// Where the minimum lies at k beyond its range, the report says so; at a bound of nature it does
+/// not.
 #[test]
 fn a_bound_is_contradicted_only_where_the_data_do() {
     let outputs = [(decay as Formula, Noise::new(13).white(40, 0.05), Sigma::Unknown)];

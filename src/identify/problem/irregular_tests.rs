@@ -111,7 +111,7 @@ fn a_step_has_the_interval_of_all_steps_that_fit() {
     let limit = least * (1.0 + student_quantile(0.975, freedom).powi(2) / freedom);
     let within: Vec<&(usize, f64, f64)> = all.iter().filter(|own| own.1 <= limit).collect();
     assert!(within.len() > 1, "one step alone would show nothing: {all:?}");
-    // The step lies between the last point before it and the first behind it.
+    // The step lies between the last point before it and the first after it.
     let ends = [
         points[within[0].0 - 1].0.max(ranges[2][0]),
         points[within[within.len() - 1].0].0.min(ranges[2][1]),
@@ -125,8 +125,8 @@ fn a_step_has_the_interval_of_all_steps_that_fit() {
     }
 }
 
-/// y = a e^(−kx) + c with c at least 0 where the data want less: c and its pull are told, and the
-/// intervals of the others are those with c = 0.
+/// y = a e^(−kx) + c with c at least 0 where the unconstrained minimum is less: c and its gradient
+/// are reported, and the intervals of the others are those with c = 0.
 #[test]
 fn at_an_end_that_the_data_contradict_the_others_hold_with_it() {
     let data = |x: f64| 5.0 * (-x).exp() - 0.6;
@@ -138,7 +138,7 @@ fn at_an_end_that_the_data_contradict_the_others_hold_with_it() {
     assert_eq!(solution.parameters[2].verdict, None);
     let freedom = [13.0, 14.0].map(|freedom: f64| student_quantile(0.975, freedom));
     for (own, alone) in solution.parameters.iter().zip(&without.parameters) {
-        // The one degree of freedom less is told by the residual variance.
+        // The residual variance shows the one degree of freedom less.
         let expected = alone.deviation.unwrap() * (14.0_f64 / 13.0).sqrt();
         assert!((own.deviation.unwrap() - expected).abs() < 1e-4 * expected);
         let half = |p: &super::SolvedParameter| p.interval.map(|[a, b]| 0.5 * (b - a)).unwrap();

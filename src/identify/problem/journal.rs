@@ -1,4 +1,4 @@
-//! The journal of a run: every question's answers, one record behind the other, each with its
+//! The journal of a run: the answers to every request, one record after the other, each with its
 //! length and a checksum. A run that ended in the middle of a record has lost that record alone.
 //!
 //! ```text
@@ -36,7 +36,7 @@ pub struct Journal {
     pub records: Vec<Record>,
     /// How many bytes they take; what follows is damaged or was not finished.
     pub whole: usize,
-    /// Bytes behind them.
+    /// Bytes after them.
     pub lost: usize,
 }
 

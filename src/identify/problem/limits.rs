@@ -1,5 +1,6 @@
-//! Minima at the limit of a constraint, such as `a + b <= 1` where the data want more: the gradient
-//! does not vanish there, but it points out of what is allowed, and along the limit nothing is better.
+//! Minima at the limit of a constraint, such as `a + b <= 1` where the unconstrained minimum lies
+//! beyond: the gradient does not vanish there, but it points out of what is allowed, and along the
+//! limit nothing is better.
 //!
 //! Steps of Gauss and Newton are taken in the null space of the constraints' gradients and then put
 //! back onto the limits; the test of Bates and Watts is made in the same space, and the multipliers

@@ -1,5 +1,5 @@
 //! Identification as a problem of its own: free parameters, measured series, fitness functions, a
-//! method and stop conditions. The simulation is anything that turns parameters into points, so
+//! method and stop conditions. The simulation is anything that computes points from parameters, so
 //! that a problem can be put in Rust as well as read from a file.
 //!
 //! A run keeps no clock and no file. Every question that the method asked and the answers to it are
@@ -104,7 +104,7 @@ use std::sync::atomic::AtomicBool;
 /// Relative error of simulated values where nothing is integrated.
 pub const NOISE_OF_FORMULAS: f64 = 1e-12;
 
-/// Something that turns values of the free parameters into simulated points.
+/// Something that computes simulated points from values of the estimated parameters.
 pub trait Simulate: Send {
     /// Writes the simulated value of every point of every series, one after the other.
     ///
@@ -241,7 +241,7 @@ pub struct Problem {
     pub stop: Stop,
     /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
     pub noise: f64,
-    /// What is wanted beyond the estimates.
+    /// What is requested beyond the estimates.
     pub inference: Inference,
     /// Makes a simulator; one a thread.
     pub simulator: MakeSimulator,

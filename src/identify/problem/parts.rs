@@ -3,7 +3,7 @@
 //! A study is made of independent parts: further searches with other seeds, the replicates of a
 //! bootstrap, the chains of a posterior, the profiles of the parameters, the samples of a sensitivity
 //! analysis. Shard k of n
-//! computes every n-th of them. Whoever merges the shards runs the problem again, replays the search
+//! computes every n-th of them. The merge of the shards runs the problem again, replays the search
 //! from its journal, and takes the parts that are there; so the report is that of one process.
 
 use super::{Fingerprint, Origins, first_frame, frame};
@@ -49,7 +49,7 @@ pub struct ShardFile {
     pub shard: Shard,
     /// The problem file as it was named.
     pub problem: String,
-    /// What was wanted beyond the fit, in a form that is the same where that is the same.
+    /// What was requested beyond the fit, in a form that is the same where that is the same.
     pub wanted: Vec<u8>,
     /// The journal of the search.
     pub journal: Vec<u8>,

@@ -32,7 +32,7 @@ impl Solution {
     }
 }
 
-/// The rows behind the heading, of at least so many numbers each.
+/// The rows after the heading, of at least so many numbers each.
 fn rows(name: &str, text: &str, columns: usize) -> Result<Vec<Vec<f64>>, Fault> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let mut rows = Vec::new();

@@ -4,7 +4,7 @@ use super::{Finding, FindingKind, Severity};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// The result of a search that a script has carried out.
+/// The result of a search that a script has executed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ScriptResult {
     /// The parameters of its best individual.

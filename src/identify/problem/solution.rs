@@ -185,7 +185,7 @@ pub struct SolvedParameter {
     /// Whether the interval is that of its profile, because the linear one does not hold.
     #[serde(default)]
     pub by_profile: bool,
-    /// Whether finite changes have told what its derivative does not.
+    /// Whether finite changes have shown what its derivative does not.
     #[serde(default)]
     pub in_steps: bool,
     /// What the data say about it; `None` where unknown.

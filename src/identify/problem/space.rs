@@ -5,13 +5,13 @@ use crate::ga::Gene;
 use crate::ga::errors::BAD_RANGE;
 use crate::{bail, elementary};
 
-/// A positive range wider than this ratio is searched on a logarithmic scale unless told otherwise.
+/// A positive range wider than this ratio is searched on a logarithmic scale by default.
 const DECADE: f64 = 10.0;
 
 /// A parameter to identify.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Free {
-    /// Its name; behind `@` that of the only experiment in which it holds.
+    /// Its name; after `@` that of the only experiment in which it holds.
     pub name: String,
     /// Its unit; empty where the model gives none.
     pub unit: String,

@@ -205,7 +205,7 @@ fn searched(run: &Run, stop: &str) -> Solution {
     }
 }
 
-/// The method's name, with that of the least squares behind it.
+/// The method's name, followed by that of the least squares.
 fn method(run: &Run) -> String {
     let problem = &run.problem;
     let is_polished =

@@ -57,7 +57,7 @@ pub enum Judged {
     Profile(ByProfile),
     /// As a fit without residuals: by the rank of the sensitivities.
     Exact,
-    /// Not at all, for want of this many simulations.
+    /// Not at all: this many simulations were missing.
     Budget(u64),
     /// Not at all: the user or a limit has ended the statistics.
     Stopped,

@@ -4,8 +4,8 @@
 //! message takes, and all chunks under way together keep the ranks busy while rank 0 handles one message
 //! after the other. Times are means: no chunk is more than half of a processor's share of what remains,
 //! so that the last ones are small and all processors finish at about the same time (guided
-//! self-scheduling). Where simulations take longer than messages, a chunk is one individual, none waits
-//! behind another, and a slow one delays no other.
+//! self-scheduling). Where simulations take longer than messages, a chunk is one individual, none
+//! waits for another, and a slow one delays no other.
 
 /// A chunk takes at least this many times what its message takes, which hides the next message.
 const HIDDEN: f64 = 4.0;

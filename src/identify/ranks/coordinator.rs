@@ -41,7 +41,7 @@ pub(super) struct State {
     /// One for each thread of each other rank.
     pub lanes: Vec<Lane>,
     pub traffic: Traffic,
-    /// Answers that nobody has taken yet.
+    /// Answers that have not been taken yet.
     pub arrived: Vec<Arrived>,
     /// The last message; its memory is used again.
     received: Vec<u8>,
@@ -53,7 +53,7 @@ pub(super) struct State {
 /// A thread of another rank.
 pub(super) struct Lane {
     pub rank: usize,
-    /// Chunks under way: the one that it works on, and one that waits behind it.
+    /// Chunks under way: the one that it works on, and one that waits for it.
     pub work: Vec<Sent>,
 }
 
@@ -267,7 +267,7 @@ impl Ranks {
         flag.iter().for_each(|flag| flag.store(true, Ordering::SeqCst));
     }
 
-    /// Nobody waits for the work that is under way.
+    /// The work that is under way is no longer needed.
     pub(super) fn cancel(&self, state: &State) {
         let order = encode(&Order::Cancel { ticket: state.next_ticket });
         let mut last = 0;

@@ -22,7 +22,7 @@ pub(super) enum Order {
     Prepare { number: u64, simulator: Portable },
     /// Simulate these individuals.
     Work(Work),
-    /// Nobody waits any more for work up to this ticket.
+    /// Work up to this ticket is no longer needed.
     Cancel { ticket: u64 },
     /// These simulators are not needed any more.
     Forget { number: u64 },

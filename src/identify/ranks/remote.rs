@@ -4,7 +4,7 @@ use super::simulation::{Asked, Simulation, cancelled};
 use crate::problem::{Failed, Simulate};
 use std::sync::mpsc::{Receiver, Sender};
 
-/// What a job wants to be simulated.
+/// What a job requests to be simulated.
 pub(super) struct Request {
     /// The lane that simulates it.
     pub lane: usize,

@@ -38,7 +38,7 @@ struct Task {
 ///
 /// # Panics
 ///
-/// Where a thread panics that simulates: nobody else would answer in its place.
+/// Where a thread panics that simulates: no other thread would answer in its place.
 pub fn serve(service: &Service<'_>) {
     let (tasks, waiting) = channel::<Task>();
     let (finished, reports) = channel::<Report>();

@@ -3,7 +3,7 @@
 use crate::problem::{Failed, FailureKind, Simulate};
 use serde::{Deserialize, Serialize};
 
-/// What is wanted of an individual.
+/// What is requested of an individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Asked {
     /// Its points.
@@ -23,7 +23,7 @@ pub struct Batch<'a> {
     pub parameters: usize,
     /// Points of one individual.
     pub points: usize,
-    /// What is wanted of each.
+    /// What is requested of each.
     pub asked: Asked,
     /// What the solver's tolerance is multiplied with.
     pub tolerance: f64,

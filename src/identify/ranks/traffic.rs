@@ -30,7 +30,7 @@ impl Default for Traffic {
 impl Traffic {
     /// A chunk was answered, so many seconds after its simulations alone would have been.
     pub(super) fn answered(&mut self, simulations: usize, message: f64) {
-        // What was cancelled took its time in simulations, which nobody has counted.
+        // Cancelled simulations took time as well, which is not counted.
         if simulations > 0 {
             let weight = if message > self.message { LONGER } else { NEW };
             self.message += weight * (message.max(0.0) - self.message);
@@ -39,7 +39,7 @@ impl Traffic {
         }
     }
 
-    /// A chunk was answered that had waited behind another one, so that its message cost no time.
+    /// A chunk was answered that had waited for another one, so that its message cost no time.
     pub(super) fn waited(&mut self, simulations: usize) {
         if simulations > 0 {
             self.chunks += 1;

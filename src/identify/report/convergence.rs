@@ -19,7 +19,7 @@ pub fn section(view: &View) -> Option<Section> {
         "The objective over {} generations: best so far, best of the generation, and mean",
         history.len()
     );
-    // Least squares behind a script's search are none of its generations.
+    // Least squares after a script's search are none of its generations.
     let reached =
         best.iter().copied().filter(|best| best.is_finite()).fold(f64::INFINITY, f64::min);
     let caption = html! {

@@ -3,8 +3,8 @@
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason, said};
 use super::machine_code::MachineCode;
-use super::run_time_texts::Texts;
-use crate::external::{Callable, Contents, Effect, Entry, FAIL, Kind, Objects, Slot};
+use super::run_time_strings::StringTable;
+use crate::external::{Callable, Contents, Effect, Entry, FAIL, Objects, Slot, SlotKind};
 use crate::source::Span;
 use crate::symbolic::{Inverse, RelationOperator};
 use std::sync::Arc;
@@ -63,7 +63,7 @@ pub enum Instruction {
     /// To the register `base` plus an offset.
     Store { base: Register, offset: Register, a: Register },
     /// The number of iterations of a loop over `start : step : stop`, three registers from `range` on.
-    Turns { d: Register, range: Register },
+    Iterations { d: Register, range: Register },
     /// On to another instruction.
     Jump { target: u32 },
     /// On to another instruction unless `a` holds.
@@ -85,7 +85,7 @@ pub enum Instruction {
 pub struct Code {
     /// Full name of the function.
     pub name: Arc<str>,
-    /// What it does; it ends behind the last instruction.
+    /// The instructions; execution ends after the last one.
     pub instructions: Vec<Instruction>,
     /// Number of scalars of the inputs, which stand first in the frame.
     pub(crate) n_inputs: u32,
@@ -98,11 +98,11 @@ pub struct Code {
     /// Registers with their numbers.
     pub constants: Vec<(Register, f64)>,
     /// Whether numbers of Strings are among its outputs.
-    pub(crate) gives_texts: bool,
-    /// Texts of assertions.
+    pub(crate) returns_strings: bool,
+    /// Messages of assertions.
     pub messages: Vec<Arc<str>>,
-    /// Texts that external functions take.
-    pub texts: Vec<Arc<str>>,
+    /// Strings that external functions take.
+    pub strings: Vec<Arc<str>>,
     /// External functions.
     pub(crate) externals: Vec<ExternalCall>,
     /// First instruction of every place, ascending.
@@ -129,7 +129,7 @@ impl Code {
         self.externals.iter().any(|call| call.in_modelica.is_some())
     }
 
-    /// The place behind the last instruction.
+    /// The position after the last instruction.
     pub fn end(&self) -> u32 {
         self.instructions.len() as u32
     }
@@ -196,7 +196,7 @@ pub struct Functions {
     /// The functions.
     pub codes: Vec<Code>,
     /// The Strings of the model that stand for numbers, in this order.
-    pub texts: Texts,
+    pub strings: StringTable,
     /// Whether zero is taken for variables that are used before they are assigned.
     pub(crate) takes_defaults: bool,
     /// Files that external functions read.
@@ -249,7 +249,9 @@ impl Functions {
                 let is_message = call.only_fails() || call.entry.name == "ModelicaError";
                 let text = call.arguments.first().filter(|_| is_message)?;
                 match text.kind {
-                    Kind::Text => code.texts.get(text.first as usize).map(|text| text.trim_end()),
+                    SlotKind::Text => {
+                        code.strings.get(text.first as usize).map(|text| text.trim_end())
+                    }
                     _ => Some(UNKNOWN),
                 }
             }

@@ -16,7 +16,7 @@ pub struct Elementary {
     pub id: FunctionId,
     /// How its value is computed.
     pub value: Value,
-    slopes: Vec<Slope>,
+    partials: Vec<Partial>,
 }
 
 impl std::fmt::Debug for Elementary {
@@ -26,7 +26,7 @@ impl std::fmt::Debug for Elementary {
 }
 
 /// A partial derivative: nodes in order, the last is the result.
-struct Slope {
+struct Partial {
     nodes: Vec<Node>,
     /// Where the operand of a node, an [`Expr`] of the pool it came from, stands in `nodes`.
     positions: Vec<u8>,
@@ -54,8 +54,9 @@ pub(super) mod by_number {
 static TABLE: LazyLock<FxHashMap<FunctionId, Elementary>> = LazyLock::new(|| {
     function::functions()
         .map(|(id, function)| {
-            let slopes = (0..function.arity()).map(|which| Slope::new(function, which)).collect();
-            (id, Elementary { id, value: function.value, slopes })
+            let partials =
+                (0..function.arity()).map(|which| Partial::new(function, which)).collect();
+            (id, Elementary { id, value: function.value, partials })
         })
         .collect()
 });
@@ -88,13 +89,13 @@ impl Elementary {
     }
 
     /// The partial derivative for an argument (from 0).
-    pub(super) fn slope<T: Number>(&self, which: usize, arguments: &[T]) -> T {
-        self.slopes[which].of(arguments)
+    pub(super) fn partial<T: Number>(&self, which: usize, arguments: &[T]) -> T {
+        self.partials[which].of(arguments)
     }
 }
 
-impl Slope {
-    fn new(function: &function::Function, which: usize) -> Slope {
+impl Partial {
+    fn new(function: &function::Function, which: usize) -> Partial {
         let mut pool = Pool::new();
         let arguments: Vec<Expr> =
             (0..function.arity() as u32).map(|at| pool.variable(VarId(at))).collect();
@@ -106,7 +107,7 @@ impl Slope {
             positions[expr.index()] = position;
         }
         let nodes = order.iter().map(|expr| pool.node(*expr).clone()).collect();
-        Slope { nodes, positions }
+        Partial { nodes, positions }
     }
 
     fn of<T: Number>(&self, arguments: &[T]) -> T {

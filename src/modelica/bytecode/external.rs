@@ -1,12 +1,12 @@
 //! Calls of external functions: values alone, or their differences.
 
 use super::code::{Code, ExternalCall, Functions};
-use super::failure::{Reason, SAID};
+use super::failure::{LAST_C_MESSAGE, Reason};
 use super::number::{Dual, Number};
-use super::run_time_texts::RunTimeTexts;
+use super::run_time_strings::RunTimeStrings;
 use crate::diag::Fault;
 use crate::elementary;
-use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random, Slot};
+use crate::external::{Call, Contents, Journal, Object, Outside, Random, Slot, SlotKind};
 use std::sync::Arc;
 
 /// Runs an external function on numbers with derivatives, or without.
@@ -33,7 +33,7 @@ pub(crate) struct Externals {
     /// What the last one that failed said.
     pub(super) message: String,
     /// Strings by number.
-    pub(super) texts: RunTimeTexts,
+    pub(super) strings: RunTimeStrings,
     scratch: Vec<f64>,
 }
 
@@ -100,7 +100,7 @@ impl Externals {
     /// Forgets the objects, the Strings and the hidden state.
     pub(super) fn restart(&mut self) {
         self.objects.clear();
-        self.texts.clear();
+        self.strings.clear();
         self.random = Random::default();
         self.journal.clear();
     }
@@ -113,7 +113,7 @@ impl Externals {
     /// Keeps what a function said that failed.
     fn failed(&mut self, call: &ExternalCall, fault: Fault) -> Reason {
         if call.keeps_words() {
-            SAID.set((call.entry.name, fault.message.clone()));
+            LAST_C_MESSAGE.set((call.entry.name, fault.message.clone()));
         }
         self.message = fault.message;
         Reason::External
@@ -128,47 +128,47 @@ impl RunExternal for f64 {
         r: &mut [f64],
         externals: &mut Externals,
     ) -> Result<(), Reason> {
-        match call.takes_numbers_of_texts() {
-            false => run(functions, call, r, &code.texts, &mut Vec::new(), externals),
-            true => run_with_texts(functions, code, call, r, externals),
+        match call.takes_string_numbers() {
+            false => run(functions, call, r, &code.strings, &mut Vec::new(), externals),
+            true => run_with_strings(functions, code, call, r, externals),
         }
     }
 }
 
-/// Runs a function of which some Strings stand for numbers: it finds them behind those of the code, and
-/// what it writes gets numbers.
-fn run_with_texts(
+/// Runs a function of which some Strings stand for numbers: these follow those of the code, and the
+/// Strings that it writes get numbers.
+fn run_with_strings(
     functions: &Functions,
     code: &Code,
     call: &ExternalCall,
     r: &mut [f64],
     externals: &mut Externals,
 ) -> Result<(), Reason> {
-    let mut strings = code.texts.clone();
+    let mut strings = code.strings.clone();
     let mut registers = Vec::new();
-    let mut with_texts = call.clone();
+    let mut with_strings = call.clone();
     let is_written = |at: usize| call.entry.signature.chars().nth(at) == Some('T');
-    let arguments = with_texts.arguments.iter_mut().enumerate();
+    let arguments = with_strings.arguments.iter_mut().enumerate();
     let slots = arguments.map(|(at, slot)| (is_written(at), slot));
-    for (is_written, slot) in slots.chain(with_texts.result.iter_mut().map(|slot| (true, slot))) {
-        if slot.kind != Kind::Numbered {
+    for (is_written, slot) in slots.chain(with_strings.result.iter_mut().map(|slot| (true, slot))) {
+        if slot.kind != SlotKind::Numbered {
             continue;
         }
-        let text = externals.texts.text(&functions.texts, r[slot.first as usize]);
+        let text = externals.strings.text(&functions.strings, r[slot.first as usize]);
         let text = text.or_else(|| is_written.then(|| "".into())).ok_or_else(|| {
             externals.message = format!("`{}`: a String has no value", call.entry.name);
             Reason::External
         })?;
         registers.push((strings.len() as u32, slot.first));
-        *slot = Slot { kind: Kind::Text, first: strings.len() as u32, dims: Box::new([]) };
+        *slot = Slot { kind: SlotKind::Text, first: strings.len() as u32, dims: Box::new([]) };
         strings.push(text);
     }
     let mut written = Vec::new();
-    run(functions, &with_texts, r, &strings, &mut written, externals)?;
+    run(functions, &with_strings, r, &strings, &mut written, externals)?;
     for (position, text) in written {
         let register = registers.iter().find(|(own, _)| *own == position);
         if let Some((_, register)) = register {
-            let number = externals.texts.number(&functions.texts, text);
+            let number = externals.strings.number(&functions.strings, text);
             r[*register as usize] = number.map_err(|fault| externals.failed(call, fault))?;
         }
     }
@@ -234,17 +234,17 @@ impl RunExternal for Dual<f64> {
                 .map(|()| call.written().map(|register| scratch[register]).collect::<Vec<_>>())
         };
         let values = at(0.0)?;
-        let slopes = match speed {
+        let derivatives = match speed {
             _ if call.entry.in_steps => vec![0.0; values.len()],
             0.0 => vec![0.0; values.len()],
             _ => {
                 let step = elementary::cbrt(f64::EPSILON) * size.max(1e-3) / speed;
-                let (ahead, behind) = (at(step)?, at(-step)?);
-                ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect()
+                let (plus, minus) = (at(step)?, at(-step)?);
+                plus.iter().zip(&minus).map(|(a, b)| (a - b) / (2.0 * step)).collect()
             }
         };
         externals.scratch = scratch;
-        for ((register, v), d) in call.written().zip(values).zip(slopes) {
+        for ((register, v), d) in call.written().zip(values).zip(derivatives) {
             r[register] = Dual { v, d };
         }
         Ok(())
@@ -275,8 +275,8 @@ impl RunExternal for Dual<Dual<f64>> {
 
 impl ExternalCall {
     /// Whether the numbers of Strings are among its arguments or its result.
-    fn takes_numbers_of_texts(&self) -> bool {
-        self.arguments.iter().chain(&self.result).any(|slot| slot.kind == Kind::Numbered)
+    fn takes_string_numbers(&self) -> bool {
+        self.arguments.iter().chain(&self.result).any(|slot| slot.kind == SlotKind::Numbered)
     }
 
     /// The registers that the function may write to: what it only reads keeps its derivatives.
@@ -286,7 +286,7 @@ impl ExternalCall {
             move |_: &&Slot| letters.next().is_some_and(|letter| letter.is_uppercase());
         let slots = self.arguments.iter().filter(is_written).chain(&self.result);
         slots
-            .filter(|slot| slot.kind != Kind::Text)
+            .filter(|slot| slot.kind != SlotKind::Text)
             .flat_map(|slot| slot.first as usize..slot.first as usize + slot.len())
     }
 
@@ -294,7 +294,7 @@ impl ExternalCall {
     fn registers(&self) -> impl Iterator<Item = usize> {
         let slots = self.arguments.iter().chain(&self.result);
         slots
-            .filter(|slot| slot.kind != Kind::Text)
+            .filter(|slot| slot.kind != SlotKind::Text)
             .flat_map(|slot| slot.first as usize..slot.first as usize + slot.len())
     }
 }

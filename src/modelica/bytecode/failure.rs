@@ -5,12 +5,12 @@ use std::cell::RefCell;
 thread_local! {
     /// The function in C that failed last in this thread, and what it said: what it says depends on
     /// values that are gone when the failure is explained.
-    pub(super) static SAID: RefCell<(&'static str, String)> = const { RefCell::new(("", String::new())) };
+    pub(super) static LAST_C_MESSAGE: RefCell<(&'static str, String)> = const { RefCell::new(("", String::new())) };
 }
 
 /// What the function in C of this name said when it failed last in this thread.
 pub(super) fn said(name: &str) -> Option<String> {
-    SAID.with_borrow(|(known, message)| (*known == name).then(|| message.clone()))
+    LAST_C_MESSAGE.with_borrow(|(known, message)| (*known == name).then(|| message.clone()))
 }
 
 /// Why and where a function failed.

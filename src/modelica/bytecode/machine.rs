@@ -6,7 +6,7 @@ use super::failure::{Failure, Reason};
 use super::machine_code::Next;
 use super::memo::{Kept, Memos, worth_keeping};
 use super::number::{Dual, Number, Stacks};
-use super::range::turns;
+use super::range::iterations;
 use super::translation::translated;
 use crate::budget::instruction_limit;
 use crate::external::Journal;
@@ -24,7 +24,7 @@ pub struct Machine {
     stacks: Stacks,
     /// Callers, innermost last.
     callers: Vec<Caller>,
-    slopes: Vec<f64>,
+    derivatives: Vec<f64>,
     externals: Externals,
     budget: u64,
     /// The last calls between functions, where these are always the same.
@@ -83,7 +83,7 @@ impl Machine {
 
     /// A text of the program or of the simulation, by its number.
     pub fn text(&self, functions: &Functions, number: f64) -> Option<Arc<str>> {
-        self.externals.texts.text(&functions.texts, number)
+        self.externals.strings.text(&functions.strings, number)
     }
 
     /// Functions that were called, and where zero was taken for variables that nothing was assigned to
@@ -145,13 +145,13 @@ impl Machine {
     ) -> Result<&[f64], Failure> {
         let code = &functions.codes[function as usize];
         let outputs = code.outputs as usize..(code.outputs + code.n_outputs) as usize;
-        self.slopes.clear();
+        self.derivatives.clear();
         match *inputs {
             [x] => {
                 let seed = |(at, v): (usize, f64)| Dual { v, d: unit(at, x) };
                 self.prepare(functions, function, arguments.enumerate().map(seed));
                 self.run::<Dual<f64>>(functions, function)?;
-                self.slopes.extend(self.stacks.first[outputs].iter().map(|output| output.d));
+                self.derivatives.extend(self.stacks.first[outputs].iter().map(|output| output.d));
             }
             [x, y] => {
                 let seed = |(at, v): (usize, f64)| Dual {
@@ -160,12 +160,13 @@ impl Machine {
                 };
                 self.prepare(functions, function, arguments.enumerate().map(seed));
                 self.run::<Dual<Dual<f64>>>(functions, function)?;
-                self.slopes.extend(self.stacks.second[outputs].iter().map(|output| output.d.d));
+                self.derivatives
+                    .extend(self.stacks.second[outputs].iter().map(|output| output.d.d));
             }
             _ => return Err(Failure { function, at: 0, reason: Reason::Derivative }),
         }
-        match self.slopes.iter().all(|slope| slope.is_finite()) {
-            true => Ok(&self.slopes),
+        match self.derivatives.iter().all(|derivative| derivative.is_finite()) {
+            true => Ok(&self.derivatives),
             false => Err(Failure { function, at: 0, reason: Reason::Derivative }),
         }
     }
@@ -194,11 +195,11 @@ impl Machine {
         functions: &Functions,
         function: u32,
     ) -> Result<(), Failure> {
-        let made = self.externals.texts.len();
+        let made = self.externals.strings.len();
         let result = self.run_with_defaults::<T>(functions, function);
-        if !functions.codes[function as usize].gives_texts {
-            // Nobody else has the numbers of the Strings that it made.
-            self.externals.texts.truncate(made);
+        if !functions.codes[function as usize].returns_strings {
+            // The numbers of the Strings that it made are not used anywhere else.
+            self.externals.strings.truncate(made);
         }
         result
     }
@@ -299,14 +300,14 @@ impl Machine {
                         (caller.function, caller.at as usize, caller.base as usize);
                     code = &functions.codes[function as usize];
                 }
-                Ok(Some(Wanted::External(external))) => {
+                Ok(Some(MachineRequest::External(external))) => {
                     let external = &code.externals[external as usize];
                     let here = |reason| Failure { function, at: at as u32 - 1, reason };
                     let frame = &mut stack[base..];
                     T::run_external(functions, code, external, frame, &mut self.externals)
                         .map_err(here)?;
                 }
-                Ok(Some(Wanted::Call(call))) => {
+                Ok(Some(MachineRequest::Call(call))) => {
                     let callee = &functions.codes[call.function as usize];
                     let next = base + code.frame as usize;
                     let here = |reason| Failure { function, at: at as u32 - 1, reason };
@@ -348,12 +349,12 @@ impl Machine {
                     code = callee;
                     enter(code, stack, base);
                 }
-                Ok(Some(Wanted::Warning)) => {
+                Ok(Some(MachineRequest::Warning)) => {
                     let reason = Reason::Assertion;
                     self.note_warning(Failure { function, at: at as u32 - 1, reason });
                 }
                 // No function pauses before its machine code runs.
-                Ok(Some(Wanted::Pause)) => {}
+                Ok(Some(MachineRequest::Pause)) => {}
                 Err(reason) => {
                     return Err(Failure { function, at: at as u32 - 1, reason });
                 }
@@ -415,9 +416,9 @@ impl Machine {
     }
 }
 
-/// What a function wants its machine to do.
+/// What a function requests of its machine.
 #[derive(Debug, PartialEq)]
-pub(super) enum Wanted {
+pub(super) enum MachineRequest {
     Call(Call),
     External(u32),
     /// To take the warning of the instruction before.
@@ -426,7 +427,7 @@ pub(super) enum Wanted {
     Pause,
 }
 
-/// A call that a function wants.
+/// A call that a function requests.
 #[derive(Debug, PartialEq)]
 pub(super) struct Call {
     function: u32,
@@ -449,7 +450,7 @@ trait Differentiate: RunExternal + Kept {
     ) -> Result<bool, Failure>;
 
     /// What a derivative function gives for arguments and their derivatives.
-    fn slopes(
+    fn derivatives(
         machine: &mut Machine,
         functions: &Functions,
         derivative: &Derivative,
@@ -494,10 +495,10 @@ where
         let values: Vec<T> = given.iter().map(|x| x.v).collect();
         let tangents: Vec<T> =
             derivative.tangents.iter().map(|input| given[*input as usize].d).collect();
-        let slopes = T::slopes(machine, functions, derivative, &values, &tangents)?;
+        let derivatives = T::derivatives(machine, functions, derivative, &values, &tangents)?;
         let values = machine.nested(functions, function, &values)?;
-        for (at, (v, slope)) in values.into_iter().zip(&derivative.outputs).enumerate() {
-            let d = slope.map_or(T::constant(0.0), |slope| slopes[slope as usize]);
+        for (at, (v, output)) in values.into_iter().zip(&derivative.outputs).enumerate() {
+            let d = output.map_or(T::constant(0.0), |output| derivatives[output as usize]);
             stack[results + at] = Dual { v, d };
         }
         Ok(true)
@@ -506,7 +507,7 @@ where
     /// The second derivative function gives f''[a, a] + f'·e; the derivative of f'·a in the
     /// direction (b, c) is f''[a, b] + f'·c, a quarter of its values at a + b, 2c less those at
     /// a − b, −2c.
-    fn slopes(
+    fn derivatives(
         machine: &mut Machine,
         functions: &Functions,
         derivative: &Derivative,
@@ -527,10 +528,10 @@ where
             let bent: Vec<T> = tangents.iter().map(|a| two.mul(a.d)).collect();
             machine.nested(functions, second, &[at.as_slice(), &moved, &bent].concat())
         };
-        let (ahead, behind) = (beside(1.0)?, beside(-1.0)?);
-        let slopes = T::slopes(machine, functions, derivative, &at, &along)?;
+        let (plus, minus) = (beside(1.0)?, beside(-1.0)?);
+        let derivatives = T::derivatives(machine, functions, derivative, &at, &along)?;
         let quarter = T::constant(0.25);
-        let parts = slopes.into_iter().zip(ahead.into_iter().zip(behind));
+        let parts = derivatives.into_iter().zip(plus.into_iter().zip(minus));
         Ok(parts.map(|(v, (a, b))| Dual { v, d: quarter.mul(a.sub(b)) }).collect())
     }
 }
@@ -551,15 +552,15 @@ fn enter<T: Number>(code: &Code, stack: &mut [T], base: usize) {
     }
 }
 
-/// Runs one frame up to the end or to a call, by machine code as far as there is any; `at` is behind the
-/// last instruction run.
+/// Runs one frame up to the end or to a call, by machine code as far as there is any; `at` is the
+/// position after the last instruction run.
 fn advance<T: Number>(
     (functions, code): (&Functions, &Code),
     at: &mut usize,
     r: &mut [T],
     unassigned: f64,
     budget: &mut u64,
-) -> Result<Option<Wanted>, Reason> {
+) -> Result<Option<MachineRequest>, Reason> {
     let Some(machine_code) = code.machine_code.get(T::PARTS - 1) else {
         return execute(code, at, r, unassigned, budget, 0);
     };
@@ -572,16 +573,16 @@ fn advance<T: Number>(
         };
         let (first, before) = (*at, *budget);
         let pause = budget.saturating_sub(instructions);
-        let wanted = execute(code, at, r, unassigned, budget, pause);
+        let request = execute(code, at, r, unassigned, budget, pause);
         machine_code.count(before - *budget + at.saturating_sub(first) as u64);
-        if !matches!(wanted, Ok(Some(Wanted::Pause))) {
-            return wanted;
+        if !matches!(request, Ok(Some(MachineRequest::Pause))) {
+            return request;
         }
     }
 }
 
 /// Interprets instructions of one frame up to the end or to a call, or to the head of a loop when the
-/// budget is not more than `pause`; `at` is behind the last one run.
+/// budget is not more than `pause`; `at` is the position after the last one run.
 pub(super) fn execute<T: Number>(
     code: &Code,
     at: &mut usize,
@@ -589,7 +590,7 @@ pub(super) fn execute<T: Number>(
     unassigned: f64,
     budget: &mut u64,
     pause: u64,
-) -> Result<Option<Wanted>, Reason> {
+) -> Result<Option<MachineRequest>, Reason> {
     let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
     while let Some(instruction) = code.instructions.get(*at) {
         *at += 1;
@@ -649,15 +650,15 @@ pub(super) fn execute<T: Number>(
                 let value = r[a as usize];
                 *r.get_mut(position).ok_or(Reason::Subscript)? = value;
             }
-            Instruction::Turns { d, range } => {
+            Instruction::Iterations { d, range } => {
                 let of = |at: u32| r[(range + at) as usize].value();
-                r[d as usize] = T::constant(turns(of(0), of(1), of(2))?);
+                r[d as usize] = T::constant(iterations(of(0), of(1), of(2))?);
             }
             Instruction::Jump { target } => {
                 let from = std::mem::replace(at, target as usize);
                 spend(budget, from, *at).inspect_err(|_| *at = from)?;
                 if *at < from && *budget < pause {
-                    return Ok(Some(Wanted::Pause));
+                    return Ok(Some(MachineRequest::Pause));
                 }
             }
             Instruction::JumpUnless { a, target } => {
@@ -668,10 +669,10 @@ pub(super) fn execute<T: Number>(
             }
             Instruction::Call { function, d, a } => {
                 spend(budget, *at, 0)?;
-                return Ok(Some(Wanted::Call(Call { function, arguments: a, results: d })));
+                return Ok(Some(MachineRequest::Call(Call { function, arguments: a, results: d })));
             }
             Instruction::External { external } => {
-                return Ok(Some(Wanted::External(external)));
+                return Ok(Some(MachineRequest::External(external)));
             }
             Instruction::Check { a, n } => {
                 if r[a as usize..(a + n) as usize].iter().any(|value| value.value().is_nan()) {
@@ -685,7 +686,7 @@ pub(super) fn execute<T: Number>(
             }
             Instruction::Warn { a, .. } => {
                 if !decided(r[a as usize])? {
-                    return Ok(Some(Wanted::Warning));
+                    return Ok(Some(MachineRequest::Warning));
                 }
             }
         }
@@ -732,13 +733,13 @@ fn finite<T: Number>(result: T) -> Result<T, Reason> {
 mod tests {
     use super::super::code::ExternalCall;
     use super::*;
-    use crate::external::{COMPOSE, Kind, Slot};
+    use crate::external::{COMPOSE, Slot, SlotKind};
 
     /// `y = x*x`, after `String(x)` was made.
-    fn making_a_string(gives_texts: bool) -> Functions {
+    fn making_a_string(returns_strings: bool) -> Functions {
         let slot = |kind, first, dims: &[u32]| Slot { kind, first, dims: dims.into() };
-        let arguments = vec![slot(Kind::Number, 0, &[5])];
-        let call = ExternalCall::new(&COMPOSE, arguments, Some(slot(Kind::Numbered, 5, &[])));
+        let arguments = vec![slot(SlotKind::Number, 0, &[5])];
+        let call = ExternalCall::new(&COMPOSE, arguments, Some(slot(SlotKind::Numbered, 5, &[])));
         let instructions =
             vec![Instruction::External { external: 0 }, Instruction::Mul { d: 6, a: 0, b: 0 }];
         let code = Code {
@@ -749,22 +750,22 @@ mod tests {
             constants: vec![(1, 0.0), (2, 6.0), (3, 0.0), (4, 1.0), (5, f64::NAN)],
             instructions,
             externals: vec![call],
-            gives_texts,
+            returns_strings,
             ..Code::default()
         };
         Functions { codes: vec![code], ..Functions::default() }
     }
 
     #[test]
-    fn values_and_derivatives_leave_no_strings_behind() {
+    fn values_and_derivatives_leave_no_strings() {
         let functions = making_a_string(false);
         let mut machine = Machine::default();
         assert_eq!(machine.call(&functions, 0, [3.0].into_iter()), Ok(&[9.0][..]));
-        assert_eq!(machine.externals.texts.len(), 0);
+        assert_eq!(machine.externals.strings.len(), 0);
         assert_eq!(machine.partial(&functions, 0, &[0], [3.0].into_iter()), Ok(&[6.0][..]));
-        assert_eq!(machine.externals.texts.len(), 0);
+        assert_eq!(machine.externals.strings.len(), 0);
         let functions = making_a_string(true);
         machine.call(&functions, 0, [3.0].into_iter()).expect("a value");
-        assert_eq!(machine.externals.texts.len(), 1);
+        assert_eq!(machine.externals.strings.len(), 1);
     }
 }

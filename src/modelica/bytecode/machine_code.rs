@@ -119,8 +119,8 @@ impl Translated {
         assert!(self.frame <= frame.len(), "the frame has the registers of the function");
         assert_eq!(self.parts, T::PARTS, "the numbers are those it was translated for");
         let frame = frame.as_mut_ptr().cast();
-        // SAFETY: the frame is as large as the code takes it to be, of numbers whose parts lie one
-        // behind the other.
+        // SAFETY: the frame is as large as the code takes it to be, of numbers whose parts are
+        // contiguous.
         let left = unsafe { (self.entry)(frame, unassigned, budget, at as u64) };
         left as usize
     }

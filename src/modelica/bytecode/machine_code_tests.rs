@@ -3,7 +3,7 @@
 use super::super::code::{Code, Functions, Instruction};
 use super::super::elementary::Elementary;
 use super::super::failure::Reason;
-use super::super::machine::{Machine, Wanted, execute};
+use super::super::machine::{Machine, MachineRequest, execute};
 use super::super::number::Dual;
 use super::super::translation::translated;
 use super::*;
@@ -49,7 +49,7 @@ fn instruction((kind, [a, b, c, e]): Draw, n: usize) -> Instruction {
         20 | 21 => Instruction::JumpUnless { a, target },
         22 => Instruction::Check { a, n: u32::from(e) % 16 },
         _ => match e % 5 {
-            0 => Instruction::Turns { d, range: a },
+            0 => Instruction::Iterations { d, range: a },
             1 => Instruction::Call { function: 0, d: 8, a: 8 },
             2 => Instruction::Warn { a, message: 0 },
             3 => Instruction::Unassign { d, n: 1 + u32::from(e) % 16 },
@@ -74,7 +74,7 @@ fn function(draws: &[Draw]) -> Functions {
 
 /// What a frame comes to: the event, the place, the budget and all parts of its numbers, without what
 /// distinguishes one NaN from another.
-type Outcome = (Result<Option<Wanted>, Reason>, usize, u64, Vec<Option<u64>>);
+type Outcome = (Result<Option<MachineRequest>, Reason>, usize, u64, Vec<Option<u64>>);
 
 fn outcome<T: Number + std::fmt::Debug>(
     translated: Option<&Translated>,
@@ -86,10 +86,10 @@ fn outcome<T: Number + std::fmt::Debug>(
     if let Some(translated) = translated {
         at = translated.call(at, &mut frame, f64::NAN, &mut budget);
     }
-    let wanted = execute(code, &mut at, &mut frame, f64::NAN, &mut budget, 0);
+    let request = execute(code, &mut at, &mut frame, f64::NAN, &mut budget, 0);
     let parts = frame.iter().flat_map(parts_of);
     let bits = parts.map(|part| (!part.is_nan()).then_some(part.to_bits())).collect();
-    (wanted, at, budget, bits)
+    (request, at, budget, bits)
 }
 
 proptest! {
@@ -102,7 +102,7 @@ proptest! {
             prop_oneof![Just(0.0), Just(1.0), Just(2.0), Just(3.0), Just(f64::NAN), -5.0f64..9.0],
             FRAME as usize,
         ),
-        slopes in prop::collection::vec(-2.0f64..2.0, FRAME as usize),
+        tangents in prop::collection::vec(-2.0f64..2.0, FRAME as usize),
     ) {
         let functions = function(&draws);
         let code = &functions.codes[0];
@@ -114,7 +114,7 @@ proptest! {
         );
         let on_duals = translated::<Dual<f64>>(&functions, code).expect("all can be translated");
         let duals: Vec<Dual<f64>> =
-            values.iter().zip(&slopes).map(|(v, d)| Dual { v: *v, d: *d }).collect();
+            values.iter().zip(&tangents).map(|(v, d)| Dual { v: *v, d: *d }).collect();
         let both = |x: &Dual<f64>| vec![x.v, x.d];
         prop_assert_eq!(
             outcome(Some(&on_duals), code, &duals, both),
@@ -158,7 +158,7 @@ fn a_loop() -> Functions {
 
 /// y and dy/dx of [`a_loop`], with y' = y/2 + i from x = 1.
 fn expected(x: f64, n: u32) -> (f64, f64) {
-    let step = |(y, slope), i| (y * 0.5 + f64::from(i) * x, slope * 0.5 + f64::from(i));
+    let step = |(y, tangent), i| (y * 0.5 + f64::from(i) * x, tangent * 0.5 + f64::from(i));
     (1..=n).fold((0.0, 0.0), step)
 }
 
@@ -168,9 +168,9 @@ fn a_function_becomes_machine_code_while_it_runs() {
     let mut machine = Machine::default();
     for n in [3, 10, 300_000, 20] {
         let arguments = [0.75, f64::from(n)];
-        let (y, slope) = expected(0.75, n);
+        let (y, tangent) = expected(0.75, n);
         assert_eq!(machine.call(&functions, 0, arguments.into_iter()), Ok(&[y][..]));
-        assert_eq!(machine.partial(&functions, 0, &[0], arguments.into_iter()), Ok(&[slope][..]));
+        assert_eq!(machine.partial(&functions, 0, &[0], arguments.into_iter()), Ok(&[tangent][..]));
         let is_translated = |code: &Code| {
             [0, 1].map(|parts| matches!(code.machine_code[parts].translated.get(), Some(Some(_))))
         };

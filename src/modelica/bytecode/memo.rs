@@ -165,10 +165,12 @@ mod tests {
         let functions = functions(false);
         let mut machine = Machine::of_fixed_functions();
         call(&mut machine, &functions, 1.0, 1.0);
-        let slope = |machine: &mut Machine, input| {
-            machine.partial(&functions, 1, &[input], [1.0, 1.0].into_iter()).expect("a slope")[0]
+        let partial = |machine: &mut Machine, input| {
+            machine
+                .partial(&functions, 1, &[input], [1.0, 1.0].into_iter())
+                .expect("a partial derivative")[0]
         };
-        assert_eq!((slope(&mut machine, 0), slope(&mut machine, 1)), (65.0, 65.0));
+        assert_eq!((partial(&mut machine, 0), partial(&mut machine, 1)), (65.0, 65.0));
     }
 
     #[test]

@@ -12,7 +12,8 @@
 //! stack   frame of the caller | frame of the callee | …
 //! ```
 //!
-//! A register that nothing was assigned to holds NaN; whoever decides by it, or returns it, fails.
+//! A register that nothing was assigned to holds NaN; a decision by it fails, and so does returning
+//! it.
 
 mod code;
 mod elementary;
@@ -23,7 +24,7 @@ mod machine_code;
 mod memo;
 mod number;
 mod range;
-mod run_time_texts;
+mod run_time_strings;
 #[cfg(feature = "jit")]
 mod translation;
 #[cfg(not(feature = "jit"))]
@@ -38,4 +39,4 @@ pub use elementary::Elementary;
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
 pub use number::{Dual, Number};
-pub use run_time_texts::Texts;
+pub use run_time_strings::StringTable;

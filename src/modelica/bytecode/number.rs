@@ -5,10 +5,10 @@ use crate::elementary;
 
 /// A number with its derivatives, or without.
 pub trait Number: Copy {
-    /// How many floating-point numbers it consists of, which lie one behind the other.
+    /// How many floating-point numbers it consists of, which are contiguous.
     const PARTS: usize;
 
-    /// Without a slope.
+    /// Without a derivative.
     fn constant(value: f64) -> Self;
     /// The number alone.
     fn value(self) -> f64;
@@ -114,7 +114,8 @@ impl<T: Number> Dual<T>
 where
     Dual<T>: Number,
 {
-    /// With the slope that a chain of one factor gives; a slope of zero hides an infinite factor.
+    /// With the derivative of the chain rule with one factor; a derivative of zero hides an
+    /// infinite factor.
     fn chained(v: T, factor: impl FnOnce() -> T, inner: T) -> Dual<T> {
         let d = if inner.is_zero() { T::constant(0.0) } else { factor().mul(inner) };
         Dual { v, d }
@@ -181,13 +182,13 @@ macro_rules! dual {
 
             fn unary(self, function: &Elementary) -> Self {
                 let v = self.v.unary(function);
-                Self::chained(v, || function.slope(0, &[self.v]), self.d)
+                Self::chained(v, || function.partial(0, &[self.v]), self.d)
             }
 
             fn binary(self, b: Self, function: &Elementary) -> Self {
                 let v = self.v.binary(b.v, function);
-                let first = Self::chained(v, || function.slope(0, &[self.v, b.v]), self.d);
-                let second = Self::chained(v, || function.slope(1, &[self.v, b.v]), b.d);
+                let first = Self::chained(v, || function.partial(0, &[self.v, b.v]), self.d);
+                let second = Self::chained(v, || function.partial(1, &[self.v, b.v]), b.d);
                 Dual { v, d: first.d.add(second.d) }
             }
 

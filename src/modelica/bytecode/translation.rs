@@ -10,7 +10,7 @@ use super::code::{Code, Functions, Instruction, Register};
 use super::elementary::Elementary;
 use super::machine_code::Translated;
 use super::number::{Dual, Number};
-use super::range::turns;
+use super::range::iterations;
 use crate::elementary;
 use crate::jit::{self, Effort, binary, condition, unary};
 use crate::symbolic::function::Value as FunctionValue;
@@ -112,8 +112,8 @@ struct Callees {
     fill: SigRef,
     /// [`row_lacks`].
     lacks: SigRef,
-    /// [`turns_of`].
-    turns: SigRef,
+    /// [`iterations_of`].
+    iterations: SigRef,
 }
 
 impl Callees {
@@ -135,7 +135,7 @@ impl Callees {
             copy: import(&[pointer; 3], None),
             fill: import(&[pointer, pointer, number, pointer], None),
             lacks: import(&[pointer; 3], Some(types::I64)),
-            turns: import(&[pointer; 2], Some(number)),
+            iterations: import(&[pointer; 2], Some(number)),
         }
     }
 }
@@ -197,10 +197,10 @@ unsafe extern "C" fn row_lacks(first: *const f64, n: usize, parts: usize) -> u64
 }
 
 /// The number of iterations of a loop over a range of three registers; NaN if it cannot be made.
-unsafe extern "C" fn turns_of(range: *const f64, parts: usize) -> f64 {
+unsafe extern "C" fn iterations_of(range: *const f64, parts: usize) -> f64 {
     // SAFETY: the row lies in the frame.
     let range = unsafe { std::slice::from_raw_parts(range, 3 * parts) };
-    turns(range[0], range[parts], range[2 * parts]).unwrap_or(f64::NAN)
+    iterations(range[0], range[parts], range[2 * parts]).unwrap_or(f64::NAN)
 }
 
 /// A number with its derivative where it has one.
@@ -266,7 +266,7 @@ impl Translation<'_> {
         self.builder.ins().jump(self.left, &[first.into()]);
     }
 
-    /// The target of a jump; all behind the last instruction are the end.
+    /// The target of a jump; all positions after the last instruction are the end.
     fn within(&self, target: u32) -> usize {
         (target as usize).min(self.code.instructions.len())
     }
@@ -417,7 +417,7 @@ impl Translation<'_> {
                 self.write(operand, place, 0);
                 self.known.clear();
             }
-            Instruction::Turns { d, range } => self.turns(d, range, at),
+            Instruction::Iterations { d, range } => self.iterations(d, range, at),
             Instruction::Jump { target } => {
                 self.spend(at, target);
                 let target = self.within(target);
@@ -441,8 +441,8 @@ impl Translation<'_> {
             Instruction::Neg { d, a } => {
                 let a = self.get(a);
                 let v = self.builder.ins().fneg(a.v);
-                let slope = a.d.map(|a| self.builder.ins().fneg(a));
-                self.set(d, Operand { v, d: slope });
+                let tangent = a.d.map(|a| self.builder.ins().fneg(a));
+                self.set(d, Operand { v, d: tangent });
             }
             Instruction::Not { d, a } => {
                 let holds = self.decided(a, at);
@@ -458,8 +458,8 @@ impl Translation<'_> {
             Instruction::Sub { d, a, b } => {
                 let (a, b) = (self.get(a), self.get(b));
                 let v = self.builder.ins().fsub(a.v, b.v);
-                let slope = a.d.zip(b.d).map(|(a, b)| self.builder.ins().fsub(a, b));
-                self.set(d, Operand { v, d: slope });
+                let tangent = a.d.zip(b.d).map(|(a, b)| self.builder.ins().fsub(a, b));
+                self.set(d, Operand { v, d: tangent });
             }
             Instruction::Mul { d, a, b } => self.product(d, a, b),
             Instruction::Div { d, a, b } => self.quotient(d, a, b, at),
@@ -494,23 +494,23 @@ impl Translation<'_> {
     fn product(&mut self, d: Register, a: Register, b: Register) {
         let (a, b) = (self.get(a), self.get(b));
         let v = self.builder.ins().fmul(a.v, b.v);
-        let slope = a.d.zip(b.d).map(|(slope_a, slope_b)| {
-            let first = self.builder.ins().fmul(slope_a, b.v);
-            let second = self.builder.ins().fmul(a.v, slope_b);
+        let tangent = a.d.zip(b.d).map(|(tangent_a, tangent_b)| {
+            let first = self.builder.ins().fmul(tangent_a, b.v);
+            let second = self.builder.ins().fmul(a.v, tangent_b);
             self.builder.ins().fadd(first, second)
         });
-        self.set(d, Operand { v, d: slope });
+        self.set(d, Operand { v, d: tangent });
     }
 
     fn quotient(&mut self, d: Register, a: Register, b: Register, at: usize) {
         let (a, b) = (self.get(a), self.get(b));
         let v = self.builder.ins().fdiv(a.v, b.v);
-        let slope = a.d.zip(b.d).map(|(slope_a, slope_b)| {
-            let part = self.builder.ins().fmul(v, slope_b);
-            let rest = self.builder.ins().fsub(slope_a, part);
+        let tangent = a.d.zip(b.d).map(|(tangent_a, tangent_b)| {
+            let part = self.builder.ins().fmul(v, tangent_b);
+            let rest = self.builder.ins().fsub(tangent_a, part);
             self.builder.ins().fdiv(rest, b.v)
         });
-        self.set_finite(d, Operand { v, d: slope }, at);
+        self.set_finite(d, Operand { v, d: tangent }, at);
     }
 
     fn unary(&mut self, function: &'static Elementary, d: Register, a: Register, at: usize) {
@@ -564,7 +564,7 @@ impl Translation<'_> {
         self.set_finite(d, result, at);
     }
 
-    /// The result of a function that writes it behind its arguments.
+    /// The result of a function that writes it after its arguments.
     fn on_duals(&mut self, (callee, signature): (usize, SigRef), arguments: &[Value]) -> Operand {
         let result = self.builder.ins().stack_addr(self.pointer, self.result, 0);
         let arguments = [arguments, &[result]].concat();
@@ -619,10 +619,10 @@ impl Translation<'_> {
     fn place(&mut self, base: Register, offset: Register, at: usize) -> Value {
         let offset = self.get(offset).v;
         let zero = self.builder.ins().f64const(0.0);
-        let behind =
+        let end =
             self.builder.ins().f64const(f64::from(self.code.frame - base.min(self.code.frame)));
         let begins = self.builder.ins().fcmp(FloatCC::GreaterThanOrEqual, offset, zero);
-        let ends = self.builder.ins().fcmp(FloatCC::LessThan, offset, behind);
+        let ends = self.builder.ins().fcmp(FloatCC::LessThan, offset, end);
         let is_within = self.builder.ins().band(begins, ends);
         self.go_on_if(is_within, at);
         let offset = self.builder.ins().fcvt_to_sint_sat(self.pointer, offset);
@@ -631,13 +631,14 @@ impl Translation<'_> {
         self.builder.ins().iadd(first, offset)
     }
 
-    fn turns(&mut self, d: Register, range: Register, at: usize) {
+    fn iterations(&mut self, d: Register, range: Register, at: usize) {
         let arguments = [self.address(range), self.number(self.parts)];
-        let turns = self.call(turns_of as *const () as usize, self.callees.turns, &arguments);
-        let has_value = self.builder.ins().fcmp(FloatCC::Ordered, turns, turns);
+        let iterations =
+            self.call(iterations_of as *const () as usize, self.callees.iterations, &arguments);
+        let has_value = self.builder.ins().fcmp(FloatCC::Ordered, iterations, iterations);
         self.go_on_if(has_value, at);
-        let turns = self.constant(turns);
-        self.set(d, turns);
+        let iterations = self.constant(iterations);
+        self.set(d, iterations);
     }
 
     fn jump_unless(&mut self, a: Register, target: u32, at: usize) {

@@ -5,7 +5,7 @@
 
 use super::code::{Code, Derivative, ExternalCall, Functions, Instruction};
 use super::machine::MAX_STACK;
-use crate::external::{Kind, Slot};
+use crate::external::{Slot, SlotKind};
 
 impl Functions {
     /// Whether all that the functions refer to is there.
@@ -51,7 +51,7 @@ impl Functions {
             | Instruction::Div { d, a, b }
             | Instruction::Pow { d, a, b }
             | Instruction::Relation { d, a, b, .. } => all(&[d, a, b]),
-            Instruction::Turns { d, range } => all(&[d]) && code.has(range, 3),
+            Instruction::Iterations { d, range } => all(&[d]) && code.has(range, 3),
             Instruction::Jump { .. } => true,
             Instruction::Call { function, d, a } => {
                 let called = self.codes.get(function as usize);
@@ -95,8 +95,8 @@ impl Code {
         let size = slot.dims.iter().try_fold(1u32, |size, n| size.checked_mul(*n));
         let Some(end) = size.and_then(|n| slot.first.checked_add(n)) else { return false };
         match slot.kind {
-            Kind::Text => end as usize <= self.texts.len(),
-            Kind::Number | Kind::Numbered | Kind::Object => end <= self.frame,
+            SlotKind::Text => end as usize <= self.strings.len(),
+            SlotKind::Number | SlotKind::Numbered | SlotKind::Object => end <= self.frame,
         }
     }
 }

@@ -4,7 +4,7 @@
 //! rigid connections without differentiating anything.
 
 use super::causalized::Alias;
-use crate::lower::{Dae, Equation, Kind, Variable};
+use crate::lower::{Dae, Equation, Variable, VariableKind};
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, Pool, Substitution, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -78,10 +78,10 @@ fn memories(dae: &Dae) -> Vec<Option<Memory>> {
     let initial: FxHashSet<VarId> = sides.flat_map(|e| dae.pool.variables(e)).collect();
     let mut memory = vec![None; dae.variables.len()];
     for (position, variable) in (0..).zip(&dae.variables) {
-        if let Kind::Previous(of) = variable.kind {
+        if let VariableKind::Previous(of) = variable.kind {
             let &Variable { start, fixed, kind, .. } = dae.variable(of);
             let given = initial.contains(&VarId(position));
-            let remembers = kind == Kind::Discrete;
+            let remembers = kind == VariableKind::Discrete;
             memory[of.0 as usize] = remembers.then_some(Memory { start, fixed, given });
         }
     }
@@ -107,12 +107,12 @@ impl Sets {
     fn new(dae: &Dae) -> Sets {
         let mut derivative = vec![None; dae.variables.len()];
         for (position, variable) in dae.variables.iter().enumerate() {
-            if let Kind::Derivative(of) = variable.kind {
+            if let VariableKind::Derivative(of) = variable.kind {
                 derivative[of.0 as usize] = Some(position as u32);
             }
         }
         let parent = (0..dae.variables.len() as u32).map(|v| (v, false)).collect();
-        let discrete = dae.variables.iter().map(|v| v.kind == Kind::Discrete).collect();
+        let discrete = dae.variables.iter().map(|v| v.kind == VariableKind::Discrete).collect();
         let mut assigned = vec![false; dae.variables.len()];
         for variable in dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)) {
             assigned[variable.0 as usize] = true;
@@ -243,19 +243,20 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
 fn rename_previous(dae: &mut Dae, aliases: &[Option<Alias>], replacements: &mut [Option<Expr>]) {
     let mut previous: FxHashMap<VarId, VarId> = FxHashMap::default();
     for position in 0..dae.variables.len() {
-        if let Kind::Previous(of) = dae.variables[position].kind
+        if let VariableKind::Previous(of) = dae.variables[position].kind
             && aliases[of.0 as usize].is_none()
         {
             previous.insert(of, VarId(position as u32));
         }
     }
     for (position, replacement) in replacements.iter_mut().enumerate() {
-        let Kind::Previous(of) = dae.variables[position].kind else { continue };
+        let VariableKind::Previous(of) = dae.variables[position].kind else { continue };
         let Some(alias) = aliases[of.0 as usize] else { continue };
         let own = VarId(position as u32);
         let kept = *previous.entry(alias.of).or_insert(own);
         let variable = &mut dae.variables[position];
-        variable.kind = if kept == own { Kind::Previous(alias.of) } else { Kind::Signal };
+        variable.kind =
+            if kept == own { VariableKind::Previous(alias.of) } else { VariableKind::Signal };
         let value = dae.pool.variable(kept);
         *replacement = Some(if alias.negated { dae.pool.neg(value) } else { value });
     }

@@ -8,7 +8,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::graph::{Bipartite, blocks, match_equations, tear};
 use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, VariableKind};
 use crate::symbolic::{Expr, Solution, VarId, solve};
 use rustc_hash::FxHashMap;
 
@@ -113,7 +113,7 @@ pub(super) fn solve_block(
 /// Within a loop a discrete variable has the value of its own equation, so that it keeps its value
 /// exactly where no when-clause acts.
 fn may_determine(dae: &Dae, equation: Equation, variable: VarId, members: &[VarId]) -> bool {
-    let is_discrete = |v: VarId| dae.variable(v).kind == Kind::Discrete;
+    let is_discrete = |v: VarId| dae.variable(v).kind == VariableKind::Discrete;
     match dae.pool.as_variable(equation.left) {
         Some(own) if is_discrete(own) && members.contains(&own) => own == variable,
         _ => !is_discrete(variable),
@@ -131,7 +131,7 @@ pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Op
 
 /// The same where all else in the equation is known: `a / v = b` has no solution where b is zero,
 /// and Newton's method would divide by v, which begins at zero. The inverse that the function
-/// declares is used as its author wants it: the pressure drops of IBPSA and their inverses differ
+/// declares is used as its author intends: the pressure drops of IBPSA and their inverses differ
 /// where both are made smooth, and the reference results of its dampers have the values of the
 /// inverses.
 pub(super) fn explicit_alone(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {

@@ -10,7 +10,7 @@
 //! its flow look as if both were determined.
 
 use super::numbers::Numbers;
-use crate::lower::{Dae, Kind};
+use crate::lower::{Dae, VariableKind};
 use crate::symbolic::{Expr, Node, Substitution, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -50,7 +50,8 @@ fn conditions(dae: &Dae) -> Vec<VarId> {
         let Node::If(condition, ..) = dae.pool.node(node) else { continue };
         found.extend(dae.pool.variables(*condition));
     }
-    let is_kept = |v: &VarId| matches!(dae.variable(*v).kind, Kind::Discrete | Kind::Frozen);
+    let is_kept =
+        |v: &VarId| matches!(dae.variable(*v).kind, VariableKind::Discrete | VariableKind::Frozen);
     let mut found: Vec<VarId> = found.into_iter().filter(is_kept).collect();
     found.sort_unstable();
     found

@@ -7,7 +7,7 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::graph::{Bipartite, match_equations};
 use crate::lower::errors::{NOT_DISCRETE, UNBALANCED_MODEL};
-use crate::lower::{Dae, Equation, Kind, Variable, is_real, used_variables};
+use crate::lower::{Dae, Equation, Variable, VariableKind, is_real, used_variables};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::FxHashMap;
 
@@ -22,7 +22,9 @@ pub(super) fn separate_discrete(
         dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
     let open: Vec<VarId> = (0..dae.variables.len() as u32)
         .map(VarId)
-        .filter(|v| dae.variable(*v).kind == Kind::Discrete && aliases[v.0 as usize].is_none())
+        .filter(|v| {
+            dae.variable(*v).kind == VariableKind::Discrete && aliases[v.0 as usize].is_none()
+        })
         .filter(|v| !given.contains(v))
         .collect();
     if open.is_empty() {
@@ -81,7 +83,7 @@ fn leave_varying(
         if !may_vary(dae, aliases, (variable, equation)) {
             return Err(not_constant(dae, variable, equation));
         }
-        dae.variables[variable.0 as usize].kind = Kind::Unknown;
+        dae.variables[variable.0 as usize].kind = VariableKind::Unknown;
         dae.equations.push(equation);
     }
 }
@@ -89,8 +91,8 @@ fn leave_varying(
 fn drop_unused_previous(dae: &mut Dae) {
     let used = used_variables(dae);
     for (variable, used) in dae.variables.iter_mut().zip(used) {
-        if matches!(variable.kind, Kind::Previous(_)) && !used {
-            variable.kind = Kind::Signal;
+        if matches!(variable.kind, VariableKind::Previous(_)) && !used {
+            variable.kind = VariableKind::Signal;
         }
     }
 }
@@ -101,19 +103,19 @@ fn varies(dae: &Dae, value: Expr) -> bool {
 }
 
 fn is_varying(dae: &Dae, v: VarId) -> bool {
-    dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed)
+    dae.is_unknown(v) || matches!(dae.variable(v).kind, VariableKind::Time | VariableKind::Delayed)
 }
 
 /// Whether a variable may change between events: it is another name of an Integer that may, or
 /// follows from such; and nothing asks for its value before an event.
 fn may_vary(dae: &Dae, aliases: &[Option<Alias>], (variable, equation): (VarId, Equation)) -> bool {
     let is_other_name = |(alias, own): (&Option<Alias>, &Variable)| {
-        own.kind == Kind::Unknown && alias.is_some_and(|alias| alias.of == variable)
+        own.kind == VariableKind::Unknown && alias.is_some_and(|alias| alias.of == variable)
     };
     let is_real = |v: VarId| is_varying(dae, v) && dae.variable(v).base == BaseType::Real;
     let may_vary = aliases.iter().zip(&dae.variables).any(is_other_name)
         || !dae.pool.any_variable(equation.right, is_real);
-    may_vary && !dae.variables.iter().any(|v| v.kind == Kind::Previous(variable))
+    may_vary && !dae.variables.iter().any(|v| v.kind == VariableKind::Previous(variable))
 }
 
 fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {

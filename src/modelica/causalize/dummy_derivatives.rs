@@ -9,7 +9,7 @@
 //! states are the variables whose derivative is not a dummy
 //! ```
 //!
-//! Dummies are taken first from variables that are little wanted as states: by `stateSelect`, then
+//! Dummies are taken first from the variables least preferred as states: by `stateSelect`, then
 //! those without `fixed`, then those without a start value. The Jacobian is that at the start
 //! values; where it is singular there, the structure decides. Pivots that are made of parameters
 //! are regular for all time; where there are none the choice is left to run time
@@ -22,7 +22,7 @@ use super::dynamic_states::{Candidate, declare_selection};
 use super::{blt, singularity};
 use crate::diag::Diagnostic;
 use crate::graph::{Bipartite, Matching, blocks, match_equations};
-use crate::lower::{Dae, DefaultValues, Kind, StateSelect};
+use crate::lower::{Dae, DefaultValues, StateSelect, VariableKind};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId, derivative};
 use rustc_hash::FxHashMap;
@@ -169,7 +169,8 @@ struct Level<'a> {
 /// What was chosen on one level.
 struct Choice {
     dummies: Vec<usize>,
-    /// Whether it is good whatever values the variables take, or the user wants it.
+    /// Whether it is good whatever values the variables take, or the user requests it
+    /// (`stateSelect`).
     is_static: bool,
     /// Derivatives in the order of the columns of the Jacobian.
     columns: Vec<usize>,
@@ -177,7 +178,7 @@ struct Choice {
     jacobian: Vec<Vec<Option<Expr>>>,
 }
 
-/// How little a variable is wanted as a state, the least wanted first.
+/// How little a variable is preferred as a state, the least preferred first.
 type Preference = (StateSelect, bool, bool);
 
 impl Level<'_> {
@@ -204,7 +205,7 @@ impl Level<'_> {
 
     fn choose(&self, dae: &mut Dae, values: &DefaultValues) -> Result<Choice, Diagnostic> {
         let mut columns = self.variables.clone();
-        // Of those that are wanted alike the first declared stays a state.
+        // Of equally preferred ones the first declared stays a state.
         columns.sort_by_key(|v| {
             (self.preference(dae, *v), std::cmp::Reverse(self.chains.variables[*v]))
         });
@@ -220,8 +221,8 @@ impl Level<'_> {
             jacobian.iter().map(|row| row.iter().map(entry).collect()).collect();
         let all = |places: Vec<usize>| places.into_iter().map(|at| columns[at]).collect();
         let by_value = pivots(entries.clone(), &preferences, false);
-        let wanted = by_value.as_ref().filter(|chosen| is_wanted(chosen, &preferences));
-        let lasting = match wanted {
+        let accepted = by_value.as_ref().filter(|chosen| is_preferred(chosen, &preferences));
+        let lasting = match accepted {
             Some(chosen) => Some(chosen.clone()),
             None => pivots(entries, &preferences, true),
         };
@@ -317,11 +318,11 @@ impl Level<'_> {
 /// Whether an expression is made of parameters and numbers.
 fn is_known(dae: &Dae, e: Expr) -> bool {
     let variables = dae.pool.variables(e);
-    variables.iter().all(|v| matches!(dae.variable(*v).kind, Kind::Parameter { .. }))
+    variables.iter().all(|v| matches!(dae.variable(*v).kind, VariableKind::Parameter { .. }))
 }
 
 /// Whether `stateSelect` prefers every state to every dummy.
-fn is_wanted(dummies: &[usize], preferences: &[Preference]) -> bool {
+fn is_preferred(dummies: &[usize], preferences: &[Preference]) -> bool {
     let is_dummy = |column: &usize| dummies.contains(column);
     let (dummies, states): (Vec<usize>, Vec<usize>) = (0..preferences.len()).partition(is_dummy);
     let most = dummies.iter().map(|column| preferences[*column].0).max();
@@ -403,19 +404,19 @@ mod tests {
     const PREFERRED: Preference = (StateSelect::Prefer, false, false);
 
     #[test]
-    fn the_least_wanted_columns_are_taken_while_they_are_regular() {
+    fn the_least_preferred_columns_are_taken_while_they_are_regular() {
         let known = |values: &[f64]| values.iter().map(|v| (*v, true)).collect::<Vec<_>>();
         let rows = vec![known(&[1.0, 2.0, 1.0]), known(&[2.0, 4.0, 3.0])];
         // The first two columns are parallel.
         let preferences = [PLAIN, PLAIN, PREFERRED];
         assert_eq!(pivots(rows.clone(), &preferences, false), Some(vec![1, 2]));
         assert_eq!(pivots(vec![known(&[0.0, 0.0])], &[PLAIN, PLAIN], false), None);
-        assert!(!is_wanted(&[1, 2], &preferences));
-        assert!(is_wanted(&[0, 1], &preferences));
+        assert!(!is_preferred(&[1, 2], &preferences));
+        assert!(is_preferred(&[0, 1], &preferences));
     }
 
     #[test]
-    fn known_pivots_are_told_from_those_that_may_vanish() {
+    fn known_pivots_are_distinguished_from_those_that_may_vanish() {
         let rows = vec![vec![(2.0, false), (1.0, true)]];
         assert_eq!(pivots(rows.clone(), &[PLAIN, PLAIN], false), Some(vec![0]));
         assert_eq!(pivots(rows, &[PLAIN, PLAIN], true), Some(vec![1]));

@@ -6,7 +6,7 @@ use super::index_reduction::unknowns;
 use super::{PASSES, causalize_and_show};
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, VariableKind};
 use crate::symbolic::{Expr, VarId, print};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -119,8 +119,8 @@ fn write_system(dae: &Dae, aliases: &[Option<Alias>], out: &mut String) -> std::
             continue;
         }
         let value = match (variable.kind, variable.binding) {
-            (Kind::Constant(value), _) => format!(" = {value:?}"),
-            (Kind::Parameter { .. }, Some(binding)) => format!(" = {}", shown(binding)),
+            (VariableKind::Constant(value), _) => format!(" = {value:?}"),
+            (VariableKind::Parameter { .. }, Some(binding)) => format!(" = {}", shown(binding)),
             _ => String::new(),
         };
         writeln!(out, "{} {name}{value}", word(variable.kind))?;
@@ -147,21 +147,21 @@ fn forever<'a>() -> impl Iterator<Item = Option<&'a Option<Alias>>> {
     std::iter::repeat(None)
 }
 
-fn word(kind: Kind) -> &'static str {
+fn word(kind: VariableKind) -> &'static str {
     match kind {
-        Kind::Time => "time",
-        Kind::Constant(_) => "constant",
-        Kind::Parameter { tunable: true } => "parameter",
-        Kind::Parameter { tunable: false } => "evaluated parameter",
-        Kind::Solved => "parameter solved for",
-        Kind::Unknown => "unknown",
-        Kind::Derivative(_) => "derivative",
-        Kind::Discrete => "discrete",
-        Kind::Previous(_) => "previous",
-        Kind::Frozen => "frozen",
-        Kind::Delayed => "delayed",
-        Kind::Signal => "signal",
-        Kind::Text => "text",
-        Kind::Clock => "clock",
+        VariableKind::Time => "time",
+        VariableKind::Constant(_) => "constant",
+        VariableKind::Parameter { tunable: true } => "parameter",
+        VariableKind::Parameter { tunable: false } => "evaluated parameter",
+        VariableKind::Solved => "parameter solved for",
+        VariableKind::Unknown => "unknown",
+        VariableKind::Derivative(_) => "derivative",
+        VariableKind::Discrete => "discrete",
+        VariableKind::Previous(_) => "previous",
+        VariableKind::Frozen => "frozen",
+        VariableKind::Delayed => "delayed",
+        VariableKind::Signal => "signal",
+        VariableKind::Text => "text",
+        VariableKind::Clock => "clock",
     }
 }

@@ -13,7 +13,7 @@
 //! Reference: [Mattsson & Söderlind 1993](gapilib_base::bibliography#mattsson-soderlind-1993), section 4.
 
 use super::causalized::Selection;
-use crate::lower::{Dae, Equation, Kind, derivative_of, scalar_of_nothing};
+use crate::lower::{Dae, Equation, VariableKind, derivative_of, scalar_of_nothing};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 
@@ -46,7 +46,7 @@ pub(super) fn declare_selection(
     };
     for (row, at) in selection.chosen.clone().into_iter().enumerate() {
         let name = format!("$state[{},{}]", number + 1, row + 1);
-        let mut state = scalar_of_nothing(&name, Kind::Unknown, span);
+        let mut state = scalar_of_nothing(&name, VariableKind::Unknown, span);
         state.start = dae.variable(candidates[at].variable).start;
         state.nominal = dae.variable(candidates[at].variable).nominal;
         let id = push(dae, state);
@@ -54,13 +54,13 @@ pub(super) fn declare_selection(
         let derivative = push(dae, derivative);
         let weights = (0..candidates.len()).map(|column| {
             let name = format!("$weight[{},{},{}]", number + 1, row + 1, column + 1);
-            push(dae, scalar_of_nothing(&name, Kind::Frozen, span))
+            push(dae, scalar_of_nothing(&name, VariableKind::Frozen, span))
         });
         let weights: Vec<VarId> = weights.collect();
         let values = candidates.iter().map(|c| c.variable);
         let values: Vec<Expr> = values.map(|v| dae.pool.variable(v)).collect();
-        let slopes: Vec<Expr> = candidates.iter().map(|c| c.derivative).collect();
-        for (left, terms) in [(id, values), (derivative, slopes)] {
+        let derivatives: Vec<Expr> = candidates.iter().map(|c| c.derivative).collect();
+        for (left, terms) in [(id, values), (derivative, derivatives)] {
             let (left, right) = (dae.pool.variable(left), weighted_sum(dae, &weights, &terms));
             dae.equations.push(Equation::new(left, right, span));
         }

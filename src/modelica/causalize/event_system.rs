@@ -11,7 +11,7 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::graph::{Bipartite, Matching, blocks, match_equations};
 use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, VariableKind};
 use crate::symbolic::{Expr, Substitution, VarId};
 
 /// What a system is sorted for.
@@ -150,7 +150,7 @@ pub(super) fn match_mixed(
     }
 }
 
-/// Takes the discrete members of a loop as known for the others, and assigns them behind these.
+/// Takes the discrete members of a loop as known for the others, and assigns them after these.
 fn cut(
     dae: &mut Dae,
     system: &str,
@@ -219,6 +219,6 @@ fn renumber(block: &mut Block, origins: &[usize]) {
 }
 
 /// All variables of a kind, in order.
-pub(super) fn of_kind(dae: &Dae, test: impl Fn(Kind) -> bool) -> Vec<VarId> {
+pub(super) fn of_kind(dae: &Dae, test: impl Fn(VariableKind) -> bool) -> Vec<VarId> {
     (0..dae.variables.len() as u32).map(VarId).filter(|v| test(dae.variable(*v).kind)).collect()
 }

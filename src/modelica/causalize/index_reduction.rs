@@ -18,7 +18,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::{Bipartite, differentiate_equations, match_equations};
-use crate::lower::{Dae, Equation, Kind, Variable, derivative_of};
+use crate::lower::{Dae, Equation, Variable, VariableKind, derivative_of};
 use crate::symbolic::{Expr, Node, Pool, VarId, differentiate, differentiate_forward};
 use rustc_hash::FxHashMap;
 
@@ -70,8 +70,10 @@ fn refuse_jumps(dae: &Dae, equation: Equation) -> Result<(), Diagnostic> {
     let changes = |e: Expr, is_argument: bool| {
         let Some(variable) = dae.pool.as_variable(e).map(|v| dae.variable(v)) else { return false };
         match variable.kind {
-            Kind::Discrete | Kind::Previous(_) => !is_argument || variable.base == BaseType::Real,
-            kind => matches!(kind, Kind::Frozen | Kind::Signal),
+            VariableKind::Discrete | VariableKind::Previous(_) => {
+                !is_argument || variable.base == BaseType::Real
+            }
+            kind => matches!(kind, VariableKind::Frozen | VariableKind::Signal),
         }
     };
     let sides = [equation.left, equation.right];
@@ -104,7 +106,7 @@ fn differentiated_variables(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> 
         .variables
         .iter()
         .filter_map(|v| match v.kind {
-            Kind::Derivative(of) if aliases[of.0 as usize].is_none() => Some(of),
+            VariableKind::Derivative(of) if aliases[of.0 as usize].is_none() => Some(of),
             _ => None,
         })
         .collect();
@@ -174,7 +176,7 @@ impl Continuous {
         let mut next: FxHashMap<VarId, (VarId, bool)> = FxHashMap::default();
         let mut taken: FxHashMap<VarId, VarId> = FxHashMap::default();
         for derivative in self.variables.clone() {
-            let Kind::Derivative(of) = dae.variable(derivative).kind else { continue };
+            let VariableKind::Derivative(of) = dae.variable(derivative).kind else { continue };
             if aliases[of.0 as usize].is_some() {
                 continue;
             }
@@ -243,14 +245,14 @@ impl Continuous {
         eq_to_derivative: &[Option<usize>],
     ) -> Result<(), Diagnostic> {
         let one = dae.pool.constant(1.0);
-        let mut slopes: FxHashMap<VarId, Expr> = FxHashMap::from_iter([(VarId(0), one)]);
+        let mut derivatives: FxHashMap<VarId, Expr> = FxHashMap::from_iter([(VarId(0), one)]);
         for (column, derivative) in self.var_to_derivative.iter().enumerate() {
             let Some(derivative) = derivative else { continue };
-            let mut slope = dae.pool.variable(self.variables[*derivative]);
+            let mut value = dae.pool.variable(self.variables[*derivative]);
             if self.negated[column] {
-                slope = dae.pool.neg(slope);
+                value = dae.pool.neg(value);
             }
-            slopes.insert(self.variables[column], slope);
+            derivatives.insert(self.variables[column], value);
         }
         let mut origins = vec![0; eq_to_derivative.len()];
         for (equation, derivative) in eq_to_derivative.iter().enumerate() {
@@ -261,7 +263,7 @@ impl Continuous {
         for origin in &origins[self.equations.len()..] {
             let equation = dae.equations[self.equations[*origin]];
             let Equation { left, right, span, .. } = equation;
-            let delayed = |v: VarId| dae.variable(v).kind == Kind::Delayed;
+            let delayed = |v: VarId| dae.variable(v).kind == VariableKind::Delayed;
             if [left, right].iter().any(|side| dae.pool.any_variable(*side, delayed)) {
                 return Err(fault!(
                     crate::lower::errors::NOT_SUPPORTED,
@@ -270,7 +272,7 @@ impl Continuous {
                 )
                 .at(span));
             }
-            let seed = |v: VarId| slopes.get(&v).copied();
+            let seed = |v: VarId| derivatives.get(&v).copied();
             // What defines a variable keeps its value at zeros of norms; where the derivatives in a
             // norm are what is solved for, the equation stays linear in them.
             let of_side =

@@ -14,7 +14,7 @@ use super::event_system::{Numbered, Purpose, match_mixed, of_kind, sort_mixed, w
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
-use crate::lower::{Dae, Equation, Kind, StateSelect};
+use crate::lower::{Dae, Equation, StateSelect, VariableKind};
 use crate::symbolic::{VarId, substitute};
 
 /// The initial system in solving order.
@@ -116,17 +116,17 @@ fn require(
     remembered
 }
 
-/// Number of the first variable among what equations come from: behind all equations.
+/// Number of the first variable among the origins of equations: after all equations.
 fn first_variable(dae: &Dae) -> usize {
     dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
 }
 
 /// What is unknown at the start alone, and discrete variables.
 fn unknowns_at_start(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> {
-    let discrete = of_kind(dae, |kind| kind == Kind::Discrete).into_iter();
+    let discrete = of_kind(dae, |kind| kind == VariableKind::Discrete).into_iter();
     let mut unknowns: Vec<VarId> = discrete.filter(|v| aliases[v.0 as usize].is_none()).collect();
     unknowns.extend(of_kind(dae, |kind| {
-        matches!(kind, Kind::Previous(_) | Kind::Solved | Kind::Delayed)
+        matches!(kind, VariableKind::Previous(_) | VariableKind::Solved | VariableKind::Delayed)
     }));
     unknowns
 }
@@ -154,9 +154,9 @@ fn model_equations(dae: &mut Dae) -> Numbered {
             system.push(equation, first + variable.0 as usize);
         }
     }
-    for previous in of_kind(dae, |kind| matches!(kind, Kind::Previous(_))) {
-        let Kind::Previous(of) = dae.variable(previous).kind else { continue };
-        if dae.variable(of).kind != Kind::Discrete {
+    for previous in of_kind(dae, |kind| matches!(kind, VariableKind::Previous(_))) {
+        let VariableKind::Previous(of) = dae.variable(previous).kind else { continue };
+        if dae.variable(of).kind != VariableKind::Discrete {
             let (left, right) = (dae.pool.variable(previous), dae.pool.variable(of));
             let equation = Equation::new(left, right, dae.variable(of).span);
             system.push(equation, first + of.0 as usize);
@@ -170,10 +170,12 @@ type Remembered = (VarId, VarId);
 
 /// `pre(v)` of discrete variables with v, those with fixed start values first.
 fn previous_values(dae: &Dae) -> (Vec<Remembered>, Vec<Remembered>) {
-    of_kind(dae, |kind| matches!(kind, Kind::Previous(_)))
+    of_kind(dae, |kind| matches!(kind, VariableKind::Previous(_)))
         .into_iter()
         .filter_map(|v| match dae.variable(v).kind {
-            Kind::Previous(of) if dae.variable(of).kind == Kind::Discrete => Some((v, of)),
+            VariableKind::Previous(of) if dae.variable(of).kind == VariableKind::Discrete => {
+                Some((v, of))
+            }
             _ => None,
         })
         .partition(|(_, of)| dae.variable(*of).fixed)

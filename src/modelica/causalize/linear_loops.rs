@@ -13,7 +13,7 @@
 //! unknowns of the loop, one that is singular with the default parameters is solved without tearing.
 
 use super::causalized::{Assignment, LinearLoop, Loop};
-use crate::lower::{Dae, Kind};
+use crate::lower::{Dae, VariableKind};
 use crate::symbolic::{Expr, Linear, Node, Pool, VarId, differentiate_all, linear_in, substitute};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -197,16 +197,16 @@ fn coefficients(pool: &mut Pool, residual: Expr, [z, w]: [VarId; 2]) -> Option<(
     Some((a, b, rest))
 }
 
-/// A holds the slopes of the residuals, b what they are where all unknowns are zero, negated.
+/// A holds the derivatives of the residuals, b their negated values where all unknowns are zero.
 fn by_elimination(pool: &mut Pool, unknowns: &[VarId], residuals: &[Expr]) -> Vec<Expr> {
     let n = unknowns.len();
     let (zero, one) = (pool.constant(0.0), pool.constant(1.0));
     let mut matrix = vec![zero; n * n];
     for (column, unknown) in unknowns.iter().enumerate() {
         let seed = |v: VarId| (v == *unknown).then_some(one);
-        let slopes = differentiate_all(pool, residuals, &seed);
-        for (row, slope) in slopes.into_iter().enumerate() {
-            matrix[row * n + column] = slope;
+        let column_entries = differentiate_all(pool, residuals, &seed);
+        for (row, entry) in column_entries.into_iter().enumerate() {
+            matrix[row * n + column] = entry;
         }
     }
     let at_zero = |v: VarId| unknowns.contains(&v).then_some(zero);
@@ -226,7 +226,7 @@ pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
     if let Some(value) = dae.pool.as_constant(divisor) {
         return value != 0.0;
     }
-    let varies = |v: VarId| !matches!(dae.variable(v).kind, Kind::Parameter { .. });
+    let varies = |v: VarId| !matches!(dae.variable(v).kind, VariableKind::Parameter { .. });
     !dae.pool.any_variable(divisor, varies) && {
         let value = dae.defaults.of(dae, divisor);
         value.is_finite() && value != 0.0

@@ -98,7 +98,7 @@ fn causalize_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<Causalize
 }
 
 /// The error that a model is not balanced, with the variables and equations concerned, if they can
-/// be told.
+/// be identified.
 pub fn explain_imbalance(flat: &FlatModel, error: Diagnostic) -> Diagnostic {
     let found = match check(flat) {
         Err(found) if [SINGULAR_SYSTEM, UNBALANCED_MODEL].contains(&found.code) => found,

@@ -3,7 +3,7 @@
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::errors::{PARAMETER_CYCLE, PARAMETER_WITHOUT_VALUE};
-use crate::lower::{Dae, Equation, Kind};
+use crate::lower::{Dae, Equation, VariableKind};
 use crate::symbolic::VarId;
 
 /// Parameters, each after those its binding depends on. One without a binding takes its start
@@ -11,7 +11,7 @@ use crate::symbolic::VarId;
 pub(super) fn order_parameters(dae: &mut Dae) -> Result<Vec<VarId>, Diagnostic> {
     let parameters: Vec<VarId> = (0..dae.variables.len() as u32)
         .map(VarId)
-        .filter(|v| matches!(dae.variable(*v).kind, Kind::Parameter { .. }))
+        .filter(|v| matches!(dae.variable(*v).kind, VariableKind::Parameter { .. }))
         .collect();
     for parameter in &parameters {
         let variable = dae.variable(*parameter);
@@ -49,11 +49,11 @@ fn without_solved(dae: &mut Dae, sorted: Vec<VarId>) -> Vec<VarId> {
         let (binding, span) = (variable.binding, variable.span);
         let uses = binding.map(|b| dae.pool.variables(b)).unwrap_or_default();
         match binding {
-            Some(right) if uses.iter().any(|v| dae.variable(*v).kind == Kind::Solved) => {
+            Some(right) if uses.iter().any(|v| dae.variable(*v).kind == VariableKind::Solved) => {
                 let left = dae.pool.variable(parameter);
                 dae.initial_equations.push(Equation::new(left, right, span));
                 let variable = &mut dae.variables[parameter.0 as usize];
-                variable.kind = Kind::Solved;
+                variable.kind = VariableKind::Solved;
                 variable.binding = None;
             }
             _ => rest.push(parameter),
@@ -93,7 +93,9 @@ impl Order<'_> {
             let binding = self.dae.variable(v).binding;
             for other in binding.map(|b| self.dae.pool.variables(b)).unwrap_or_default() {
                 let kind = self.dae.variable(other).kind;
-                if matches!(kind, Kind::Parameter { .. }) && self.state[other.0 as usize] != 2 {
+                if matches!(kind, VariableKind::Parameter { .. })
+                    && self.state[other.0 as usize] != 2
+                {
                     stack.push((other, false));
                 }
             }

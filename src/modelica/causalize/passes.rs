@@ -210,20 +210,21 @@ impl<'a> Causalization<'a> {
     /// Index reduction with states that are preferred and not differentiated; whether there are any
     /// that can be states.
     fn reduce_to_preferred_states(&mut self) -> bool {
-        let mut wanted = preferred_states::preferred(&self.dae, &self.aliases);
-        while !wanted.is_empty() {
-            preferred_states::declare_derivatives(&mut self.dae, &mut self.aliases, &wanted);
-            let reduced = index_reduction::reduce_index(&mut self.dae, &mut self.aliases, &wanted);
-            let n_wanted = wanted.len();
+        let mut preferred = preferred_states::preferred(&self.dae, &self.aliases);
+        while !preferred.is_empty() {
+            preferred_states::declare_derivatives(&mut self.dae, &mut self.aliases, &preferred);
+            let reduced =
+                index_reduction::reduce_index(&mut self.dae, &mut self.aliases, &preferred);
+            let n_preferred = preferred.len();
             match reduced {
                 Ok(chosen) => {
-                    wanted.retain(|v| chosen.states.binary_search(v).is_ok());
-                    if wanted.len() == n_wanted {
+                    preferred.retain(|v| chosen.states.binary_search(v).is_ok());
+                    if preferred.len() == n_preferred {
                         self.chosen = chosen;
                         return true;
                     }
                 }
-                Err(_) => wanted.clear(),
+                Err(_) => preferred.clear(),
             }
             self.restore();
         }

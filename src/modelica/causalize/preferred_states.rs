@@ -1,5 +1,6 @@
-//! States that are wanted although nothing differentiates them: `stateSelect = StateSelect.prefer` of
-//! the pressure and the enthalpy of a medium in a volume, whose mass and energy are differentiated.
+//! States that are preferred although nothing differentiates them: `stateSelect =
+//! StateSelect.prefer` of the pressure and the enthalpy of a medium in a volume, whose mass and
+//! energy are differentiated.
 //!
 //! ```text
 //! der(m) = q,  m = V*d(p, h)          states m            p, h by iteration at every step
@@ -7,13 +8,13 @@
 //! ```
 //!
 //! With derivatives of their own, such variables are constrained by the states that there are, and
-//! index reduction decides as `stateSelect` wants (MLS §4.9.7.1). What does not become a state then
+//! index reduction decides by `stateSelect` (MLS §4.9.7.1). What does not become a state then
 //! gets none, and nothing does where a constraint may jump at events.
 
 use super::causalized::Alias;
 use super::dummy_derivatives::{Chains, HighestBlock, inverse};
 use crate::flatten::{BaseType, Variability};
-use crate::lower::{Dae, Equation, Kind, StateSelect, derivative_of};
+use crate::lower::{Dae, Equation, StateSelect, VariableKind, derivative_of};
 use crate::symbolic::VarId;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -23,14 +24,14 @@ pub(super) fn preferred(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> {
         .variables
         .iter()
         .filter_map(|variable| match variable.kind {
-            Kind::Derivative(of) => Some(of),
+            VariableKind::Derivative(of) => Some(of),
             _ => None,
         })
         .collect();
     let is_preferred = |v: &VarId| {
         let variable = dae.variable(*v);
         variable.state_select >= StateSelect::Prefer
-            && variable.kind == Kind::Unknown
+            && variable.kind == VariableKind::Unknown
             && variable.base == BaseType::Real
             && variable.variability == Variability::Continuous
             && aliases[v.0 as usize].is_none()
@@ -76,8 +77,8 @@ pub(super) fn joined(
     }
     let mut is_joined = vec![false; blocks.len()];
     let mut all = Vec::new();
-    for wanted in preferred {
-        let mut waiting: Vec<usize> = column.get(wanted).copied().into_iter().collect();
+    for variable in preferred {
+        let mut waiting: Vec<usize> = column.get(variable).copied().into_iter().collect();
         waiting = waiting.iter().filter_map(|v| chains.var_to_derivative[*v]).collect();
         let mut together = (Vec::new(), Vec::new());
         while let Some(variable) = waiting.pop() {

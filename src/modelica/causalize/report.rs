@@ -1,7 +1,7 @@
 //! The sorted system as text, for `--dump` and snapshots.
 
 use super::causalized::{Assignment, Block, CausalizedDae, LinearLoop};
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::symbolic::{Expr, Node, VarId, print};
 use std::fmt::Write;
 
@@ -15,14 +15,15 @@ pub fn report(sorted: &CausalizedDae) -> String {
 
 fn write_report(sorted: &CausalizedDae, out: &mut String) -> std::fmt::Result {
     let dae = &sorted.dae;
-    let count = |test: &dyn Fn(Kind) -> bool| dae.variables.iter().filter(|v| test(v.kind)).count();
+    let count =
+        |test: &dyn Fn(VariableKind) -> bool| dae.variables.iter().filter(|v| test(v.kind)).count();
     let loops = sorted.blocks.iter().filter(|b| !matches!(b, Block::Assignment(_))).count();
     writeln!(out, "{}", dae.name)?;
     writeln!(out, "  states {}", sorted.states.len())?;
     writeln!(out, "  equations {}", dae.equations.len())?;
     writeln!(out, "  aliases {}", sorted.aliases.iter().flatten().count())?;
-    writeln!(out, "  parameters {}", count(&|k| matches!(k, Kind::Parameter { .. })))?;
-    writeln!(out, "  constants {}", count(&|k| matches!(k, Kind::Constant(_))))?;
+    writeln!(out, "  parameters {}", count(&|k| matches!(k, VariableKind::Parameter { .. })))?;
+    writeln!(out, "  constants {}", count(&|k| matches!(k, VariableKind::Constant(_))))?;
     writeln!(out, "  relations {}", dae.relations.len())?;
     writeln!(out, "  blocks {}, of these loops {loops}", sorted.blocks.len())?;
     for (position, alias) in sorted.aliases.iter().enumerate() {

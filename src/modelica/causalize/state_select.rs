@@ -10,7 +10,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::errors::STATE_SELECT;
-use crate::lower::{Dae, Kind, StateSelect, Variable};
+use crate::lower::{Dae, StateSelect, Variable, VariableKind};
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
@@ -25,7 +25,8 @@ pub(super) fn check_state_select(
     let mut has_alias = vec![false; dae.variables.len()];
     for (alias, variable) in aliases.iter().zip(&dae.variables) {
         // `der(x) = -x` makes a derivative an alias, which is no variable that a user declares.
-        if let (Some(alias), false) = (alias, matches!(variable.kind, Kind::Derivative(_))) {
+        if let (Some(alias), false) = (alias, matches!(variable.kind, VariableKind::Derivative(_)))
+        {
             has_alias[alias.of.0 as usize] = true;
         }
     }
@@ -75,5 +76,6 @@ fn judged(dae: &Dae, position: usize, is_state: bool, has_alias: bool) -> Option
 
 /// Whether equations determine a variable, which may be constant between events.
 fn is_computed(variable: &Variable) -> bool {
-    variable.base == BaseType::Real && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
+    variable.base == BaseType::Real
+        && matches!(variable.kind, VariableKind::Unknown | VariableKind::Discrete)
 }

@@ -8,7 +8,7 @@
 //!
 //! Measured is how strongly every variable depends on each iteration variable, in units in which
 //! the entries of the block are about one. A variable that depends on one too strongly is iterated
-//! as well, its assignment becomes a residual, and the chain begins again behind it. Coefficients
+//! as well, its assignment becomes a residual, and the chain begins again after it. Coefficients
 //! are those with the default parameters and start values; those without a value are left out.
 
 use super::causalized::{Assignment, Loop};

@@ -7,7 +7,7 @@
 //! again.
 
 use super::causalized::{Block, CausalizedDae};
-use crate::lower::{Dae, Kind};
+use crate::lower::{Dae, VariableKind};
 use crate::symbolic::{Expr, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -23,13 +23,13 @@ pub(super) fn evaluate(dae: &mut Dae, settled: &ZeroCoefficients) {
     left.sort_unstable();
     let mut seen = ZeroCoefficients::default();
     while let Some(parameter) = left.pop() {
-        if !matches!(dae.variable(parameter).kind, Kind::Parameter { .. })
+        if !matches!(dae.variable(parameter).kind, VariableKind::Parameter { .. })
             || !seen.insert(parameter)
         {
             continue;
         }
         let variable = &mut dae.variables[parameter.0 as usize];
-        variable.kind = Kind::Parameter { tunable: false };
+        variable.kind = VariableKind::Parameter { tunable: false };
         left.extend(variable.binding.iter().flat_map(|binding| dae.pool.variables(*binding)));
     }
 }
@@ -127,7 +127,7 @@ impl Zeros<'_> {
     }
 
     fn is_parameter(&self, variable: VarId) -> bool {
-        matches!(self.dae.variable(variable).kind, Kind::Parameter { .. })
+        matches!(self.dae.variable(variable).kind, VariableKind::Parameter { .. })
     }
 
     /// The parameters of an expression of nothing else that is zero; `None` if it is not.

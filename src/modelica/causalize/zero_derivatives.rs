@@ -9,7 +9,7 @@
 
 use super::causalized::Alias;
 use super::numbers::Numbers;
-use crate::lower::{Dae, Equation, Kind, used_variables};
+use crate::lower::{Dae, Equation, VariableKind, used_variables};
 use crate::symbolic::{Expr, Node, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -17,7 +17,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub(super) fn drop_zero_derivatives(dae: &mut Dae, aliases: &[Option<Alias>]) {
     let derivatives: FxHashSet<VarId> = (0..dae.variables.len() as u32)
         .map(VarId)
-        .filter(|v| matches!(dae.variable(*v).kind, Kind::Derivative(_)))
+        .filter(|v| matches!(dae.variable(*v).kind, VariableKind::Derivative(_)))
         .filter(|v| aliases[v.0 as usize].is_none())
         .collect();
     let mut numbers = Numbers::of(dae);
@@ -90,6 +90,6 @@ fn forget_unused(dae: &mut Dae, dropped: &FxHashSet<VarId>, aliases: &[Option<Al
     let mut used = used_variables(dae);
     aliases.iter().flatten().for_each(|alias| used[alias.of.0 as usize] = true);
     for v in dropped.iter().filter(|v| !used[v.0 as usize]) {
-        dae.variables[v.0 as usize].kind = Kind::Signal;
+        dae.variables[v.0 as usize].kind = VariableKind::Signal;
     }
 }

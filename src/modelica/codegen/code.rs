@@ -30,7 +30,7 @@ pub(crate) struct CompiledLoop {
     pub(crate) pattern: Pattern,
     /// These entries, by columns.
     pub(crate) jacobian: Vec<Register>,
-    /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
+    /// 1 once the tape has computed the residuals: what fails after that is a derivative.
     pub(crate) has_residuals: Register,
     pub(crate) block: u32,
     #[serde(skip)]
@@ -74,7 +74,7 @@ pub(crate) struct Outputs {
 /// A message with the condition that must not hold.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LogAssertion {
-    /// Its number among all assertions, those at events behind the others.
+    /// Its number among all assertions, those at events after the others.
     pub(crate) assertion: u32,
     pub(crate) condition: Outputs,
     /// The values in its text, computed where the condition does not hold.

@@ -30,7 +30,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
-use crate::lower::{Dae, Kind, Level, Variable};
+use crate::lower::{Dae, Level, Variable, VariableKind};
 use crate::sim::{Linearity, Pattern};
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
@@ -60,7 +60,7 @@ impl Program {
             parameters: parameters(&causalized),
             relations_of_blocks: relations_of_blocks(&pool, &causalized),
             memoryless: memoryless(&pool, &causalized, &relations.relations),
-            reads_slopes: reads_slopes(&pool, &causalized),
+            reads_rates: reads_rates(&pool, &causalized),
             sorted: CausalizedDae { dae: Dae { pool, ..causalized.dae }, ..causalized },
             registers,
             sequence,
@@ -180,7 +180,7 @@ impl Compilation {
             causalized.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
         let mut registers = Registers::new(n as usize, causalized.dae.functions.clone());
         for (variable, info) in (0u32..).zip(&causalized.dae.variables) {
-            if matches!(info.kind, Kind::Parameter { .. } | Kind::Constant(_)) {
+            if matches!(info.kind, VariableKind::Parameter { .. } | VariableKind::Constant(_)) {
                 registers.hoisted.fix(variable);
             }
         }
@@ -211,7 +211,7 @@ impl Compilation {
     fn derivatives(&mut self) -> Vec<Expr> {
         let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
         for (v, variable) in (0..).map(VarId).zip(&self.causalized.dae.variables) {
-            if let Kind::Derivative(of) = variable.kind {
+            if let VariableKind::Derivative(of) = variable.kind {
                 derivatives.entry(of).or_insert(v);
             }
         }
@@ -449,10 +449,10 @@ impl Compilation {
         }
         let all = (0u32..).map(VarId).zip(&dae.variables);
         let solved =
-            all.clone().filter(|(_, v)| v.kind == Kind::Solved).map(|(id, _)| id).collect();
+            all.clone().filter(|(_, v)| v.kind == VariableKind::Solved).map(|(id, _)| id).collect();
         let (mut starts, mut nominals) = (Vec::new(), Vec::new());
         for (id, variable) in all {
-            if !dae.is_solved_for(id) && variable.kind != Kind::Solved {
+            if !dae.is_solved_for(id) && variable.kind != VariableKind::Solved {
                 continue;
             }
             if let Some(start) = variable.start {
@@ -469,7 +469,7 @@ impl Compilation {
 }
 
 /// A parameter whose tape is run in every simulation.
-const NEVER_SET: Kind = Kind::Parameter { tunable: false };
+const NEVER_SET: VariableKind = VariableKind::Parameter { tunable: false };
 /// Calls with fewer outputs are repeated for each parameter that is bound to one of these.
 const MANY_OUTPUTS: u32 = 64;
 
@@ -498,10 +498,10 @@ impl ResultsOfCalls {
     }
 }
 
-/// Whether the slope of a recorded input is read by more than the equation of the input itself.
-fn reads_slopes(pool: &Pool, causalized: &CausalizedDae) -> bool {
+/// Whether the rate of a recorded input is read by more than the equation of the input itself.
+fn reads_rates(pool: &Pool, causalized: &CausalizedDae) -> bool {
     let tracks = causalized.dae.events.recordings.iter().flat_map(|recording| &recording.tracks);
-    let mut slopes = tracks.filter_map(|track| track.slope);
+    let mut rates = tracks.filter_map(|track| track.rate);
     let values = || {
         causalized.blocks.iter().flat_map(|block| {
             let residuals = match block {
@@ -512,7 +512,7 @@ fn reads_slopes(pool: &Pool, causalized: &CausalizedDae) -> bool {
             assigned.chain(residuals.iter().map(|(residual, _)| *residual))
         })
     };
-    slopes.any(|slope| values().filter(|value| pool.depends_on(*value, slope)).nth(1).is_some())
+    rates.any(|rate| values().filter(|value| pool.depends_on(*value, rate)).nth(1).is_some())
 }
 
 fn depend_on_time(pool: &Pool, needed: &[Assignment], outputs: &[Expr]) -> bool {
@@ -552,7 +552,7 @@ fn lacking(program: &Program, parameter: VarId, function: u32) -> Diagnostic {
 }
 
 fn parameters(sorted: &CausalizedDae) -> Vec<ParameterInfo> {
-    let tunable = |(_, v): &(usize, &Variable)| v.kind == Kind::Parameter { tunable: true };
+    let tunable = |(_, v): &(usize, &Variable)| v.kind == VariableKind::Parameter { tunable: true };
     let info = |(at, v): (usize, &Variable)| ParameterInfo {
         name: v.name.clone(),
         unit: v.unit.clone(),
@@ -577,24 +577,24 @@ fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             continue;
         }
         let access = match v.kind {
-            Kind::Time => Access::Time,
-            Kind::Constant(value) => Access::Constant(value),
-            Kind::Parameter { .. } | Kind::Discrete
+            VariableKind::Time => Access::Time,
+            VariableKind::Constant(value) => Access::Constant(value),
+            VariableKind::Parameter { .. } | VariableKind::Discrete
                 if matches!(v.base, BaseType::ExternalObject(_)) =>
             {
                 continue;
             }
-            Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
-            Kind::Frozen
-            | Kind::Text
-            | Kind::Clock
-            | Kind::Previous(_)
-            | Kind::Signal
-            | Kind::Delayed => continue,
-            // A trajectory has no place for texts.
-            Kind::Discrete if v.base == BaseType::String => continue,
-            Kind::Discrete if v.name.starts_with('$') => continue,
-            Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
+            VariableKind::Parameter { .. } | VariableKind::Solved => Access::Parameter,
+            VariableKind::Frozen
+            | VariableKind::Text
+            | VariableKind::Clock
+            | VariableKind::Previous(_)
+            | VariableKind::Signal
+            | VariableKind::Delayed => continue,
+            // A trajectory has no columns for Strings.
+            VariableKind::Discrete if v.base == BaseType::String => continue,
+            VariableKind::Discrete if v.name.starts_with('$') => continue,
+            VariableKind::Unknown | VariableKind::Derivative(_) | VariableKind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);
                 let column = observed.binary_search(&of);
                 Access::Observed {

@@ -6,7 +6,7 @@ use super::sequence::compile_outputs;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::codegen::events::{CompiledDelay, CompiledTransport, Events, Previous};
 use crate::flatten::BaseType;
-use crate::lower::{Equation, Kind, Level, Transport};
+use crate::lower::{Equation, Level, Transport, VariableKind};
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection, linear_in};
 
 /// Compiles what happens at events, but for [`Events::steps`] and [`Events::roundings`].
@@ -32,8 +32,8 @@ pub(super) fn compile_events(
     let mut outputs = |list: &[Expr]| compile_outputs(pool, registers, &[], list);
     let all = (0..dae.variables.len() as u32).map(VarId);
     let previous = all.clone().filter_map(|v| match dae.variable(v).kind {
-        Kind::Previous(of) => {
-            let discrete = dae.variable(of).kind == Kind::Discrete;
+        VariableKind::Previous(of) => {
+            let discrete = dae.variable(of).kind == VariableKind::Discrete;
             let exact = dae.variable(of).base != BaseType::Real;
             let computed = !discrete && !sorted.states.contains(&of);
             Some(Previous { of, register: v.0, discrete, exact, computed })
@@ -48,7 +48,7 @@ pub(super) fn compile_events(
         previous: previous.collect(),
         iterated: sorted.iterated.clone(),
         discrete: all
-            .filter(|v| dae.variable(*v).kind == Kind::Discrete)
+            .filter(|v| dae.variable(*v).kind == VariableKind::Discrete)
             .filter(|v| sorted.aliases[v.0 as usize].is_none())
             .collect(),
         rounded: events.roundings.iter().map(|r| outputs(&[r.argument])).collect(),
@@ -119,13 +119,13 @@ fn pairs(list: impl Iterator<Item = (Expr, Expr)>) -> Vec<Expr> {
     list.flat_map(|(a, b)| [a, b]).collect()
 }
 
-/// `slope * time + rest` with a known slope that is not zero and a rest of parameters.
+/// `rate * time + rest` with a known rate that is not zero and a rest of parameters.
 pub(super) fn linear_in_time(
     pool: &mut Pool,
     sorted: &CausalizedDae,
     e: Expr,
 ) -> Option<(f64, Expr)> {
-    linear_with(pool, e, |v| matches!(sorted.dae.variable(v).kind, Kind::Parameter { .. }))
+    linear_with(pool, e, |v| matches!(sorted.dae.variable(v).kind, VariableKind::Parameter { .. }))
 }
 
 /// The same with a rest that changes at events only, as in `time >= pre(next)`: each event tells
@@ -142,7 +142,10 @@ pub(super) fn scheduled_in_time(
 pub(super) fn changes_at_events_only(sorted: &CausalizedDae, variable: VarId) -> bool {
     matches!(
         sorted.dae.variable(variable).kind,
-        Kind::Parameter { .. } | Kind::Solved | Kind::Discrete | Kind::Previous(_)
+        VariableKind::Parameter { .. }
+            | VariableKind::Solved
+            | VariableKind::Discrete
+            | VariableKind::Previous(_)
     )
 }
 
@@ -155,6 +158,6 @@ fn linear_with(
         return None;
     }
     let linear = linear_in(pool, e, VarId(0))?;
-    let slope = pool.as_constant(linear.coefficient)?;
-    (slope != 0.0).then_some((slope, linear.rest))
+    let rate = pool.as_constant(linear.coefficient)?;
+    (rate != 0.0).then_some((rate, linear.rest))
 }

@@ -33,9 +33,9 @@ pub(crate) struct Events {
     pub(crate) reinits: Outputs,
     /// Conditions of the assertions at events.
     pub(crate) assertions: Outputs,
-    /// Their numbers among all, and the values in their texts.
+    /// Their numbers among all, and the values in their messages.
     pub(crate) asserted: Vec<(u32, Outputs)>,
-    /// Warnings and texts that are printed.
+    /// Warnings and printed messages.
     pub(crate) log_assertions: Vec<LogAssertion>,
     /// Conditions of `terminate`.
     pub(crate) terminations: Outputs,
@@ -64,7 +64,7 @@ pub(crate) struct Previous {
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub(crate) struct CompiledRounding {
     pub(crate) register: Register,
-    /// For an argument that is linear in time: its slope, and the register of the rest.
+    /// For an argument that is linear in time: its rate, and the register of the rest.
     pub(crate) time: Option<(f64, Register)>,
 }
 

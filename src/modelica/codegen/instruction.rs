@@ -196,7 +196,7 @@ impl Instruction {
         }
     }
 
-    /// The instruction in code that begins further behind.
+    /// The instruction relative to code that begins later.
     pub(super) fn shift(&mut self, by: u32) {
         if let Instruction::Jump { target } | Instruction::JumpUnless { target, .. } = self {
             *target += by;
@@ -226,7 +226,7 @@ pub(super) struct LinearSolve {
     /// Register of the first unknown; the others follow.
     pub(super) d: Register,
     /// Whether b need not fit to a singular A.
-    pub(super) is_slope: bool,
+    pub(super) is_derivative: bool,
 }
 
 /// Instructions from a file, with the functions that they call.

@@ -7,7 +7,7 @@
 //! cube of the length. The unknown of a long linear loop, solved in closed form, depends on all of
 //! its neighbours, and they on it. Where the integrator holds the unknowns of such linear loops and
 //! every so-manieth variable of a chain as well, the Jacobian is a band with a border again. These
-//! are auxiliary: whoever looks at them computes them from the others.
+//! are auxiliary: they are computed from the others when they are read.
 
 use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::symbolic::{Expr, Pool, VarId};
@@ -20,7 +20,7 @@ const WIDEST: usize = 24;
 const GAIN: usize = 2;
 /// With fewer unknowns a full Jacobian costs little.
 const FEWEST: usize = 32;
-/// Unknowns beyond which nobody counts.
+/// Counting stops at this number of unknowns.
 const MANY: usize = 256;
 
 /// The algebraic unknowns of the integrator and what is computed from them.

@@ -111,33 +111,33 @@ impl<'a> Forward<'a> {
     }
 }
 
-/// Slopes of an unknown of linear systems by columns, by matrix and right side.
+/// Jacobian entries of an unknown of linear systems by columns, by matrix and right side.
 type Solved = FxHashMap<(Expr, Expr), BTreeMap<usize, Expr>>;
 
-/// The slopes of another unknown of the same system.
+/// The Jacobian entries of another unknown of the same system.
 fn of_unknown(
     pool: &mut Pool,
     columns: &BTreeMap<usize, Expr>,
     output: u32,
 ) -> BTreeMap<usize, Expr> {
-    let slopes = columns.iter();
-    slopes.map(|(column, slope)| (*column, pool.other_unknown(*slope, output))).collect()
+    let entries = columns.iter();
+    entries.map(|(column, entry)| (*column, pool.other_unknown(*entry, output))).collect()
 }
 
 /// Σ ∂e/∂w · ∂w/∂column over the variables w of e.
 fn chain(
     pool: &mut Pool,
     e: Expr,
-    slopes: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
+    derivatives: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
 ) -> BTreeMap<usize, Expr> {
     let mut row: BTreeMap<usize, Expr> = BTreeMap::new();
     for variable in pool.variables(e) {
-        let Some(inner) = slopes.get(&variable).filter(|inner| !inner.is_empty()) else {
+        let Some(inner) = derivatives.get(&variable).filter(|inner| !inner.is_empty()) else {
             continue;
         };
         let partial = derivative(pool, e, variable);
-        for (column, slope) in inner {
-            let product = pool.mul(partial, *slope);
+        for (column, entry) in inner {
+            let product = pool.mul(partial, *entry);
             let sum = match row.get(column) {
                 Some(before) => pool.add(*before, product),
                 None => product,
@@ -145,7 +145,7 @@ fn chain(
             row.insert(*column, sum);
         }
     }
-    row.retain(|_, slope| pool.as_constant(*slope) != Some(0.0));
+    row.retain(|_, entry| pool.as_constant(*entry) != Some(0.0));
     row
 }
 
@@ -155,16 +155,16 @@ fn chain_by_column(
     pool: &mut Pool,
     e: Expr,
     system: [Expr; 2],
-    slopes: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
+    derivatives: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
 ) -> BTreeMap<usize, Expr> {
-    let of = |v: VarId| slopes.get(&v).into_iter().flat_map(|row| row.keys().copied());
+    let of = |v: VarId| derivatives.get(&v).into_iter().flat_map(|row| row.keys().copied());
     let variables = system.map(|list| pool.variables(list));
     let columns: BTreeSet<usize> = variables.iter().flatten().flat_map(|v| of(*v)).collect();
     let mut row = BTreeMap::new();
     for column in columns {
-        let seed = |v: VarId| slopes.get(&v).and_then(|row| row.get(&column)).copied();
+        let seed = |v: VarId| derivatives.get(&v).and_then(|row| row.get(&column)).copied();
         row.insert(column, differentiate(pool, e, &seed));
     }
-    row.retain(|_, slope| pool.as_constant(*slope) != Some(0.0));
+    row.retain(|_, entry| pool.as_constant(*entry) != Some(0.0));
     row
 }

@@ -110,7 +110,7 @@ impl LinearSystem {
         }
         match self.is_singular {
             false => self.lu.solve(&mut self.x),
-            true => self.solve_singular(solve.is_slope)?,
+            true => self.solve_singular(solve.is_derivative)?,
         }
         if self.x.iter().any(|x| !x.is_finite()) {
             return Err(NoSolution);
@@ -289,7 +289,7 @@ impl LinearSystem {
     }
 
     /// Replaces the scaled b in x by the smallest solution.
-    fn solve_singular(&mut self, is_slope: bool) -> Result<(), NoSolution> {
+    fn solve_singular(&mut self, is_derivative: bool) -> Result<(), NoSolution> {
         let n = self.n;
         let b = &mut self.right;
         b.copy_from_slice(&self.x);
@@ -306,8 +306,8 @@ impl LinearSystem {
         }
         self.x.iter_mut().zip(&self.column_scale).for_each(|(x, scale)| *x *= scale);
         self.null.chunks_exact(n).for_each(|null| remove_part(&mut self.x, null));
-        if is_slope || is_solved(&self.matrix, &self.x, b) {
-            self.is_one_of_many = rank < n && !is_slope;
+        if is_derivative || is_solved(&self.matrix, &self.x, b) {
+            self.is_one_of_many = rank < n && !is_derivative;
             return Ok(());
         }
         if !self.has_factors {
@@ -384,14 +384,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Solves with A by rows in the first registers and b behind it.
-    fn solve(a: &[f64], b: &[f64], is_slope: bool) -> Option<Vec<f64>> {
+    /// Solves with A by rows in the first registers and b after it.
+    fn solve(a: &[f64], b: &[f64], is_derivative: bool) -> Option<Vec<f64>> {
         let n = b.len();
         let mut r: Vec<f64> = a.iter().chain(b).copied().chain(vec![0.0; n]).collect();
         let entries = (0..(n * n) as u32).map(|place| (place, place)).collect();
         let right = ((n * n) as u32..(n * n + n) as u32).collect();
         let d = (n * n + n) as u32;
-        let solve = LinearSolve { system: 0, entries: Some(entries), right, d, is_slope };
+        let solve = LinearSolve { system: 0, entries: Some(entries), right, d, is_derivative };
         LinearSystem::new(n).run(&solve, &mut r).ok()?;
         Some(r[d as usize..].to_vec())
     }
@@ -422,7 +422,7 @@ mod tests {
             let right = ((n * n) as u32..(n * n + n) as u32).collect();
             let d = (n * n + n) as u32;
             let solve =
-                LinearSolve { system: 0, entries: Some(entries), right, d, is_slope: false };
+                LinearSolve { system: 0, entries: Some(entries), right, d, is_derivative: false };
             let mut system = LinearSystem::new(n);
             system.run(&solve, &mut r).unwrap();
             system.open_unknowns()

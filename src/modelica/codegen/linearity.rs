@@ -3,7 +3,7 @@
 
 use crate::bytecode::Functions;
 use crate::causalize::{Assignment, CausalizedDae};
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::sim::Linearity;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
@@ -78,9 +78,12 @@ pub(super) fn linearity(
     outputs: &[Expr],
 ) -> Option<Linearity> {
     let variables = causalized.dae.variables.iter().map(|variable| match variable.kind {
-        Kind::Constant(_) | Kind::Parameter { .. } | Kind::Solved => FIXED,
-        Kind::Discrete | Kind::Previous(_) | Kind::Frozen | Kind::Signal => HELD,
-        Kind::Time => Form::Affine { in_states: false, in_time: true, at_events: false },
+        VariableKind::Constant(_) | VariableKind::Parameter { .. } | VariableKind::Solved => FIXED,
+        VariableKind::Discrete
+        | VariableKind::Previous(_)
+        | VariableKind::Frozen
+        | VariableKind::Signal => HELD,
+        VariableKind::Time => Form::Affine { in_states: false, in_time: true, at_events: false },
         _ => Form::Nonlinear,
     });
     let variables = variables.collect();

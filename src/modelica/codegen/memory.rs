@@ -33,7 +33,7 @@ pub(crate) struct Calls {
     pub(crate) keeps_unassigned: bool,
 }
 
-/// An impure call that was carried out.
+/// An impure call that was executed.
 #[derive(Debug, Clone)]
 struct ImpureCall {
     function: u32,
@@ -128,7 +128,7 @@ impl Calls {
         self.impure.clear();
     }
 
-    /// The place behind the last instruction of a function.
+    /// The position after the last instruction of a function.
     pub(crate) fn end_of(&self, function: u32) -> u32 {
         self.functions.codes[function as usize].end()
     }

@@ -14,7 +14,7 @@ use super::sequence::compile_outputs;
 use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::codegen::program::Differences;
 use crate::flatten::{BaseType, Variability};
-use crate::lower::{Dae, Kind, Relation, Variable};
+use crate::lower::{Dae, Relation, Variable, VariableKind};
 use crate::symbolic::{Expr, Node, Pool, RelationOperator, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
@@ -72,7 +72,7 @@ fn with_events(sorted: &CausalizedDae, literal: &[Found]) -> CausalizedDae {
         let variable = VarId(dae.variables.len() as u32);
         let frozen = Variable {
             name: format!("$relation[{}]", dae.relations.len() + 1).into(),
-            kind: Kind::Frozen,
+            kind: VariableKind::Frozen,
             base: BaseType::Boolean,
             variability: Variability::Discrete,
             span,
@@ -88,7 +88,8 @@ fn with_events(sorted: &CausalizedDae, literal: &[Found]) -> CausalizedDae {
     let mut successors = replaced;
     for block in blocks.iter_mut().chain(event_blocks) {
         // Values of events are computed at events only, where relations are what their sides say.
-        let is_between = |a: &Assignment| variables[a.variable.0 as usize].kind != Kind::Discrete;
+        let is_between =
+            |a: &Assignment| variables[a.variable.0 as usize].kind != VariableKind::Discrete;
         let (assignments, residuals) = parts(block);
         for assignment in assignments.iter_mut().filter(|a| is_between(a)) {
             assignment.value = replace(pool, &mut successors, assignment.value);

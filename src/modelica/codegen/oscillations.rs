@@ -23,7 +23,7 @@ pub(super) fn oscillations(
         needed.iter().map(|a| a.value).chain(functions.iter().copied()).collect();
     let arguments = arguments(pool, &values);
     let mut by_time: FxHashMap<VarId, Expr> = FxHashMap::default();
-    for assignment in behind(pool, needed, &arguments) {
+    for assignment in dependencies(pool, needed, &arguments) {
         if let Some(value) = in_time(pool, causalized, &by_time, assignment.value) {
             by_time.insert(assignment.variable, value);
         }
@@ -51,15 +51,15 @@ fn arguments(pool: &Pool, values: &[Expr]) -> IndexSet<Expr> {
 }
 
 /// The assignments that the arguments need, in order.
-fn behind(pool: &Pool, needed: &[Assignment], arguments: &IndexSet<Expr>) -> Vec<Assignment> {
-    let mut wanted: FxHashSet<VarId> = FxHashSet::default();
+fn dependencies(pool: &Pool, needed: &[Assignment], arguments: &IndexSet<Expr>) -> Vec<Assignment> {
+    let mut needed_variables: FxHashSet<VarId> = FxHashSet::default();
     let arguments: Vec<Expr> = arguments.iter().copied().collect();
-    pool.visit_variables(&arguments, |v| wanted.extend([v]));
+    pool.visit_variables(&arguments, |v| needed_variables.extend([v]));
     let mut found = Vec::new();
     for assignment in needed.iter().rev() {
-        if wanted.contains(&assignment.variable) {
+        if needed_variables.contains(&assignment.variable) {
             found.push(*assignment);
-            pool.visit_variables(&[assignment.value], |v| wanted.extend([v]));
+            pool.visit_variables(&[assignment.value], |v| needed_variables.extend([v]));
         }
     }
     found.reverse();

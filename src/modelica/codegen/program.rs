@@ -7,7 +7,7 @@ use super::tape::Tape;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::codegen::code::{CompiledRelation, CompiledSelection, LogAssertion, Outputs, Step};
 use crate::flatten::{BaseType, Variability};
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::sim::{Linearity, Pattern};
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::CausalityPrefix;
@@ -20,7 +20,7 @@ pub struct ParameterInfo {
     pub name: Arc<str>,
     /// Unit, empty if none.
     pub unit: Arc<str>,
-    /// The string behind its declaration.
+    /// The description string of its declaration.
     pub description: Arc<str>,
     /// Predefined type; values are numbers (Boolean 0 or 1, enumerations by ordinal).
     pub base: BaseType,
@@ -28,7 +28,7 @@ pub struct ParameterInfo {
     pub min: f64,
     /// Attribute `max`; `∞` without.
     pub max: f64,
-    /// Its value if nobody sets it; NaN if it cannot be computed.
+    /// Its default value; NaN if it cannot be computed.
     pub default: f64,
     /// Whether it stands directly in the class.
     pub top_level: bool,
@@ -46,7 +46,7 @@ pub struct VariableInfo {
     pub is_relative: bool,
     /// Unit for people, empty if none.
     pub(crate) display_unit: Arc<str>,
-    /// The string behind its declaration.
+    /// The description string of its declaration.
     pub description: Arc<str>,
     /// Predefined type.
     pub base: BaseType,
@@ -93,7 +93,7 @@ pub enum Access {
     },
 }
 
-/// What a program knows of its relations inside `noEvent`, once somebody has asked.
+/// The relations inside `noEvent` of a program, collected at the first request.
 #[derive(Debug, Default)]
 pub(super) struct Literal {
     pub(super) differences: OnceLock<Option<Differences>>,
@@ -179,7 +179,7 @@ pub struct Program {
     pub(crate) log_assertions: Vec<LogAssertion>,
     pub(crate) events: Events,
     /// Whether equations contain the derivatives of recorded inputs, which jump at every knot.
-    pub(crate) reads_slopes: bool,
+    pub(crate) reads_rates: bool,
     /// What became of its relations inside `noEvent`.
     #[serde(skip)]
     pub(super) literal: Literal,
@@ -203,7 +203,7 @@ impl Program {
     /// Whether a mean of values of a variable is a value of it.
     pub(crate) fn has_means(&self, variable: VarId) -> bool {
         let variable = self.sorted.dae.variable(variable);
-        variable.base == BaseType::Real && variable.kind != Kind::Discrete
+        variable.base == BaseType::Real && variable.kind != VariableKind::Discrete
     }
 }
 

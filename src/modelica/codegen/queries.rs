@@ -7,7 +7,7 @@ use crate::causalize::CausalizedDae;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{Experiment, Variability};
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::source::Span;
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
@@ -112,23 +112,23 @@ impl Program {
     /// compare included.
     fn dependencies(&self, variables: &[usize]) -> FxHashSet<VarId> {
         let dae = &self.sorted.dae;
-        let wanted: FxHashSet<VarId> = variables
+        let sources: FxHashSet<VarId> = variables
             .iter()
             .filter_map(|at| self.variables.get(*at))
             .map(|info| self.resolve(info.variable).0)
             .collect();
-        let mut needed = close(&dae.pool, &self.sequence, wanted);
+        let mut needed = close(&dae.pool, &self.sequence, sources);
         loop {
-            let mut wanted = needed.clone();
+            let mut sources = needed.clone();
             for relation in dae.relations.iter().filter(|r| needed.contains(&r.variable)) {
-                wanted.extend(dae.pool.variables(relation.left));
-                wanted.extend(dae.pool.variables(relation.right));
+                sources.extend(dae.pool.variables(relation.left));
+                sources.extend(dae.pool.variables(relation.right));
             }
             for rounding in dae.events.roundings.iter().filter(|r| needed.contains(&r.variable)) {
-                wanted.extend(dae.pool.variables(rounding.argument));
+                sources.extend(dae.pool.variables(rounding.argument));
             }
             let before = needed.len();
-            needed = close(&dae.pool, &self.sequence, wanted);
+            needed = close(&dae.pool, &self.sequence, sources);
             if needed.len() == before {
                 return needed;
             }
@@ -142,7 +142,11 @@ impl Program {
         let remembered = |v: &VarId| {
             matches!(
                 self.sorted.dae.variable(*v).kind,
-                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved | Kind::Delayed
+                VariableKind::Discrete
+                    | VariableKind::Previous(_)
+                    | VariableKind::Signal
+                    | VariableKind::Solved
+                    | VariableKind::Delayed
             )
         };
         let found = |v: &VarId| needed.contains(v);

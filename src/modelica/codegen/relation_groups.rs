@@ -3,7 +3,7 @@
 
 use super::code::CompiledRelation;
 use crate::causalize::CausalizedDae;
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
 use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -58,7 +58,8 @@ pub(super) fn memoryless(
         remember(&mut remembered, relation.left);
         remember(&mut remembered, relation.right);
     }
-    let has_memory = |v: VarId| matches!(dae.variable(v).kind, Kind::Previous(_) | Kind::Signal);
+    let has_memory =
+        |v: VarId| matches!(dae.variable(v).kind, VariableKind::Previous(_) | VariableKind::Signal);
     for equation in &events.equations {
         if [equation.left, equation.right].iter().any(|side| pool.any_variable(*side, has_memory)) {
             remember(&mut remembered, equation.right);

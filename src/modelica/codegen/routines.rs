@@ -80,7 +80,7 @@ impl Routines {
         self.known.clear();
     }
 
-    /// Writes the routines behind the code of a tape.
+    /// Writes the routines after the code of a tape.
     pub(super) fn append(self, tape: &mut Tape) {
         if self.codes.is_empty() {
             return;

@@ -18,30 +18,30 @@ use std::collections::BTreeMap;
 pub(super) fn close(
     pool: &Pool,
     sequence: &[Assignment],
-    mut wanted: FxHashSet<VarId>,
+    mut needed: FxHashSet<VarId>,
 ) -> FxHashSet<VarId> {
     let mut collection = VariableCollection::new(pool);
     for assignment in sequence.iter().rev() {
-        if wanted.contains(&assignment.variable) {
+        if needed.contains(&assignment.variable) {
             collection.add(assignment.value, |variable| {
-                wanted.insert(variable);
+                needed.insert(variable);
             });
         }
     }
-    wanted
+    needed
 }
 
 /// The assignments that outputs need, in order.
 pub(crate) fn slice(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> Vec<Assignment> {
-    let mut wanted = FxHashSet::default();
+    let mut needed = FxHashSet::default();
     let mut collection = VariableCollection::new(pool);
     for output in outputs {
         collection.add(*output, |variable| {
-            wanted.insert(variable);
+            needed.insert(variable);
         });
     }
-    let wanted = close(pool, sequence, wanted);
-    sequence.iter().filter(|a| wanted.contains(&a.variable)).copied().collect()
+    let needed = close(pool, sequence, needed);
+    sequence.iter().filter(|a| needed.contains(&a.variable)).copied().collect()
 }
 
 /// Code that computes outputs, and only what they need.
@@ -93,7 +93,7 @@ pub(super) fn compile_steps(
         };
         steps.extend(compile_run(pool, registers, &mut run));
         let residuals: Vec<Expr> = torn.residuals.iter().map(|(residual, _)| *residual).collect();
-        let slopes =
+        let derivatives =
             differentiate_sequence(pool, &torn.assignments, &residuals, &torn.iteration, next);
         let zero = pool.constant(0.0);
         let one = pool.constant(1.0);
@@ -111,7 +111,7 @@ pub(super) fn compile_steps(
         }
         builder.mark(has_residuals, one);
         let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
-        for Assignment { variable, value, equation } in &slopes.sequence {
+        for Assignment { variable, value, equation } in &derivatives.sequence {
             if !inner.contains(variable) {
                 builder.origin(*equation as u32);
                 builder.define(*variable, *value);
@@ -119,7 +119,7 @@ pub(super) fn compile_steps(
         }
         // Only what is not always zero: large loops have few entries in every row.
         let mut entries: Vec<BTreeMap<usize, Register>> = Vec::new();
-        for (row, (_, equation)) in slopes.rows.iter().zip(&torn.residuals) {
+        for (row, (_, equation)) in derivatives.rows.iter().zip(&torn.residuals) {
             builder.origin(*equation as u32);
             let emitted = row.iter().map(|(column, entry)| (*column, builder.emit(*entry)));
             entries.push(emitted.collect());

@@ -174,8 +174,8 @@ impl<'a> TapeBuilder<'a> {
             }
             // Its entries are read where it is used.
             Node::List(_) => return 0,
-            Node::Solution { matrix, right, output, is_slope } => {
-                return output + self.solution(*matrix, *right, *is_slope);
+            Node::Solution { matrix, right, output, is_derivative } => {
+                return output + self.solution(*matrix, *right, *is_derivative);
             }
             _ => {}
         }
@@ -254,8 +254,8 @@ impl<'a> TapeBuilder<'a> {
     }
 
     /// The solution of a linear system, once for all unknowns; returns the register of the first.
-    fn solution(&mut self, matrix: Expr, right: Expr, is_slope: bool) -> Register {
-        let key = Several::Solution(matrix, right, is_slope);
+    fn solution(&mut self, matrix: Expr, right: Expr, is_derivative: bool) -> Register {
+        let key = Several::Solution(matrix, right, is_derivative);
         if let Some(known) = self.several.get(&key, &self.branches) {
             return known;
         }
@@ -274,7 +274,7 @@ impl<'a> TapeBuilder<'a> {
             }
         };
         self.tape.code.push(Instruction::Solve { solve: self.tape.solves.len() as u32 });
-        self.tape.solves.push(LinearSolve { system, entries, right, d, is_slope });
+        self.tape.solves.push(LinearSolve { system, entries, right, d, is_derivative });
         self.several.insert(key, d, &self.branches);
         d
     }

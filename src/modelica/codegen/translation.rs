@@ -132,7 +132,7 @@ fn signatures(
     (functions, elimination, asking)
 }
 
-/// Room for A by rows and b behind it.
+/// Room for A by rows and b after it.
 const SMALL_SYSTEM: usize = MOST_SMALL * (MOST_SMALL + 1);
 
 /// Replaces b by the solution of n equations, by what is not a number if they are not clearly

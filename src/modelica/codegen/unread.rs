@@ -3,7 +3,7 @@
 //! observed, so that the simulation goes on without them. A function outside its domain is an error.
 
 use crate::causalize::{Block, CausalizedDae};
-use crate::lower::{Dae, Kind};
+use crate::lower::{Dae, VariableKind};
 use crate::symbolic::{Expr, Node, Pool, VarId, VariableCollection};
 use rustc_hash::FxHashSet;
 
@@ -72,8 +72,8 @@ impl Read<'_> {
     fn roots(&mut self, dae: &Dae) {
         for (at, variable) in (0..).map(VarId).zip(&dae.variables) {
             match variable.kind {
-                Kind::Previous(of) => self.variables.extend([at, of]),
-                Kind::Unknown => {}
+                VariableKind::Previous(of) => self.variables.extend([at, of]),
+                VariableKind::Unknown => {}
                 _ => self.variables.extend([at]),
             }
         }

@@ -1,7 +1,7 @@
 //! What machine code asks this process for: solutions of linear systems that need a workspace, and
 //! calls of functions.
 //!
-//! The code writes the operands to an array on its stack and reads the results behind them. The
+//! The code writes the operands to an array on its stack and reads the results after them. The
 //! workspaces are those of the interpreter, which solves and calls likewise: so both find the same
 //! factors, and give the same bits.
 
@@ -31,7 +31,7 @@ impl Workspaces<'_> {
 }
 
 /// The systems and calls of a tape on registers of their own: operands from register 0 on, results
-/// behind them. Machine code has their addresses, so it is kept as long as they are.
+/// after them. Machine code has their addresses, so it is kept as long as they are.
 pub(super) struct Upcalls {
     /// With the registers of the operands in the tape; `None` for systems that need no workspace.
     solves: Vec<Option<(LinearSolve, Vec<Register>)>>,

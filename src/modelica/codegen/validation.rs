@@ -229,12 +229,12 @@ impl CompiledTransport {
 
 impl Recording {
     fn is_valid(&self, limits: &Limits<'_>) -> bool {
-        let variables = self.tracks.iter().flat_map(|track| [Some(track.value), track.slope]);
+        let variables = self.tracks.iter().flat_map(|track| [Some(track.value), track.rate]);
         let mut registers = variables.chain([self.since]).flatten().map(|variable| variable.0);
         !self.knots.is_empty()
             && self.knots.is_sorted()
             && self.tracks.iter().all(|track| track.samples.len() == self.knots.len())
-            && self.tracks.iter().all(|track| track.slope.is_none() || self.since.is_some())
+            && self.tracks.iter().all(|track| track.rate.is_none() || self.since.is_some())
             && registers.all(|register| limits.has(register, 1))
     }
 }

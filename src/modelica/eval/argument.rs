@@ -43,7 +43,7 @@ impl Evaluator<'_> {
         binding.finish().at(span)
     }
 
-    /// An argument or default as the input wants it: by name, as a function, or evaluated.
+    /// An argument or default as the input expects it: by name, as a function, or evaluated.
     pub(super) fn argument(
         &mut self,
         input: &FunctionComponent,
@@ -60,8 +60,8 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A name as written, without looking at what it stands for; where a list of names is wanted,
-    /// the vector of their texts.
+    /// A name as written, without evaluating it; where a list of names is expected, the vector of
+    /// these as Strings.
     fn name_argument(
         &mut self,
         input: &FunctionComponent,
@@ -96,17 +96,17 @@ impl Evaluator<'_> {
     }
 
     fn names(&mut self, argument: &Expression) -> Result<Value, Diagnostic> {
-        let texts = match &argument.kind {
+        let strings = match &argument.kind {
             ExpressionKind::Array(names) => {
                 names.iter().map(|name| self.written(name)).collect::<Result<_, _>>()?
             }
             ExpressionKind::Reference(_) => vec![self.written(argument)?],
             _ => match self.expression(argument)? {
-                texts if texts.rank() == 1 => Vec::from_value(texts).at(argument.span)?,
+                strings if strings.rank() == 1 => Vec::from_value(strings).at(argument.span)?,
                 text => vec![Arc::from_value(text).at(argument.span)?],
             },
         };
-        Ok(Value::Array(ArrayValue::vector(Elements::String(texts))))
+        Ok(Value::Array(ArrayValue::vector(Elements::String(strings))))
     }
 
     /// `x`, `a.b[2]`, `der(x)` as written; the text of a String; the name in the value of anything

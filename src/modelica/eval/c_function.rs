@@ -49,7 +49,7 @@ pub fn brings_code(clause: &External) -> bool {
 /// The function in C that a clause means, compiled together with `others`.
 ///
 /// # Errors
-/// The declaration has no equivalent in C, or whoever is asked refuses.
+/// The declaration has no equivalent in C, or the host refuses.
 pub(crate) fn in_c<'a>(
     function: &Function,
     clause: &External,
@@ -268,9 +268,9 @@ fn refused(function: &Function, what: &str, span: Span) -> Diagnostic {
 }
 
 /// What an argument of the annotation is bound to.
-fn annotated<'c>(clause: &'c External, wanted: &str) -> Option<&'c Expression> {
+fn annotated<'c>(clause: &'c External, name: &str) -> Option<&'c Expression> {
     clause.annotation.as_ref()?.arguments.iter().find_map(|argument| match argument {
-        ast::Argument::Element(element) if element.name.node.last()? == wanted => {
+        ast::Argument::Element(element) if element.name.node.last()? == name => {
             match &element.modification.as_ref()?.binding {
                 Some(Binding::Expression(e)) => Some(e),
                 _ => None,
@@ -280,20 +280,20 @@ fn annotated<'c>(clause: &'c External, wanted: &str) -> Option<&'c Expression> {
     })
 }
 
-fn string(clause: &External, wanted: &str) -> Option<String> {
-    match &annotated(clause, wanted)?.kind {
+fn string(clause: &External, name: &str) -> Option<String> {
+    match &annotated(clause, name)?.kind {
         ExpressionKind::String(text) => Some(text.to_string()),
         _ => None,
     }
 }
 
 /// One String or an array of Strings.
-fn strings(clause: &External, wanted: &str) -> Vec<String> {
+fn strings(clause: &External, name: &str) -> Vec<String> {
     let one = |e: &Expression| match &e.kind {
         ExpressionKind::String(text) => Some(text.to_string()),
         _ => None,
     };
-    let Some(e) = annotated(clause, wanted) else { return Vec::new() };
+    let Some(e) = annotated(clause, name) else { return Vec::new() };
     match &e.kind {
         ExpressionKind::Array(elements) => elements.iter().filter_map(one).collect(),
         _ => one(e).into_iter().collect(),

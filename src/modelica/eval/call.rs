@@ -196,11 +196,11 @@ impl Evaluator<'_> {
     }
 
     fn unknown_function(&mut self, name: &Name) -> Fault {
-        let wanted = name.to_string();
+        let expected = name.to_string();
         let mut known = self.host.function_names();
         known.extend(functions::names().map(str::to_owned));
-        fault!(UNKNOWN_FUNCTION, "there is no function `{wanted}`")
-            .help_if(suggest::did_you_mean(&wanted, known.iter().map(String::as_str)))
+        fault!(UNKNOWN_FUNCTION, "there is no function `{expected}`")
+            .help_if(suggest::did_you_mean(&expected, known.iter().map(String::as_str)))
     }
 
     /// A function of the values of its arguments.
@@ -300,16 +300,16 @@ fn infinite(entry: &Builtin, argument: &Value) -> Option<Value> {
     (function.accepts(&[*x]) && value.is_infinite()).then_some(Value::Real(value))
 }
 
-/// A row `[1, n]` or column `[n, 1]` as a vector where the built-in wants a vector, and a vector as
-/// a row where it wants `[1, n]`.
-fn reshaped(value: Value, wanted: &[ast::Subscript]) -> Value {
+/// A row `[1, n]` or column `[n, 1]` as a vector where the built-in expects a vector, and a vector
+/// as a row where it expects `[1, n]`.
+fn reshaped(value: Value, expected: &[ast::Subscript]) -> Value {
     let is_one = |subscript: &ast::Subscript| match subscript {
         ast::Subscript::Index(size) => size.kind == ExpressionKind::Integer(1),
         ast::Subscript::All(_) => false,
     };
     match value {
         Value::Array(mut array) => {
-            match (array.dims.as_slice(), wanted) {
+            match (array.dims.as_slice(), expected) {
                 (&[1, size] | &[size, 1], [_]) => array.dims = vec![size],
                 (&[size], [first, _]) if is_one(first) => array.dims = vec![1, size],
                 _ => {}

@@ -23,7 +23,7 @@ pub(super) enum Body<'b> {
 
 /// All subscripts that are exactly the variable `name`.
 pub(super) fn subscript_uses(name: Ident, body: Body<'_>) -> Vec<SubscriptUse> {
-    let mut search = Search { name, found: Vec::new() };
+    let mut search = SubscriptSearch { name, found: Vec::new() };
     match body {
         Body::Statements(statements) => search.statements(statements),
         Body::Expression(expression) => search.expression(expression),
@@ -31,12 +31,12 @@ pub(super) fn subscript_uses(name: Ident, body: Body<'_>) -> Vec<SubscriptUse> {
     search.found
 }
 
-struct Search {
+struct SubscriptSearch {
     name: Ident,
     found: Vec<SubscriptUse>,
 }
 
-impl Search {
+impl SubscriptSearch {
     fn statements(&mut self, statements: &[Statement]) {
         for statement in statements {
             self.statement(statement);

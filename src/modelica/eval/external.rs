@@ -4,7 +4,7 @@
 use super::errors::{EXTERNAL_FUNCTION, WRONG_ARGUMENTS};
 use super::{Evaluator, Function, FunctionComponent, ValueType, c_function};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::external::{Call, Entry, Kind, MAX_INTEGER, Object, Slot};
+use crate::external::{Call, Entry, MAX_INTEGER, Object, Slot, SlotKind};
 use crate::fault;
 use crate::name::Ident;
 use crate::syntax::ast;
@@ -77,14 +77,14 @@ impl Evaluator<'_> {
             None => None,
         };
         entry.check(&slots, result.as_ref()).at(clause.span)?;
-        let mut texts = Vec::new();
+        let mut strings = Vec::new();
         let mut call = Call {
             name: entry.name,
             arguments: &slots,
             result: result.as_ref(),
             numbers: &mut memory.numbers,
-            strings: &memory.texts,
-            written: &mut texts,
+            strings: &memory.strings,
+            written: &mut strings,
             objects: &mut memory.objects,
             outside: &mut (),
         };
@@ -94,8 +94,8 @@ impl Evaluator<'_> {
         } else {
             entry.call(&mut call).at(clause.span)?;
         }
-        for (position, text) in texts {
-            memory.texts[position as usize] = text;
+        for (position, text) in strings {
+            memory.strings[position as usize] = text;
         }
         for (component, slot) in std::mem::take(&mut memory.written) {
             let value = memory.value(&component, &slot).at(clause.span)?;
@@ -153,7 +153,7 @@ impl Evaluator<'_> {
 #[derive(Default)]
 struct Memory {
     numbers: Vec<f64>,
-    texts: Vec<Arc<str>>,
+    strings: Vec<Arc<str>>,
     objects: Vec<Object>,
     /// Components that the call may write to.
     written: Vec<(FunctionComponent, Slot)>,
@@ -165,13 +165,13 @@ impl Memory {
         let scalar = |kind, first| Slot { kind, first, dims: Box::new([]) };
         Ok(match value {
             Value::String(text) => {
-                self.texts.push(text);
-                scalar(Kind::Text, self.texts.len() as u32 - 1)
+                self.strings.push(text);
+                scalar(SlotKind::Text, self.strings.len() as u32 - 1)
             }
             Value::External(object) => {
                 self.objects.push(object.object);
                 self.numbers.push((self.objects.len() - 1) as f64);
-                scalar(Kind::Object, first)
+                scalar(SlotKind::Object, first)
             }
             Value::Array(array) => {
                 let dims = array.dims.iter().map(|size| *size as u32).collect();
@@ -189,13 +189,13 @@ impl Memory {
                         self.numbers.extend(values.iter().map(|value| value.ordinal as f64));
                     }
                     Elements::String(values) => {
-                        let first = self.texts.len() as u32;
-                        self.texts.extend(values);
-                        return Ok(Slot { kind: Kind::Text, first, dims });
+                        let first = self.strings.len() as u32;
+                        self.strings.extend(values);
+                        return Ok(Slot { kind: SlotKind::Text, first, dims });
                     }
                     Elements::Record(_) => return Err(refused("an array of records")),
                 }
-                Slot { kind: Kind::Number, first, dims }
+                Slot { kind: SlotKind::Number, first, dims }
             }
             other => {
                 self.numbers.push(match other {
@@ -205,7 +205,7 @@ impl Memory {
                     Value::Enumeration(value) => value.ordinal as f64,
                     other => return Err(refused(&other.type_name())),
                 });
-                scalar(Kind::Number, first)
+                scalar(SlotKind::Number, first)
             }
         })
     }
@@ -216,7 +216,7 @@ impl Memory {
             ValueType::ExternalObject(_) => {
                 self.numbers.push(-1.0);
                 let first = self.numbers.len() as u32 - 1;
-                Ok(Slot { kind: Kind::Object, first, dims: Box::new([]) })
+                Ok(Slot { kind: SlotKind::Object, first, dims: Box::new([]) })
             }
             _ => self.add(stored),
         }
@@ -225,11 +225,11 @@ impl Memory {
     /// What stands in a slot, as the component's type has it.
     fn value(&self, component: &FunctionComponent, slot: &Slot) -> Result<Value, Fault> {
         let first = slot.first as usize;
-        if slot.kind == Kind::Text && !slot.dims.is_empty() {
+        if slot.kind == SlotKind::Text && !slot.dims.is_empty() {
             return Err(refused("an array of Strings to be written"));
         }
-        if slot.kind == Kind::Text {
-            return Ok(Value::String(self.texts[first].clone()));
+        if slot.kind == SlotKind::Text {
+            return Ok(Value::String(self.strings[first].clone()));
         }
         let numbers = &self.numbers[first..first + slot.len()];
         let whole = || numbers.iter().map(|value| *value as i64);

@@ -5,8 +5,8 @@
 pub enum Flow {
     /// With the next statement.
     Next,
-    /// Behind the innermost loop (`break`, MLS §11.2.5).
+    /// After the innermost loop (`break`, MLS §11.2.5).
     Break,
-    /// Behind the end of the function (`return`, MLS §11.2.6).
+    /// At the end of the function (`return`, MLS §11.2.6).
     Return,
 }

@@ -26,7 +26,7 @@ pub struct Function {
     pub locals: Vec<FunctionComponent>,
     /// What it does.
     pub body: FunctionBody,
-    /// The string behind its name.
+    /// The description string after its name.
     pub description: Option<Arc<str>>,
     /// Arguments of its class annotation (`derivative`, `inverse`, `Inline`, …).
     pub annotation: Vec<ast::Argument>,
@@ -98,7 +98,7 @@ pub struct FunctionComponent {
     pub field_dims: Vec<(Ident, Vec<ast::Subscript>)>,
     /// Default of an input, initial value of an output or local.
     pub binding: Option<ast::Expression>,
-    /// The string behind it.
+    /// The description string after it.
     pub description: Option<Arc<str>>,
     /// Where it is declared.
     pub span: Span,
@@ -145,7 +145,7 @@ impl FunctionComponent {
 
     /// Whether its size or its value names one of these, itself aside.
     fn needs_any_of(&self, names: &[Ident]) -> bool {
-        let mut search = Search { own: self.name, names, found: false };
+        let mut search = NameSearch { own: self.name, names, found: false };
         self.sizes().for_each(|size| search.expression(size));
         self.binding.iter().for_each(|binding| search.expression(binding));
         search.found
@@ -153,13 +153,13 @@ impl FunctionComponent {
 }
 
 /// Looks for names of variables.
-struct Search<'a> {
+struct NameSearch<'a> {
     own: Ident,
     names: &'a [Ident],
     found: bool,
 }
 
-impl Visit for Search<'_> {
+impl Visit for NameSearch<'_> {
     fn reference(&mut self, reference: &ast::ComponentReference) {
         walk_reference(self, reference);
         let first = reference.parts.first().map(|part| part.name);

@@ -13,14 +13,14 @@ pub enum Callee {
     /// A function written in Modelica.
     Function(Arc<Function>),
     /// A command that the host runs itself: [`Host::call_builtin`] gets the unevaluated
-    /// arguments' values as [`Host`] wants them.
+    /// arguments' values as [`Host`] expects them.
     Builtin(Arc<Function>),
 }
 
 /// Runs functions in a quicker way than statement by statement.
 pub trait RunCompiled {
     /// The outputs of a pure function for values of all its inputs, the same that its statements give;
-    /// `None` where they have to be carried out, which gives the errors and the warnings.
+    /// `None` where they have to be executed, which gives the errors and the warnings.
     fn run_compiled(&mut self, function: &Arc<Function>, inputs: &[&Value]) -> Option<Vec<Value>>;
 }
 
@@ -100,7 +100,7 @@ pub trait Host {
         Ok(false)
     }
 
-    /// Told when a script assigns a value to a simple name; `before` is the value that a variable
+    /// Called when a script assigns a value to a simple name; `before` is the value that a variable
     /// without a declared type had. Whether the name is one of the host's, which has taken the value:
     /// then the script has no variable of the name.
     fn assigned(
@@ -166,8 +166,7 @@ pub trait Host {
         Vec::new()
     }
 
-    /// Who answers external functions that want files or the screen; without anyone they are
-    /// refused.
+    /// Answers external functions that access files or the screen; without it they are refused.
     fn outside(&mut self) -> Option<&mut dyn crate::external::Outside> {
         None
     }
@@ -191,14 +190,14 @@ pub trait Host {
         None
     }
 
-    /// Told before each turn of an outermost loop of a script, not of a function: `turn` counts
-    /// from 0, `turns` is `None` in a `while` loop.
-    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
-        let _ = (turn, turns);
+    /// Called before each iteration of an outermost loop of a script, not of a function:
+    /// `iteration` counts from 0, `count` is `None` in a `while` loop.
+    fn loop_iteration(&mut self, iteration: usize, count: Option<usize>) {
+        let _ = (iteration, count);
     }
 
-    /// Asked between statements and loop turns: whether to stop (the user pressed Ctrl-C), and the
-    /// error to stop with.
+    /// Called between statements and loop iterations: whether to stop (the user pressed Ctrl-C),
+    /// and the error to stop with.
     fn interrupted(&mut self) -> Option<Fault> {
         None
     }

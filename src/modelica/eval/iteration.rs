@@ -182,14 +182,14 @@ impl Evaluator<'_> {
         &mut self,
         index: &ForIndex,
         range: &Range,
-        mut turn: impl FnMut(&mut Self) -> Result<(), Diagnostic>,
+        mut iteration: impl FnMut(&mut Self) -> Result<(), Diagnostic>,
     ) -> Result<(), Diagnostic> {
         for at in 0..range.count() {
             if at % 4096 == 4095 {
                 self.check_interrupted(index.name.span)?;
             }
             self.scope.iterators.push((index.name.node, range.get(at)));
-            let result = turn(self);
+            let result = iteration(self);
             self.scope.iterators.pop();
             result?;
         }

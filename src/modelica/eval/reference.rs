@@ -135,7 +135,7 @@ impl Evaluator<'_> {
         self.scope.get(name).is_some_and(is_scalar)
     }
 
-    /// Whether assigning to a name nobody knows makes a variable.
+    /// Whether an assignment to an unknown name declares a variable.
     fn may_declare(&self, target: &ComponentReference) -> bool {
         self.scope.is_script() && target.as_ident().is_some()
     }

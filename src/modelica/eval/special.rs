@@ -69,13 +69,14 @@ impl Evaluator<'_> {
         let Some(dimension) = dimension else {
             return Ok(dims.into_iter().map(|size| size as i64).collect::<Vec<i64>>().into());
         };
-        let wanted = i64::from_value(self.expression(dimension)?).at(dimension.span)?;
-        let found = usize::try_from(wanted).ok().and_then(|at| dims.get(at.checked_sub(1)?));
+        let dimension_index = i64::from_value(self.expression(dimension)?).at(dimension.span)?;
+        let found =
+            usize::try_from(dimension_index).ok().and_then(|at| dims.get(at.checked_sub(1)?));
         match found {
             Some(size) => Ok(Value::Integer(*size as i64)),
             None => Err(fault!(
                 DOMAIN_ERROR,
-                "there is no dimension {wanted}: the array has {}",
+                "there is no dimension {dimension_index}: the array has {}",
                 dims.len()
             )
             .at(dimension.span)),

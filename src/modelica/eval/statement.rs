@@ -182,32 +182,33 @@ impl Evaluator<'_> {
         let watched = self.is_outermost_of_script();
         let depth = self.scope.iterators.len();
         self.scope.loops += 1;
-        let result = self.turns(range.count(), watched, index.name.span, |evaluator, turn| {
-            evaluator.scope.iterators.truncate(depth);
-            evaluator.scope.iterators.push((index.name.node, range.get(turn)));
-            match inner {
-                [] => evaluator.statements(body),
-                inner => evaluator.for_statement(inner, body),
-            }
-        });
+        let result =
+            self.iterations(range.count(), watched, index.name.span, |evaluator, iteration| {
+                evaluator.scope.iterators.truncate(depth);
+                evaluator.scope.iterators.push((index.name.node, range.get(iteration)));
+                match inner {
+                    [] => evaluator.statements(body),
+                    inner => evaluator.for_statement(inner, body),
+                }
+            });
         self.scope.iterators.truncate(depth);
         self.scope.loops -= 1;
         result
     }
 
-    fn turns(
+    fn iterations(
         &mut self,
         count: usize,
         watched: bool,
         span: Span,
         mut body: impl FnMut(&mut Self, usize) -> Result<Flow, Diagnostic>,
     ) -> Result<Flow, Diagnostic> {
-        for turn in 0..count {
+        for iteration in 0..count {
             self.check_interrupted(span)?;
             if watched {
-                self.host.loop_turn(turn, Some(count));
+                self.host.loop_iteration(iteration, Some(count));
             }
-            match body(self, turn)? {
+            match body(self, iteration)? {
                 Flow::Next => {}
                 Flow::Break => return Ok(Flow::Next),
                 Flow::Return => return Ok(Flow::Return),
@@ -223,24 +224,24 @@ impl Evaluator<'_> {
     ) -> Result<Flow, Diagnostic> {
         let watched = self.is_outermost_of_script();
         self.scope.loops += 1;
-        let result = self.while_turns(condition, body, watched);
+        let result = self.while_iterations(condition, body, watched);
         self.scope.loops -= 1;
         result
     }
 
-    fn while_turns(
+    fn while_iterations(
         &mut self,
         condition: &Expression,
         body: &[Statement],
         watched: bool,
     ) -> Result<Flow, Diagnostic> {
-        let mut turn = 0;
+        let mut iteration = 0;
         while self.condition(condition)? {
             self.check_interrupted(condition.span)?;
             if watched {
-                self.host.loop_turn(turn, None);
+                self.host.loop_iteration(iteration, None);
             }
-            turn += 1;
+            iteration += 1;
             match self.statements(body)? {
                 Flow::Next => {}
                 Flow::Break => return Ok(Flow::Next),

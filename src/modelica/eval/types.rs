@@ -46,8 +46,8 @@ impl Declared {
     }
 
     /// Room for a value, and the same shape with `false` where nothing has been assigned. A size
-    /// that is not declared is 0 until an assignment sets it (MLS §12.4.5). Records are made by
-    /// whoever can evaluate the bindings of their components.
+    /// that is not declared is 0 until an assignment sets it (MLS §12.4.5). Records are made where
+    /// the bindings of their components can be evaluated.
     pub(super) fn storage(&self) -> Result<(Value, Value), Fault> {
         let scalar = match &self.value_type {
             ValueType::Real => Value::Real(0.0),

@@ -100,7 +100,7 @@ impl Variable {
         Ok(())
     }
 
-    /// In a script `v := {1, 2}; v[1] := 0.5` makes `v` an array of Reals: nobody declared it.
+    /// In a script `v := {1, 2}; v[1] := 0.5` makes `v` an array of Reals: it has no declaration.
     fn widen_for(&mut self, path: &[Step], new: &Value) {
         let is_real = match new {
             Value::Real(_) => true,

@@ -1,7 +1,7 @@
 //! No arguments of the right kinds make a function panic, whatever their sizes and values: they may
 //! come from any model, or from a file that was damaged.
 
-use super::call::{Call, Kind, Object, Outside, Slot};
+use super::call::{Call, Object, Outside, Slot, SlotKind};
 use super::{Entry, FAMILIES};
 use crate::diag::Fault;
 use crate::external::Random;
@@ -28,7 +28,7 @@ const NUMBERS: &[f64] = &[
     f64::INFINITY,
 ];
 /// Letters for the jobs of LAPACK, names of files and tables, what is scanned.
-const TEXTS: &[&str] = &[
+const STRINGS: &[&str] = &[
     "",
     "N",
     "T",
@@ -161,19 +161,20 @@ impl<'c> Arguments<'c> {
         };
         let n: usize = dims.iter().map(|size| *size as usize).product();
         let kind = match letter {
-            't' | 'T' | 'f' | 'g' | 's' => Kind::Text,
-            'o' => Kind::Object,
-            _ => Kind::Number,
+            't' | 'T' | 'f' | 'g' | 's' => SlotKind::Text,
+            'o' => SlotKind::Object,
+            _ => SlotKind::Number,
         };
-        let first = if kind == Kind::Text { self.strings.len() } else { self.numbers.len() } as u32;
+        let first =
+            if kind == SlotKind::Text { self.strings.len() } else { self.numbers.len() } as u32;
         for _ in 0..n {
             match kind {
-                Kind::Text => {
-                    let texts = if self.common.is_some() { USUAL } else { TEXTS };
-                    let text = texts[self.choice(texts.len())];
+                SlotKind::Text => {
+                    let strings = if self.common.is_some() { USUAL } else { STRINGS };
+                    let text = strings[self.choice(strings.len())];
                     self.strings.push(text.into());
                 }
-                Kind::Object => {
+                SlotKind::Object => {
                     let newest = self.objects.len() - 1;
                     let handle = [newest, self.choice(newest + 2)][self.choice(2)];
                     self.numbers.push(handle as f64);

@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Balanced {
     /// B = D⁻¹ Pᵀ A P D.
     pub(super) matrix: DMatrix<f64>,
-    /// Rows and columns that are scaled; upper triangular before and behind.
+    /// Rows and columns that are scaled; upper triangular before and after these.
     pub(super) active: Range<usize>,
     /// The diagonal of D within `active`; the row, from 0, that was interchanged with this one
     /// outside.
@@ -81,7 +81,7 @@ impl Balanced {
         }
     }
 
-    /// Turns right eigenvectors of the balanced matrix, as columns, into those of the matrix.
+    /// Transforms right eigenvectors of the balanced matrix, as columns, to those of the matrix.
     pub fn right(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).scale_mut(self.scale[k]);
@@ -89,7 +89,7 @@ impl Balanced {
         self.back(vectors);
     }
 
-    /// Turns left eigenvectors of the balanced matrix, as columns, into those of the matrix.
+    /// Transforms left eigenvectors of the balanced matrix, as columns, to those of the matrix.
     pub fn left(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).unscale_mut(self.scale[k]);

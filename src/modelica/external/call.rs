@@ -17,13 +17,13 @@ pub type Object = Arc<dyn Any + Send + Sync>;
 
 /// What a slot holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-pub enum Kind {
+pub enum SlotKind {
     /// Numbers at a position of [`Call::numbers`].
     Number,
-    /// The text at a position of [`Call::strings`], or the texts from there on.
+    /// The string at a position of [`Call::strings`], or the strings from there on.
     Text,
     /// The text whose number stands at a position of [`Call::numbers`]; a function finds it as a
-    /// [`Kind::Text`].
+    /// [`SlotKind::Text`].
     Numbered,
     /// The object whose handle stands at a position of [`Call::numbers`].
     Object,
@@ -33,7 +33,7 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Slot {
     /// What it holds.
-    pub kind: Kind,
+    pub kind: SlotKind,
     /// Its position.
     pub first: u32,
     /// Its sizes; none for a scalar.
@@ -44,14 +44,14 @@ impl Slot {
     /// Whether it is what a letter of a signature stands for.
     pub(super) fn fits(&self, letter: char) -> bool {
         match letter {
-            'n' | 'N' => self.kind == Kind::Number && self.dims.is_empty(),
-            'a' | 'A' => self.kind == Kind::Number && !self.dims.is_empty(),
+            'n' | 'N' => self.kind == SlotKind::Number && self.dims.is_empty(),
+            'a' | 'A' => self.kind == SlotKind::Number && !self.dims.is_empty(),
             't' | 'T' | 'g' => {
-                matches!(self.kind, Kind::Text | Kind::Numbered) && self.dims.is_empty()
+                matches!(self.kind, SlotKind::Text | SlotKind::Numbered) && self.dims.is_empty()
             }
-            'f' => self.kind == Kind::Text && self.dims.is_empty(),
-            's' => self.kind == Kind::Text && !self.dims.is_empty(),
-            'o' => self.kind == Kind::Object,
+            'f' => self.kind == SlotKind::Text && self.dims.is_empty(),
+            's' => self.kind == SlotKind::Text && !self.dims.is_empty(),
+            'o' => self.kind == SlotKind::Object,
             _ => false,
         }
     }
@@ -80,7 +80,7 @@ pub trait Outside {
         Err(refused(&format!("to write the file `{path}`")))
     }
 
-    /// Writes behind the end of a file.
+    /// Appends to a file.
     fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
         let _ = bytes;
         Err(refused(&format!("to write the file `{path}`")))
@@ -129,7 +129,7 @@ pub trait Outside {
 
     /// A function in C that a library brings along, compiled and loaded.
     fn c_function(&mut self, request: &Request) -> Result<&'static Entry, Fault> {
-        Err(refused(&format!("to compile the C function `{}`", request.wanted().function)))
+        Err(refused(&format!("to compile the C function `{}`", request.requested().function)))
     }
 
     /// The hidden state of the random numbers.
@@ -166,7 +166,7 @@ pub struct Call<'a> {
     pub numbers: &'a mut [f64],
     /// All strings; arguments are read here.
     pub strings: &'a [Arc<str>],
-    /// Texts written, with their positions.
+    /// Strings written, with their positions.
     pub written: &'a mut Vec<(u32, Arc<str>)>,
     /// All objects, by handle.
     pub objects: &'a mut Vec<Object>,

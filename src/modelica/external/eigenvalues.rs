@@ -10,7 +10,7 @@ use super::Entry;
 use super::balancing::Balanced;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
-use super::matrices::{column, is_transposed, matrix, norm, square, wants, write};
+use super::matrices::{column, is_requested, is_transposed, matrix, norm, square, write};
 use super::schur::{RealSchur, modulus};
 use super::sylvester::sylvester;
 use crate::diag::Fault;
@@ -72,10 +72,10 @@ impl Decomposed {
 /// `(jobvl, jobvr, n, A, lda, wr, wi, VL, ldvl, VR, ldvr, work, lwork, info)`
 fn dgeev(call: &mut Call<'_>) -> Result<(), Fault> {
     let found = Decomposed::of(call, Balanced::of(square(call, 3)?))?;
-    if wants(call, 0) {
+    if is_requested(call, 0) {
         write(call, 7, &found.left());
     }
-    if wants(call, 1) {
+    if is_requested(call, 1) {
         write(call, 9, &found.right());
     }
     write_values(call, 5, &found.values);
@@ -93,10 +93,10 @@ fn dgeevx(call: &mut Call<'_>) -> Result<(), Fault> {
     let (left, right) = (found.left(), found.right());
     write(call, 5, &found.form.t);
     write_values(call, 7, &found.values);
-    if wants(call, 1) {
+    if is_requested(call, 1) {
         write(call, 9, &left);
     }
-    if wants(call, 2) {
+    if is_requested(call, 2) {
         write(call, 11, &right);
     }
     let Balanced { matrix, active, scale } = found.balanced;
@@ -107,7 +107,7 @@ fn dgeevx(call: &mut Call<'_>) -> Result<(), Fault> {
     write(call, 15, &column(&scale.iter().enumerate().map(from_one).collect::<Vec<_>>()));
     let size = norm(call, "1", &matrix)?;
     call.set(16, size);
-    if wants(call, 3) {
+    if is_requested(call, 3) {
         write(call, 17, &column(&conditions(&found.values, &left, &right)));
     }
     call.set(22, 0.0);
@@ -146,14 +146,14 @@ fn conditions(values: &[Complex<f64>], left: &DMatrix<f64>, right: &DMatrix<f64>
 /// `(jobvs, sort, select, n, A, lda, sdim, wr, wi, VS, ldvs, work, lwork, bwork, info)`; without
 /// order.
 fn dgees(call: &mut Call<'_>) -> Result<(), Fault> {
-    if wants(call, 1) {
+    if is_requested(call, 1) {
         return Err(call.fault("selecting eigenvalues by a function is not supported"));
     }
     let form = schur(call, &square(call, 4)?)?;
     write(call, 4, &form.t);
     call.set(6, 0.0);
     write_values(call, 7, &form.eigenvalues());
-    if wants(call, 0) {
+    if is_requested(call, 0) {
         write(call, 9, &form.q);
     }
     call.set(14, 0.0);
@@ -269,7 +269,7 @@ fn dtrsen(call: &mut Call<'_>) -> Result<(), Fault> {
     }
     write_values(call, 8, &form.eigenvalues());
     call.set(10, m as f64);
-    if wants(call, 0) {
+    if is_requested(call, 0) {
         let first = form.t.view((0, 0), (m, m)).into_owned();
         let second = form.t.view((m, m), (n - m, n - m)).into_owned();
         let coupling = form.t.view((0, m), (m, n - m)).into_owned();
@@ -306,7 +306,7 @@ fn reversed(a: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| a[(n - 1 - j, n - 1 - i)])
 }
 
-/// Rows and columns in reverse where told.
+/// Rows and columns in reverse where requested.
 fn flipped(a: DMatrix<f64>, (rows, columns): (bool, bool)) -> DMatrix<f64> {
     let (m, n) = a.shape();
     let at = |flip: bool, i: usize, n: usize| if flip { n - 1 - i } else { i };

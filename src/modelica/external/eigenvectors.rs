@@ -117,8 +117,8 @@ pub fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, sca
         let factor = match scale {
             Scale::Norm => {
                 let norm = vector.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt();
-                let turn = if size == 2 { turn(&vector) } else { C::new(1.0, 0.0) };
-                turn / norm
+                let phase = if size == 2 { phase(&vector) } else { C::new(1.0, 0.0) };
+                phase / norm
             }
             Scale::Largest => {
                 let size = |v: &C| v.re.abs() + v.im.abs();
@@ -139,7 +139,7 @@ pub fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, sca
 }
 
 /// The complex number of size 1 that makes the largest component real and positive.
-fn turn(vector: &[C]) -> C {
+fn phase(vector: &[C]) -> C {
     let mut greatest = C::new(0.0, 0.0);
     for value in vector {
         // Components that differ by rounding are equal: the first counts.

@@ -11,9 +11,9 @@ crate::codes! {
         "## What it means\nAn external function has no result for its arguments: a table that is not sorted, a string without a number, a matrix of the wrong size.\n\n\
          ## Example\nA table whose first column is `{0, 2, 1}`.\n\n\
          ## What to do\nThe message names the function and the reason; correct the arguments.",
-    /// A request to the outside world that nobody grants.
+    /// An access to files, the screen or the clock that is not granted.
     EXTERNAL_OUTSIDE = "external-outside":
-        "## What it means\nAn external function wants to read a file, to print or to read the clock, where that cannot be granted: inside a model that is simulated many times.\n\n\
+        "## What it means\nAn external function needs to read a file, to print or to read the clock, where that cannot be granted: inside a model that is simulated many times.\n\n\
          ## Example\nA table is read from a file whose name is known only when the simulation \
          starts.\n\n\
          ## What to do\nGive the values as parameters, or read the file in a script.",

@@ -9,7 +9,7 @@ use super::Entry;
 use super::balancing::Balanced;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
-use super::matrices::{column, norm, square, wants, write};
+use super::matrices::{column, is_requested, norm, square, write};
 use super::schur::{RealSchur, modulus};
 use crate::diag::Fault;
 use nalgebra::{Complex, DMatrix};
@@ -87,10 +87,10 @@ impl Generalized {
     }
 
     /// Writes left vectors to an argument and right ones to that after its leading dimension, where
-    /// the jobs, the first of which is named, want them.
+    /// the jobs, the first of which is named, request them.
     fn write_vectors(&self, call: &mut Call<'_>, job: usize, argument: usize) {
         for (at, vectors) in [&self.left, &self.right].into_iter().enumerate() {
-            if wants(call, job + at) {
+            if is_requested(call, job + at) {
                 write(call, argument + 2 * at, vectors);
             }
         }

@@ -159,7 +159,7 @@ fn dgehrd(call: &mut Call<'_>) -> Result<(), Fault> {
         let tau = reflect(&mut a, k + 1, k);
         let v = vector(&a, k + 1, k);
         apply_left(&mut a, &v, tau, k + 1, k + 1);
-        // The columns behind `k` do not hold vectors yet.
+        // The columns after `k` do not hold vectors yet.
         apply_right(&mut a, &v, tau, k + 1);
         taus.push(tau);
     }

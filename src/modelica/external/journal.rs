@@ -1,5 +1,5 @@
 //! What a simulation would do to the outside world, in order: it is done when the simulation has
-//! ended, if somebody wants it, and only where that is allowed.
+//! ended, if the caller requests it, and only where that is allowed.
 
 use super::Outside;
 use crate::diag::Fault;
@@ -111,7 +111,7 @@ impl Journal {
         self.add(Deed::Write { path: path.to_owned(), bytes: bytes.to_vec() })
     }
 
-    /// Writes behind the end of a file.
+    /// Appends to a file.
     pub fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
         self.add(Deed::Append { path: path.to_owned(), bytes: bytes.to_vec() })
     }

@@ -11,7 +11,7 @@
 use super::Entry;
 use super::call::Call;
 use super::householder::full_qr;
-use super::matrices::{column, matrix, wants, write};
+use super::matrices::{column, is_requested, matrix, write};
 use crate::diag::Fault;
 use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
@@ -153,10 +153,10 @@ fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
     }
     let (u, values, v_t) = singular_values(call, a)?;
     write(call, 6, &values);
-    if wants(call, 0) {
+    if is_requested(call, 0) {
         write(call, 7, &u);
     }
-    if wants(call, 1) {
+    if is_requested(call, 1) {
         write(call, 9, &v_t);
     }
     call.set(13, 0.0);
@@ -170,7 +170,7 @@ fn dgesdd(call: &mut Call<'_>) -> Result<(), Fault> {
     }
     let (u, values, v_t) = singular_values(call, matrix(call, 3)?)?;
     write(call, 5, &values);
-    if wants(call, 0) {
+    if is_requested(call, 0) {
         write(call, 6, &u);
         write(call, 8, &v_t);
     }

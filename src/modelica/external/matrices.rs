@@ -61,13 +61,13 @@ pub fn column(values: &[f64]) -> DMatrix<f64> {
 }
 
 /// Whether a job is asked for: its letter is not `N`.
-pub fn wants(call: &Call<'_>, argument: usize) -> bool {
+pub fn is_requested(call: &Call<'_>, argument: usize) -> bool {
     !call.text(argument).eq_ignore_ascii_case("N")
 }
 
 /// Whether the letter for op(A) is not `N`.
 pub fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
-    wants(call, argument)
+    is_requested(call, argument)
 }
 
 /// The norm that a letter names: greatest element, columns, rows, Frobenius.

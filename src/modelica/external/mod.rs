@@ -9,8 +9,8 @@
 //!
 //! Numbers are `f64` (Integers exact up to 2⁵³, Booleans 0 and 1), arrays row-major whatever the
 //! language of the call says. External objects (MLS §12.9.7) are values of this module, named by
-//! handles; they do not change once they are made. The one hidden state is that of [`Random`]. An
-//! external name that is not here is refused by whoever calls it.
+//! handles; they do not change once they are made. The one hidden state is that of [`Random`].
+//! Callers refuse an external name that is not here.
 //!
 //! LAPACK's routines use the LU, the triangular solutions, the balancing and the Schur iteration of
 //! nalgebra, which is built without SIMD kernels and threads, with elementary functions in Rust: the
@@ -48,7 +48,7 @@ mod tables;
 mod xorshift;
 
 pub(crate) use at_translation::AtTranslation;
-pub use call::{Call, Kind, Object, Outside, Slot};
+pub use call::{Call, Object, Outside, Slot, SlotKind};
 pub(crate) use call::{Callable, MAX_INTEGER};
 pub use journal::Journal;
 pub use messages::date_and_time;
@@ -69,17 +69,17 @@ pub(crate) type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
 pub struct Entry {
     /// Its external name.
     pub name: &'static str,
-    /// One letter an argument: `n` number, `a` array of numbers, `t` text, `f` text that names a
-    /// file to be read, `g` one that may name one, `s` array of texts, `o` object; capital letters
-    /// for those that are written to. `*` behind them stands for any number of parts of a text. `->`
-    /// and a letter if it has a result.
+    /// One letter an argument: `n` number, `a` array of numbers, `t` string, `f` string that names
+    /// a file to be read, `g` one that may name one, `s` array of strings, `o` object; capital
+    /// letters for those that are written to. a `*` after them stands for any number of parts of a
+    /// string. `->` and a letter if it has a result.
     pub signature: &'static str,
     /// What it does besides giving results.
     pub effect: Effect,
     /// Whether its results change in steps only, so that derivatives are zero.
     pub in_steps: bool,
-    /// Whether its result is 1 after every call that does not fail, and says no more than that it was
-    /// carried out.
+    /// Whether its result is 1 after every call that does not fail, and only confirms that it was
+    /// executed.
     pub(crate) confirms: bool,
     /// A file that the declaration must include for this function to be meant, where its name alone
     /// could be anybody's; empty otherwise.
@@ -242,46 +242,46 @@ impl Entry {
         self.places_of('g')
     }
 
-    fn places_of(&self, wanted: char) -> impl Iterator<Item = usize> {
+    fn places_of(&self, expected: char) -> impl Iterator<Item = usize> {
         let letters = self.signature.char_indices();
-        letters.filter(move |(_, letter)| *letter == wanted).map(|(at, _)| at)
+        letters.filter(move |(_, letter)| *letter == expected).map(|(at, _)| at)
     }
 
     /// Whether it has so many arguments, and a result or none.
     pub fn takes(&self, arguments: usize, has_result: bool) -> bool {
-        let (wanted, result) = match self.signature.split_once("->") {
-            Some((wanted, result)) => (wanted, !result.is_empty()),
+        let (expected, result) = match self.signature.split_once("->") {
+            Some((expected, result)) => (expected, !result.is_empty()),
             None => (self.signature, false),
         };
-        wanted.len() == arguments && result == has_result
+        expected.len() == arguments && result == has_result
     }
 
-    /// Whether the arguments and the result are of the kinds that the function wants.
+    /// Whether the arguments and the result are of the kinds that the function expects.
     pub fn check(&self, arguments: &[Slot], result: Option<&Slot>) -> Result<(), Fault> {
-        let (wanted, wanted_result) = match self.signature.split_once("->") {
-            Some((wanted, result)) => (wanted, result.chars().next()),
+        let (expected, expected_result) = match self.signature.split_once("->") {
+            Some((expected, result)) => (expected, result.chars().next()),
             None => (self.signature, None),
         };
-        let (wanted, arguments, parts) = match wanted.strip_suffix(parts::PARTS) {
-            Some(wanted) if wanted.len() <= arguments.len() => {
-                let (arguments, parts) = arguments.split_at(wanted.len());
-                (wanted, arguments, parts)
+        let (expected, arguments, parts) = match expected.strip_suffix(parts::PARTS) {
+            Some(expected) if expected.len() <= arguments.len() => {
+                let (arguments, parts) = arguments.split_at(expected.len());
+                (expected, arguments, parts)
             }
-            _ => (wanted, arguments, &[][..]),
+            _ => (expected, arguments, &[][..]),
         };
-        if wanted.len() != arguments.len() || wanted_result.is_some() != result.is_some() {
+        if expected.len() != arguments.len() || expected_result.is_some() != result.is_some() {
             return Err(crate::fault!(
                 EXTERNAL_CALL,
                 "the external function `{}` is called with {} arguments{}, not with {}{}",
                 self.name,
                 arguments.len(),
                 with_result(result.is_some()),
-                wanted.len(),
-                with_result(wanted_result.is_some())
+                expected.len(),
+                with_result(expected_result.is_some())
             ));
         }
-        let wrong = wanted.chars().zip(arguments).position(|(letter, slot)| !slot.fits(letter));
-        let wrong = wrong.or_else(|| (!parts::are_parts(parts)).then_some(wanted.len()));
+        let wrong = expected.chars().zip(arguments).position(|(letter, slot)| !slot.fits(letter));
+        let wrong = wrong.or_else(|| (!parts::are_parts(parts)).then_some(expected.len()));
         if let Some(position) = wrong {
             return Err(crate::fault!(
                 EXTERNAL_CALL,
@@ -290,7 +290,7 @@ impl Entry {
                 self.name
             ));
         }
-        match (wanted_result, result) {
+        match (expected_result, result) {
             (Some(letter), Some(slot)) if !slot.fits(letter) => Err(crate::fault!(
                 EXTERNAL_CALL,
                 "the result of the external function `{}` has a different type",

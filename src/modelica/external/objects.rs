@@ -1,6 +1,6 @@
 //! Objects that were made before: equal arguments give the same object, in every thread.
 
-use super::call::{Call, Kind, Object};
+use super::call::{Call, Object, SlotKind};
 use rustc_hash::FxHashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,7 +27,7 @@ impl fmt::Debug for Objects {
 }
 
 impl Objects {
-    /// Makes the object that a call wants with `make`, unless it is known. Files count as
+    /// Makes the object that a call requests with `make`, unless it is known. Files count as
     /// unchanged.
     pub fn remember<E>(
         &self,
@@ -63,8 +63,10 @@ impl Key {
             let first = slot.first as usize;
             key.numbers.extend(slot.dims.iter().map(|size| u64::from(*size)));
             match slot.kind {
-                Kind::Text => key.strings.extend_from_slice(&call.strings[first..][..slot.len()]),
-                Kind::Number | Kind::Numbered | Kind::Object => {
+                SlotKind::Text => {
+                    key.strings.extend_from_slice(&call.strings[first..][..slot.len()])
+                }
+                SlotKind::Number | SlotKind::Numbered | SlotKind::Object => {
                     let numbers = &call.numbers[first..][..slot.len()];
                     key.numbers.extend(numbers.iter().map(|number| number.to_bits()));
                 }

@@ -4,7 +4,7 @@
 //! [`written`]; a format is the next part.
 
 use super::Entry;
-use super::call::{Call, Kind, Slot};
+use super::call::{Call, Slot, SlotKind};
 use super::errors::EXTERNAL_FAILED;
 use crate::diag::Fault;
 use crate::fault;
@@ -54,8 +54,10 @@ pub(super) fn are_parts(slots: &[Slot]) -> bool {
     let mut slots = slots.iter();
     while let Some(slot) = slots.next() {
         let fits = match (slot.kind, &*slot.dims) {
-            (Kind::Number, [WITH_FORMAT]) => slots.next().is_some_and(|format| format.fits('f')),
-            (Kind::Number, [size]) => *size == WITHOUT_FORMAT,
+            (SlotKind::Number, [WITH_FORMAT]) => {
+                slots.next().is_some_and(|format| format.fits('f'))
+            }
+            (SlotKind::Number, [size]) => *size == WITHOUT_FORMAT,
             _ => slot.fits('t'),
         };
         if !fits {
@@ -71,7 +73,7 @@ fn joined(call: &Call<'_>, parts: &[Slot]) -> Result<String, Fault> {
     while let Some(slot) = parts.next() {
         let first = slot.first as usize;
         match (slot.kind, &*slot.dims) {
-            (Kind::Text, _) => words += &call.strings[first],
+            (SlotKind::Text, _) => words += &call.strings[first],
             (_, [WITH_FORMAT]) => {
                 let format = parts.next().map_or("", |slot| &call.strings[slot.first as usize]);
                 words += &written(&call.numbers[first..first + 2], Some(format))?;

@@ -124,9 +124,9 @@ fn set_state(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(id)`
 fn impure_random(call: &mut Call<'_>) -> Result<(), Fault> {
-    let wanted = call.number(0);
+    let requested = call.number(0);
     let bits = match &mut call.outside.random()?.0 {
-        Some((state, id)) if *id == wanted => Some(state.next()),
+        Some((state, id)) if *id == requested => Some(state.next()),
         _ => None,
     };
     match bits {

@@ -63,7 +63,7 @@ impl RealSchur {
         Some(RealSchur { q: reflection * q, t })
     }
 
-    /// Turns the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
+    /// Brings the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
     /// its eigenvalues are real.
     pub(crate) fn standardize(&mut self, k: usize) {
         if self.t[(k + 1, k)] == 0.0 {
@@ -91,18 +91,19 @@ impl RealSchur {
         }
     }
 
-    /// A rotation of the coordinates `k` and `k + 1`: the first turns into the given direction.
+    /// A rotation of the coordinates `k` and `k + 1`: it maps the first axis to the given
+    /// direction.
     fn rotate(&mut self, k: usize, angle: f64) {
         let (sin, cos) = elementary::sin_cos(angle);
-        let turn = |matrix: &mut DMatrix<f64>| {
+        let rotation = |matrix: &mut DMatrix<f64>| {
             for row in 0..matrix.nrows() {
                 let (x, y) = (matrix[(row, k)], matrix[(row, k + 1)]);
                 matrix[(row, k)] = cos * x + sin * y;
                 matrix[(row, k + 1)] = cos * y - sin * x;
             }
         };
-        turn(&mut self.q);
-        turn(&mut self.t);
+        rotation(&mut self.q);
+        rotation(&mut self.t);
         for column in 0..self.t.ncols() {
             let (x, y) = (self.t[(k, column)], self.t[(k + 1, column)]);
             self.t[(k, column)] = cos * x + sin * y;
@@ -131,8 +132,8 @@ impl RealSchur {
         front
     }
 
-    /// Interchanges the blocks of `m` rows from `k` on and of `n` rows behind them
-    /// ([Golub & Van Loan 2013](gapilib_base::bibliography#golub-van-loan-2013), §7.6.2).
+    /// Interchanges the blocks of `m` rows from `k` on and of `n` rows after them ([Golub & Van
+    /// Loan 2013](gapilib_base::bibliography#golub-van-loan-2013), §7.6.2).
     fn swap(&mut self, k: usize, m: usize, n: usize) {
         let first = self.t.view((k, k), (m, m)).into_owned();
         let second = self.t.view((k + m, k + m), (n, n)).into_owned();
@@ -144,13 +145,13 @@ impl RealSchur {
         span.view_mut((m, 0), (n, n)).fill_with_identity();
         span.view_mut((0, n), (m, m)).fill_with_identity();
         span.view_mut((m, n), (n, m)).fill(0.0);
-        let turn = span.qr().q();
+        let rotation = span.qr().q();
         for matrix in [&mut self.q, &mut self.t] {
-            let turned = matrix.columns(k, m + n) * &turn;
-            matrix.columns_mut(k, m + n).copy_from(&turned);
+            let rotated = matrix.columns(k, m + n) * &rotation;
+            matrix.columns_mut(k, m + n).copy_from(&rotated);
         }
-        let turned = turn.transpose() * self.t.rows(k, m + n);
-        self.t.rows_mut(k, m + n).copy_from(&turned);
+        let rotated = rotation.transpose() * self.t.rows(k, m + n);
+        self.t.rows_mut(k, m + n).copy_from(&rotated);
         self.t.view_mut((k + n, k), (m, n)).fill(0.0);
         if n == 2 {
             self.standardize(k);

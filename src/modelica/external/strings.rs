@@ -47,12 +47,12 @@ fn compare(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 fn skip_white_space(call: &mut Call<'_>) -> Result<(), Fault> {
-    let next = behind_white_space(call) + 1;
+    let next = after_white_space(call) + 1;
     call.give(next as f64)
 }
 
 /// The position (from 0) of the first byte from the start index on that is no white space.
-fn behind_white_space(call: &Call<'_>) -> usize {
+fn after_white_space(call: &Call<'_>) -> usize {
     let bytes = call.text(0).as_bytes();
     let start = usize::try_from(call.whole(1) - 1).unwrap_or(0).min(bytes.len());
     let blank = bytes[start..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
@@ -65,12 +65,12 @@ fn run(bytes: &[u8], at: usize, is: impl Fn(&u8) -> bool) -> usize {
 }
 
 /// The end of an optional sign.
-fn behind_sign(bytes: &[u8], at: usize) -> usize {
+fn after_sign(bytes: &[u8], at: usize) -> usize {
     at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')))
 }
 
 fn scan_identifier(call: &mut Call<'_>) -> Result<(), Fault> {
-    let start = behind_white_space(call);
+    let start = after_white_space(call);
     let bytes = call.text(0).as_bytes();
     let n = match bytes.get(start) {
         Some(first) if first.is_ascii_alphabetic() => {
@@ -97,9 +97,9 @@ fn scanned(call: &mut Call<'_>, number: Option<(f64, usize)>) -> Result<(), Faul
 }
 
 fn scan_integer(call: &mut Call<'_>) -> Result<(), Fault> {
-    let start = behind_white_space(call);
+    let start = after_white_space(call);
     let bytes = call.text(0).as_bytes();
-    let digits = if call.truth(2) { start } else { behind_sign(bytes, start) };
+    let digits = if call.truth(2) { start } else { after_sign(bytes, start) };
     let end = digits + run(bytes, digits, u8::is_ascii_digit);
     let is_real = matches!(bytes.get(end), Some(b'.' | b'e' | b'E'));
     // A start within a letter of several bytes is the end, too.
@@ -113,9 +113,9 @@ fn scan_integer(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 fn scan_real(call: &mut Call<'_>) -> Result<(), Fault> {
-    let start = behind_white_space(call);
+    let start = after_white_space(call);
     let bytes = call.text(0).as_bytes();
-    let digits = if call.truth(2) { start } else { behind_sign(bytes, start) };
+    let digits = if call.truth(2) { start } else { after_sign(bytes, start) };
     let mut end = digits + run(bytes, digits, u8::is_ascii_digit);
     if end == digits {
         return scanned(call, None);
@@ -124,7 +124,7 @@ fn scan_real(call: &mut Call<'_>) -> Result<(), Fault> {
         end += 1 + run(bytes, end + 1, u8::is_ascii_digit);
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let exponent = behind_sign(bytes, end + 1);
+        let exponent = after_sign(bytes, end + 1);
         match run(bytes, exponent, u8::is_ascii_digit) {
             0 => return scanned(call, None),
             n => end = exponent + n,
@@ -135,7 +135,7 @@ fn scan_real(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 fn scan_string(call: &mut Call<'_>) -> Result<(), Fault> {
-    let start = behind_white_space(call);
+    let start = after_white_space(call);
     let bytes = call.text(0).as_bytes();
     let mut end = None;
     if bytes.get(start) == Some(&b'"') {

@@ -114,7 +114,7 @@ pub struct Variable {
     pub attributes: IndexMap<&'static str, Attribute>,
     /// The binding: an equation for a variable, the value of a parameter.
     pub binding: Option<Expression>,
-    /// The string behind it.
+    /// Its description string.
     pub description: Option<Arc<str>>,
     /// Where it is declared.
     pub span: Span,

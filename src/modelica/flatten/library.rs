@@ -13,7 +13,7 @@ mod old_names;
 mod reading;
 mod versions;
 
-pub(super) use bases::Question;
+pub(super) use bases::BaseProperty;
 pub use files::LibraryFiles;
 
 use super::errors::UNKNOWN_CLASS;
@@ -403,7 +403,7 @@ impl Library {
         read.map(|(_, slot)| slot.name.clone()).collect()
     }
 
-    /// Reads a class and all that are in it, and returns what is wrong with their texts.
+    /// Reads a class and all that are in it, and returns the errors in their source text.
     pub fn read_all(&self, name: &Name) -> Vec<Diagnostic> {
         let all = self.find(name).map_or(Vec::new(), |id| self.below(id, |_| true));
         all.into_iter().flat_map(|id| self.seen(id).problems.clone()).collect()
@@ -427,7 +427,7 @@ impl Library {
         all.into_iter().flat_map(|id| self.read(id).problems.clone()).collect()
     }
 
-    /// What is wrong with the texts of the classes that were asked for since the last call. What
+    /// The errors in the source text of the classes that were requested since the last call. What
     /// was made of these classes is worth nothing.
     pub fn take_problems(&self) -> Vec<Diagnostic> {
         let broken = std::mem::take(&mut *locked(&self.broken));

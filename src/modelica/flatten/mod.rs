@@ -1,9 +1,9 @@
 //! Instantiation and flattening: a class of the library becomes a flat model (MLS §5.6).
 //!
-//! The steps in order: find the class and check the classes that take part by their texts, build
-//! the instance tree (§5.6.1), form the connection sets (ch. 9), resolve equations, bindings and
-//! attributes (§5.6.2), add the equations of connections, and compare the number of equations with
-//! that of unknowns (§4.8).
+//! The steps in order: find the class and check the source text of the classes that take part,
+//! build the instance tree (§5.6.1), form the connection sets (ch. 9), resolve equations, bindings
+//! and attributes (§5.6.2), add the equations of connections, and compare the number of equations
+//! with that of unknowns (§4.8).
 //!
 //! Names are looked up in *scopes*: classes with the modifiers and redeclarations that reach them
 //! and the scope in which their text stands (`scope`). A base class is a scope of its own that

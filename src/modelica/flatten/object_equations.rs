@@ -157,7 +157,7 @@ impl Same {
             }
             _ => return,
         };
-        // Several objects that one equation makes are left to whoever reads the equation.
+        // Several objects that one equation makes are left to the code that lowers the equation.
         let is_alone = pairs.len() == 1;
         let is_plain = |(a, b): &(Object, Object)| {
             matches!((a, b), (Object::Variable(_), Object::Variable(_)))

@@ -37,20 +37,19 @@ impl Types<'_> {
         if let Some(found) = self.type_of(e)
             && !fits(&found, &variable.base, e)
         {
-            let (wanted, found) = (type_name(&variable.base), type_name(&found));
-            return Err(
-                fault!(TYPE_MISMATCH, "`{name}` is {wanted}, but its value is {found}").at(e.span)
-            );
+            let (expected, found) = (type_name(&variable.base), type_name(&found));
+            return Err(fault!(TYPE_MISMATCH, "`{name}` is {expected}, but its value is {found}")
+                .at(e.span));
         }
-        let wanted = if each { 0 } else { variable.dims.len() };
+        let expected = if each { 0 } else { variable.dims.len() };
         match self.rank_of(e) {
-            Some(found) if found != wanted => {
+            Some(found) if found != expected => {
                 let help = "give an array, such as `fill(value, n)`; in a modifier, `each` repeats \
                             a value";
                 let help = (found == 0).then_some(help);
                 return Err(fault!(
                     SIZE_MISMATCH,
-                    "`{name}` has {wanted} dimensions, but its value has {found}"
+                    "`{name}` has {expected} dimensions, but its value has {found}"
                 )
                 .help_if(help.map(str::to_owned))
                 .at(e.span));
@@ -392,15 +391,15 @@ fn joined(one: BaseType, other: BaseType) -> Option<BaseType> {
 
 /// Whether a value of one type can be given to a variable of another; literals of enumerations
 /// are Integer literals by now.
-fn fits(found: &BaseType, wanted: &BaseType, e: &Expression) -> bool {
-    match (found, wanted) {
+fn fits(found: &BaseType, expected: &BaseType, e: &Expression) -> bool {
+    match (found, expected) {
         (BaseType::Integer, BaseType::Real) => true,
         (BaseType::Integer, BaseType::Enumeration(_)) => may_be_literal(e),
         // The same literals in the same order are the same type (MLS §6.4).
         (BaseType::Enumeration(one), BaseType::Enumeration(other)) => {
             one.literals == other.literals
         }
-        _ => found == wanted,
+        _ => found == expected,
     }
 }
 

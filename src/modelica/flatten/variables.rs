@@ -37,7 +37,7 @@ impl Instantiation<'_> {
         let mut found = Vec::new();
         self.collect_variables(node, &mut found, errors);
         for at in found {
-            // Nobody looks at the values in the tree, which may be long expressions.
+            // The values in the tree, which may be long expressions, are not read.
             let known = &mut self.classes.tree.variables[at].0;
             let mut binding = known.binding.take();
             if let (true, Some(Some((value, _)))) =
@@ -252,19 +252,19 @@ impl Instantiation<'_> {
         value: &Expression,
         bound: &Bound,
     ) -> Result<Expression, Diagnostic> {
-        let wanted = bound.indices.len();
+        let required = bound.indices.len();
         let is_array = matches!(value.kind, ExpressionKind::Array(_));
-        if wanted == 0 || is_array && wanted == 1 {
+        if required == 0 || is_array && required == 1 {
             return Ok(picked(value.clone(), &bound.indices));
         }
         let local = Local { impure: true, ..Local::default() };
         let whole = self.resolve(value, bound.context, &local)?;
-        let Some(found) = self.types().rank_of(&whole).filter(|found| *found < wanted) else {
+        let Some(found) = self.types().rank_of(&whole).filter(|found| *found < required) else {
             return Ok(picked(value.clone(), &bound.indices));
         };
         let error = fault!(
             SIZE_MISMATCH,
-            "a modifier of an array of components needs a value with at least {wanted} \
+            "a modifier of an array of components needs a value with at least {required} \
              dimensions, not {found}";
             help: "write `each` before the modifier to give every element the same value")
         .at(value.span);
@@ -362,10 +362,10 @@ fn check_literal(e: &Expression, base: &BaseType, variable: &Variable) -> Result
         BaseType::ExternalObject(_) | BaseType::Clock => false,
     };
     if !fits {
-        let wanted = type_name(base);
+        let required = type_name(base);
         let name = &variable.name;
         return Err(
-            fault!(TYPE_MISMATCH, "`{name}` is {wanted}, but its value is {found}").at(e.span)
+            fault!(TYPE_MISMATCH, "`{name}` is {required}, but its value is {found}").at(e.span)
         );
     }
     Ok(())

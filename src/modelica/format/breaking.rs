@@ -32,7 +32,7 @@ fn divided(layout: &Layout<'_>, line: &Line) -> Option<Vec<Line>> {
     before_annotation(layout, line).or_else(|| arguments(layout, line))
 }
 
-/// An annotation behind a declaration or an equation.
+/// An annotation after a declaration or an equation.
 fn before_annotation(layout: &Layout<'_>, line: &Line) -> Option<Vec<Line>> {
     let is_annotation =
         |at: &usize| layout.roles[*at].depth == 0 && layout.lexed.str(*at) == "annotation";

@@ -1,12 +1,12 @@
-//! The difference of two texts in the unified format.
+//! The difference of two files in the unified format.
 
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// Lines shown before and behind a change.
+/// Lines shown before and after a change.
 const CONTEXT: usize = 3;
 
-/// A place where the texts differ: lines of the first, and lines of the second that replace them.
+/// A place where the files differ: lines of the first, and lines of the second that replace them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Change {
     /// Lines of the first text, from 0.
@@ -94,9 +94,9 @@ pub fn unified(name: &str, old: &str, new: &str) -> String {
 fn hunk(shown: &mut String, old: &[&str], new: &[&str], changes: &[Change]) {
     let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return };
     let before = first.old.start.min(CONTEXT);
-    let behind = (old.len() - last.old.end).min(CONTEXT);
+    let after = (old.len() - last.old.end).min(CONTEXT);
     let (i, j) = (first.old.start - before, first.new.start - before);
-    let (k, l) = (last.old.end + behind, last.new.end + behind);
+    let (k, l) = (last.old.end + after, last.new.end + after);
     let place = |from: usize, to: usize| match to - from {
         0 => format!("{from},0"),
         count => format!("{},{count}", from + 1),

@@ -110,11 +110,11 @@ impl Layout<'_> {
         if at == 0 || self.lexed.line_ends_before(at) > 0 {
             return true;
         }
-        let behind_leading_comment = line.is_some_and(|line| {
+        let follows_leading_comment = line.is_some_and(|line| {
             (line.lexemes.start..at)
                 .all(|before| self.lexed.lexemes[before].kind == LexemeKind::BlockComment)
         });
-        self.roles[at].begins.is_some() && !behind_leading_comment
+        self.roles[at].begins.is_some() && !follows_leading_comment
     }
 
     /// The indentation of a comment, or of a line that continues a statement.
@@ -160,7 +160,7 @@ impl Layout<'_> {
         }
     }
 
-    /// The indentation of a comment behind which a statement begins, or nothing.
+    /// The indentation of a comment after which a statement begins, or nothing.
     fn between_statements(&self, at: usize, column: usize) -> Option<usize> {
         let lexemes = &self.lexed.lexemes;
         let next = (at..lexemes.len()).find(|next| !lexemes[*next].is_comment());

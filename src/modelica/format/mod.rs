@@ -5,7 +5,7 @@
 //! deep they are; `spacing` says how many blanks are between two lexemes of a line; `layout` puts
 //! the lines together; `breaking` divides those that are too long. Breaks that the author made
 //! inside a declaration, an equation or a statement are kept with their relative indentation, so that
-//! a text in the usual style hardly changes. Afterwards the lexemes of both texts are compared.
+//! a text in the usual style hardly changes. Afterwards the lexemes before and after are compared.
 
 mod breaking;
 pub mod diff;
@@ -131,7 +131,8 @@ fn laid_out(lexed: &Lexed<'_>, language: Language, line_end: &str) -> String {
     text
 }
 
-/// Whether two texts consist of the same tokens and comments, and statements end at the same ones.
+/// Whether two source texts consist of the same tokens and comments, and statements end at the same
+/// ones.
 fn same_lexemes(one: &Lexed<'_>, other: &Lexed<'_>) -> bool {
     let same = |at: usize| {
         let (left, right) = (&one.lexemes[at], &other.lexemes[at]);

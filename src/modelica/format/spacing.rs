@@ -7,7 +7,7 @@ use super::Lexed;
 use super::structure::Role;
 use crate::syntax::LexemeKind;
 
-/// Keywords before which and behind which a bracket is set off.
+/// Keywords before and after which a bracket is separated by a space.
 const SET_OFF: &[&str] = &[
     "and",
     "or",
@@ -73,7 +73,7 @@ impl Gap<'_> {
             }
             (_, LexemeKind::Comma | LexemeKind::Semicolon) => 0,
             (LexemeKind::Open, _) | (_, LexemeKind::Close) => 0,
-            (LexemeKind::Comma, _) => self.behind_comma(),
+            (LexemeKind::Comma, _) => self.after_comma(),
             (LexemeKind::Semicolon, _) => self.written(self.at).min(1),
             (_, LexemeKind::Operator) | (LexemeKind::Operator, _) => self.at_operator(),
             (_, LexemeKind::Open) => self.before_bracket(),
@@ -81,7 +81,7 @@ impl Gap<'_> {
         }
     }
 
-    fn behind_comma(&self) -> usize {
+    fn after_comma(&self) -> usize {
         self.written(self.at).min(1)
     }
 

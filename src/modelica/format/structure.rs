@@ -24,7 +24,7 @@ pub(super) struct Role {
 
 /// The role of every lexeme.
 pub(super) fn roles(lexed: &Lexed<'_>, language: Language) -> Vec<Role> {
-    let mut walk = Walk {
+    let mut walk = TokenCursor {
         lexed,
         language,
         blocks: Vec::new(),
@@ -55,14 +55,14 @@ enum Head {
     Extends,
     /// `model M`: a long class unless `=` follows.
     Name,
-    /// Behind the name of a long class, where its description may follow.
+    /// After the name of a long class, where its description may follow.
     Description,
 }
 
 const CLASS_WORDS: &[&str] =
     &["class", "model", "block", "record", "connector", "type", "package", "function", "operator"];
 
-struct Walk<'w> {
+struct TokenCursor<'w> {
     lexed: &'w Lexed<'w>,
     language: Language,
     blocks: Vec<Block>,
@@ -74,7 +74,7 @@ struct Walk<'w> {
     annotation: bool,
 }
 
-impl Walk<'_> {
+impl TokenCursor<'_> {
     fn role(&mut self, at: usize) -> Role {
         let lexeme = self.lexed.lexemes[at];
         if !lexeme.is_comment() {
@@ -122,7 +122,7 @@ impl Walk<'_> {
         };
     }
 
-    /// Behind the name of a long class: a description, a modification, or the first element.
+    /// After the name of a long class: a description, a modification, or the first element.
     fn described(&mut self, at: usize) -> Head {
         let kind = self.lexed.lexemes[at].kind;
         let continues = match kind {

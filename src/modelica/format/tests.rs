@@ -11,7 +11,7 @@ fn script(text: &str) -> String {
 }
 
 #[test]
-fn empty_texts_stay_empty() {
+fn empty_files_stay_empty() {
     assert_eq!(modelica(""), "");
     assert_eq!(script("\n\n"), "");
 }

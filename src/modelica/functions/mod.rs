@@ -217,13 +217,13 @@ impl Builtin {
         if (self.least..=self.most).contains(&given) {
             return Ok(());
         }
-        let wanted = match (self.least, self.most) {
+        let expected = match (self.least, self.most) {
             (0, 0) => "no arguments".to_owned(),
             (1, 1) => "one argument".to_owned(),
             (least, most) if least == most => format!("{least} arguments"),
             (least, usize::MAX) => format!("at least {least} arguments"),
             (least, most) => format!("{least} to {most} arguments"),
         };
-        Err(fault!(WRONG_ARGUMENTS, "`{}` takes {wanted}, not {given}", self.name))
+        Err(fault!(WRONG_ARGUMENTS, "`{}` takes {expected}, not {given}", self.name))
     }
 }

@@ -1,12 +1,12 @@
-//! Algorithm sections become equations: their statements are carried out on symbolic values, and
-//! every variable assigned equals what it has at the end (MLS §11.1).
+//! Algorithm sections become equations: their statements are evaluated symbolically, and every
+//! variable assigned equals what it has at the end (MLS §11.1).
 //!
 //! At the beginning a continuous variable has its start value, a discrete one its previous value.
 //! Loops of known length are unrolled, branches merged into if-expressions.
 
-use super::assigned_variables::Place;
+use super::assigned_variables::AssignedScalar;
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::equation::Equation;
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_DISCRETE, NOT_SUPPORTED, UNBALANCED_MODEL,
@@ -48,7 +48,7 @@ impl Builder<'_> {
             let left = self.dae.pool.variable(variable);
             let instance = self.place.instance;
             let equation = Equation { instance, ..Equation::new(left, right, first.span) };
-            let is_discrete = self.dae.variable(variable).kind == Kind::Discrete;
+            let is_discrete = self.dae.variable(variable).kind == VariableKind::Discrete;
             match (self.place.initial, is_discrete) {
                 (true, _) => self.dae.initial_equations.push(equation),
                 (false, false) => self.dae.equations.push(equation),
@@ -66,12 +66,12 @@ impl Builder<'_> {
         let zero = self.dae.pool.constant(0.0);
         let known = self.dae.variable(variable);
         match known.kind {
-            Kind::Discrete => {
+            VariableKind::Discrete => {
                 let own = self.dae.pool.variable(variable);
                 self.previous(own, span)
             }
-            Kind::Unknown => Ok(known.start.unwrap_or(zero)),
-            Kind::Solved if self.place.initial => Ok(known.start.unwrap_or(zero)),
+            VariableKind::Unknown => Ok(known.start.unwrap_or(zero)),
+            VariableKind::Solved if self.place.initial => Ok(known.start.unwrap_or(zero)),
             _ => Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", known.name).at(span)),
         }
     }
@@ -262,7 +262,7 @@ impl Builder<'_> {
         let mut lowering = self.statement_lowering(loops);
         let lowered = match lowering.lower(value)? {
             Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
-                lowering.text_at_run_time(value)?
+                lowering.run_time_string(value)?
             }
             lowered => lowered,
         };
@@ -276,7 +276,8 @@ impl Builder<'_> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let places = self.places(target, loops)?;
-        let is_text = |place: &Place| self.dae.variable(place.variable).base == BaseType::String;
+        let is_text =
+            |place: &AssignedScalar| self.dae.variable(place.variable).base == BaseType::String;
         let value = match places.first().is_some_and(is_text) {
             true => Lowered::scalar(Lowering::new(self).number_of_text(value, target.span)?),
             false => value,
@@ -292,7 +293,7 @@ impl Builder<'_> {
             )
             .at(target.span));
         }
-        for Place { variable, element, guard } in places {
+        for AssignedScalar { variable, element, guard } in places {
             let Some(before) = self.execution.values.get_mut(&variable) else {
                 let name = self.dae.variable(variable).name.clone();
                 return Err(fault!(NOT_SUPPORTED, "`{name}` cannot be assigned").at(target.span));
@@ -440,10 +441,10 @@ impl Builder<'_> {
         for variable in self.statement_lowering(loops).loop_variables(index)? {
             self.count_statement(index.name.span)?;
             loops.push(variable);
-            let turn = self
+            let iteration = self
                 .unless(broken, loops, |builder, loops| builder.for_statement(inner, body, loops));
             loops.pop();
-            broken = turn?;
+            broken = iteration?;
             if self.dae.pool.as_constant(broken) == Some(1.0) {
                 break;
             }
@@ -474,7 +475,7 @@ impl Builder<'_> {
         guard
     }
 
-    /// Assertions of the statement hold where it is carried out.
+    /// Assertions of the statement hold where it is executed.
     fn guard_new_assertions(&mut self, from: usize) {
         if self.dae.assertions.len() > from {
             let guard = self.guard();

@@ -18,7 +18,7 @@ use crate::syntax::visit::Rewrite;
 
 /// Where one scalar of a value goes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct AssignedScalar {
     pub(super) variable: VarId,
     /// The scalar of the value, by its position.
     pub(super) element: usize,
@@ -92,7 +92,7 @@ impl Builder<'_> {
         &mut self,
         target: &ComponentReference,
         loops: &Loops,
-    ) -> Result<Vec<Place>, Diagnostic> {
+    ) -> Result<Vec<AssignedScalar>, Diagnostic> {
         let flat = self.flat;
         let mut lowering = self.statement_lowering(loops);
         let path = lowering.path(target)?;
@@ -102,7 +102,7 @@ impl Builder<'_> {
         };
         let choices = lowering.choices(&variable.dims, subscripts, target.span)?;
         // Variables by their offsets from the first of the array.
-        let mut places = vec![Place { variable: VarId(0), element: 0, guard: None }];
+        let mut places = vec![AssignedScalar { variable: VarId(0), element: 0, guard: None }];
         for (dimension, size) in variable.dims.iter().enumerate() {
             places = match choices.get(dimension) {
                 None => each(&places, *size, &(0..*size).collect::<Vec<_>>()),
@@ -127,11 +127,11 @@ impl Builder<'_> {
     /// The element of a dimension whose subscript is computed.
     fn one_of(
         &mut self,
-        places: &[Place],
+        places: &[AssignedScalar],
         size: usize,
         subscript: Expr,
         span: Span,
-    ) -> Result<Vec<Place>, Diagnostic> {
+    ) -> Result<Vec<AssignedScalar>, Diagnostic> {
         if self.varies(subscript) {
             return Err(fault!(
                 NO_CONSTANT_VALUE,
@@ -152,7 +152,7 @@ impl Builder<'_> {
                     guard = pool.and(outer, guard);
                 }
                 let variable = VarId(place.variable.0 * size as u32 + at as u32);
-                found.push(Place { variable, element: place.element, guard: Some(guard) });
+                found.push(AssignedScalar { variable, element: place.element, guard: Some(guard) });
             }
         }
         Ok(found)
@@ -162,7 +162,7 @@ impl Builder<'_> {
         &mut self,
         target: &ComponentReference,
         loops: &Loops,
-    ) -> Result<Vec<Place>, Diagnostic> {
+    ) -> Result<Vec<AssignedScalar>, Diagnostic> {
         let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
         let mut lowering = self.statement_lowering(loops);
         lowering.target.execution.raw += 1;
@@ -171,7 +171,7 @@ impl Builder<'_> {
         let mut scalars = Vec::new();
         value?.append_scalars(&mut scalars);
         let place = |(element, e): (usize, Expr)| match self.dae.pool.as_variable(e) {
-            Some(variable) => Ok(Place { variable, element, guard: None }),
+            Some(variable) => Ok(AssignedScalar { variable, element, guard: None }),
             None => {
                 Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name()).at(target.span))
             }
@@ -181,10 +181,10 @@ impl Builder<'_> {
 }
 
 /// The elements of a dimension at known positions.
-fn each(places: &[Place], size: usize, positions: &[usize]) -> Vec<Place> {
-    let of = |place: &Place| {
+fn each(places: &[AssignedScalar], size: usize, positions: &[usize]) -> Vec<AssignedScalar> {
+    let of = |place: &AssignedScalar| {
         let (offset, element, guard) = (place.variable.0 as usize, place.element, place.guard);
-        let place = move |(at, position): (usize, &usize)| Place {
+        let place = move |(at, position): (usize, &usize)| AssignedScalar {
             variable: VarId((offset * size + position) as u32),
             element: element * positions.len() + at,
             guard,

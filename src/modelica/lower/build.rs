@@ -1,7 +1,7 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
 use super::builder::{Builder, Folding};
-use super::dae::{Dae, Kind, StateSelect, Variable};
+use super::dae::{Dae, StateSelect, Variable, VariableKind};
 use super::equation::{Assertion, Equation, Instance, Level};
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
@@ -28,7 +28,7 @@ const MAX_EQUATIONS: usize = 5_000_000;
 pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let mut builder = Builder::new(flat);
     builder.declare();
-    builder.find_varying_texts();
+    builder.find_varying_strings();
     builder.find_discrete();
     builder.fold_constants()?;
     builder.dae.instances = flat.parts.iter().map(|part| part.instance.clone()).collect();
@@ -79,7 +79,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
 impl<'a> Builder<'a> {
     /// All scalars, time first.
     fn declare(&mut self) {
-        let mut time = scalar_of_nothing("time", Kind::Time, Span::NONE);
+        let mut time = scalar_of_nothing("time", VariableKind::Time, Span::NONE);
         time.unit = "s".into();
         time.description = "simulated time".into();
         self.dae.variables.push(time);
@@ -126,7 +126,7 @@ impl<'a> Builder<'a> {
                 for (at, element) in array.elements.iter().enumerate() {
                     if let Some(value) = self.dae.pool.as_constant(*element) {
                         let id = self.scalars.first[position].0 as usize + at;
-                        self.dae.variables[id].kind = Kind::Constant(value);
+                        self.dae.variables[id].kind = VariableKind::Constant(value);
                     }
                 }
             }
@@ -192,7 +192,7 @@ impl<'a> Builder<'a> {
         let first = self.scalars.first[position].0 as usize;
         let scalars = &self.dae.variables[first..first + variable.len()];
         let value = |scalar: &Variable| match scalar.kind {
-            Kind::Constant(value) => Some(value),
+            VariableKind::Constant(value) => Some(value),
             _ => None,
         };
         scalars.iter().map(value).collect()
@@ -261,8 +261,8 @@ impl<'a> Builder<'a> {
         for scalar in &mut self.dae.variables[scalars] {
             match scalar.kind {
                 _ if scalar.fixed => {}
-                Kind::Parameter { .. } => {
-                    scalar.kind = Kind::Solved;
+                VariableKind::Parameter { .. } => {
+                    scalar.kind = VariableKind::Solved;
                     scalar.start = scalar.start.or(scalar.binding.take());
                 }
                 _ => {
@@ -354,7 +354,7 @@ impl<'a> Builder<'a> {
         if matches!(a, Lowered::Numbered(_)) || matches!(b, Lowered::Numbered(_)) {
             for (side, e) in [(&mut a, left), (&mut b, right)] {
                 if !matches!(side, Lowered::Numbered(_)) {
-                    *side = lowering.text_at_run_time(e)?;
+                    *side = lowering.run_time_string(e)?;
                 }
             }
             let left = lowering.number_of_text(a, span)?;
@@ -380,11 +380,11 @@ impl<'a> Builder<'a> {
     fn allow_continuous(&mut self, pair: Equation) {
         for (side, other) in [(pair.left, pair.right), (pair.right, pair.left)] {
             if let Some(variable) = self.dae.pool.as_variable(side)
-                && self.dae.variable(variable).kind == Kind::Discrete
+                && self.dae.variable(variable).kind == VariableKind::Discrete
                 && self.dae.variable(variable).base != BaseType::Real
                 && self.varies(other)
             {
-                self.dae.variables[variable.0 as usize].kind = Kind::Unknown;
+                self.dae.variables[variable.0 as usize].kind = VariableKind::Unknown;
             }
         }
     }
@@ -677,16 +677,16 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
         false => format!("{}[{}]", variable.name, subscripts(&variable.dims, position)).into(),
     };
     let kind = match (&variable.base, variable.variability) {
-        (BaseType::String, _) => Kind::Text,
-        (BaseType::Clock, _) => Kind::Clock,
+        (BaseType::String, _) => VariableKind::Text,
+        (BaseType::Clock, _) => VariableKind::Clock,
         // Its constructor runs once, before the simulation, or when it starts.
-        (BaseType::ExternalObject(_), _) if variable.binding.is_none() => Kind::Discrete,
-        (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
+        (BaseType::ExternalObject(_), _) if variable.binding.is_none() => VariableKind::Discrete,
+        (BaseType::ExternalObject(_), _) => VariableKind::Parameter { tunable: false },
         (_, Variability::Constant | Variability::Parameter) => {
-            Kind::Parameter { tunable: variable.is_tunable() }
+            VariableKind::Parameter { tunable: variable.is_tunable() }
         }
-        (BaseType::Real, _) => Kind::Unknown,
-        _ => Kind::Discrete,
+        (BaseType::Real, _) => VariableKind::Unknown,
+        _ => VariableKind::Discrete,
     };
     Variable {
         name,
@@ -717,16 +717,16 @@ fn state_select(ordinal: Option<f64>, span: Span) -> Result<StateSelect, Diagnos
 /// `2,3` for a row-major position.
 fn subscripts(dims: &[usize], position: usize) -> String {
     let mut rest = position;
-    let mut texts = vec![String::new(); dims.len()];
-    for (text, size) in texts.iter_mut().zip(dims).rev() {
+    let mut strings = vec![String::new(); dims.len()];
+    for (text, size) in strings.iter_mut().zip(dims).rev() {
         *text = (rest % size + 1).to_string();
         rest /= size;
     }
-    texts.join(",")
+    strings.join(",")
 }
 
 /// A Real without attributes.
-pub(crate) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable {
+pub(crate) fn scalar_of_nothing(name: &str, kind: VariableKind, span: Span) -> Variable {
     Variable {
         name: name.into(),
         kind,
@@ -762,7 +762,7 @@ impl Builder<'_> {
 /// The derivative of a variable, as a variable.
 pub(crate) fn derivative_of(source: &Variable, of: VarId) -> Variable {
     let name = format!("der({})", source.name);
-    let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
+    let mut variable = scalar_of_nothing(&name, VariableKind::Derivative(of), source.span);
     if !source.unit.is_empty() {
         variable.unit = format!("{}/s", source.unit).into();
     }

@@ -28,14 +28,14 @@ pub(super) struct Builder<'a> {
     pub(super) flat: &'a FlatModel,
     pub(super) dae: Dae,
     pub(super) scalars: Scalars,
-    pub(super) place: Place,
+    pub(super) place: Context,
     pub(super) calls: Calls,
     /// The algorithm in progress.
     pub(super) execution: Execution,
     /// Clocked operators and equations.
     pub(super) clocks: Clocks,
     /// Values of records that functions compute, which the bindings of their components share.
-    pub(super) records: FxHashMap<(RecordAt, Place), Lowered<Expr>>,
+    pub(super) records: FxHashMap<(RecordAt, Context), Lowered<Expr>>,
 }
 
 /// A record within the flat model, by its address there.
@@ -57,7 +57,7 @@ pub(super) struct Scalars {
 
 /// Where in the model the equation or statement at hand stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(super) struct Place {
+pub(super) struct Context {
     /// Whose it is.
     pub(super) instance: Option<Instance>,
     /// Whether it is an initial one.
@@ -76,10 +76,10 @@ pub(super) struct Calls {
     pub(super) depth: usize,
     /// How many statements the one at hand may still carry out.
     pub(super) inlined: usize,
-    /// How many statements of algorithms may still be carried out.
+    /// How many statements of algorithms may still be evaluated symbolically.
     pub(super) statements: usize,
-    /// Whether parameters that texts depend on are evaluated.
-    pub(super) settles_texts: bool,
+    /// Whether parameters on which Strings depend are evaluated.
+    pub(super) evaluates_string_parameters: bool,
     /// Statements that became functions so far.
     pub(super) statement_functions: usize,
     /// Functions that cannot be expressions.
@@ -107,7 +107,7 @@ impl<'a> Builder<'a> {
             flat,
             dae,
             scalars: Scalars::new(flat.variables.len()),
-            place: Place::default(),
+            place: Context::default(),
             calls: Calls::new(flat.strict),
             execution: Execution::default(),
             clocks: Clocks::default(),
@@ -135,7 +135,7 @@ impl Calls {
             depth: 0,
             inlined: 0,
             statements: MAX_STATEMENTS,
-            settles_texts: false,
+            evaluates_string_parameters: false,
             statement_functions: 0,
             functions: Instances::new(strict),
             results: CallResults::default(),

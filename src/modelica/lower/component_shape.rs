@@ -8,7 +8,7 @@ use super::expressions::{Lowered, Lowering, Target};
 use super::loops::LoopVariable;
 use super::shape::Shape;
 use super::shape::UNKNOWN_TEXT;
-use super::text_array::Texts;
+use super::string_array::StringArray;
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -66,7 +66,7 @@ fn gives(arguments: &Arguments, name: Ident) -> bool {
     arguments.named.iter().any(|argument| argument.name.node == name)
 }
 
-/// A declaration being carried out.
+/// A declaration being evaluated.
 struct Declaration<'a, 'l, T: Target> {
     lowering: &'a mut Lowering<'l, T>,
     assigned: Assigned<'a, T>,
@@ -280,9 +280,9 @@ fn elements<S: Copy>(
 fn text<S: Copy>(value: Option<Lowered<S>>, dims: Vec<usize>) -> Declared<S> {
     let shape = match value {
         Some(Lowered::Text(text)) if dims.is_empty() => Shape::Text(text),
-        Some(Lowered::Texts(texts)) if texts.dims == dims => Shape::Texts(texts),
+        Some(Lowered::Strings(strings)) if strings.dims == dims => Shape::Strings(strings),
         _ if dims.is_empty() => Shape::Text(UNKNOWN_TEXT.into()),
-        _ => Shape::Texts(Texts::unknown(dims)),
+        _ => Shape::Strings(StringArray::unknown(dims)),
     };
     Declared { shape, scalars: Vec::new() }
 }
@@ -294,7 +294,7 @@ fn leading_sizes(shape: &Shape) -> Vec<usize> {
         match shape {
             Shape::Array(dims) => return dims.clone(),
             Shape::Text(_) | Shape::Numbered => return Vec::new(),
-            Shape::Texts(texts) => return texts.dims.clone(),
+            Shape::Strings(strings) => return strings.dims.clone(),
             Shape::Record(fields) => match fields.first() {
                 Some((_, first)) => shape = first,
                 None => return Vec::new(),

@@ -43,7 +43,7 @@ pub struct Dae {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The variables behind every `homotopy(actual, simplified)`, which reads
+/// The variables of every `homotopy(actual, simplified)`, which reads
 /// `if active then simplified + lambda*(actual - simplified) else actual` in the initial system and
 /// `actual` in the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -60,7 +60,7 @@ pub struct Variable {
     /// Its name with subscripts, such as `pack.cell[2].V`.
     pub name: Arc<str>,
     /// Its part in the system.
-    pub kind: Kind,
+    pub kind: VariableKind,
     /// Predefined type.
     pub base: BaseType,
     /// When it may change.
@@ -77,7 +77,7 @@ pub struct Variable {
     pub unit: Arc<str>,
     /// Unit for people, empty if none.
     pub(crate) display_unit: Arc<str>,
-    /// The string behind the declaration.
+    /// The description string of the declaration.
     pub description: Arc<str>,
     /// Value of a parameter; `None` for unknowns.
     pub binding: Option<Expr>,
@@ -97,7 +97,7 @@ pub struct Variable {
     pub span: Span,
 }
 
-/// How much a variable is wanted as a state (MLS §4.9.8), the least wanted first.
+/// How much a variable is preferred as a state (MLS §4.9.8), the least preferred first.
 #[derive(
     Debug,
     Clone,
@@ -125,7 +125,7 @@ pub enum StateSelect {
 }
 
 impl StateSelect {
-    /// What two wishes for one variable come to: the stronger of those that are none.
+    /// Combines two `stateSelect` attributes of one variable: the stronger one wins.
     pub(crate) fn merged_with(self, other: StateSelect) -> StateSelect {
         match (self, other) {
             (StateSelect::Default, other) => other,
@@ -137,7 +137,7 @@ impl StateSelect {
 
 /// What part a variable plays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Kind {
+pub enum VariableKind {
     /// `time`
     Time,
     /// Known when compiling.
@@ -197,12 +197,12 @@ impl Dae {
 
     /// Whether its value is found by the equations between events.
     pub fn is_unknown(&self, id: VarId) -> bool {
-        matches!(self.variable(id).kind, Kind::Unknown | Kind::Derivative(_))
+        matches!(self.variable(id).kind, VariableKind::Unknown | VariableKind::Derivative(_))
     }
 
     /// Whether its value is found by the equations, at events or between them.
     pub(crate) fn is_solved_for(&self, id: VarId) -> bool {
-        self.is_unknown(id) || self.variable(id).kind == Kind::Discrete
+        self.is_unknown(id) || self.variable(id).kind == VariableKind::Discrete
     }
 }
 

@@ -1,9 +1,9 @@
 //! Values that constants and parameters have by default.
 //!
-//! Where they are known before sorting, a parameter that nobody may set becomes a number, and a
-//! divisor made of parameters is told from one that is zero.
+//! Where they are known before causalization, a parameter that cannot be set becomes a number, and
+//! a divisor made of parameters is distinguished from zero.
 
-use super::dae::{Dae, DefaultValues, Kind};
+use super::dae::{Dae, DefaultValues, VariableKind};
 use crate::bytecode::{Functions, Machine};
 use crate::flatten::BaseType;
 use crate::symbolic::{Environment, Expr, Substitution, VarId, evaluate};
@@ -14,7 +14,7 @@ impl DefaultValues {
     pub(crate) fn of_parameters(dae: &Dae, parameters: &[VarId]) -> DefaultValues {
         let mut values = vec![f64::NAN; dae.variables.len()];
         for (value, variable) in values.iter_mut().zip(&dae.variables) {
-            if let Kind::Constant(number) = variable.kind {
+            if let VariableKind::Constant(number) = variable.kind {
                 *value = number;
             }
         }
@@ -94,7 +94,7 @@ pub(crate) fn fold_parameters(dae: &mut Dae, parameters: Vec<VarId>) -> Vec<VarI
         let variable = dae.variable(parameter);
         let is_number = !matches!(variable.base, BaseType::ExternalObject(_) | BaseType::String);
         let value = match (variable.kind, variable.binding) {
-            (Kind::Parameter { tunable: false }, Some(binding)) if is_number => {
+            (VariableKind::Parameter { tunable: false }, Some(binding)) if is_number => {
                 defaults.of(dae, binding)
             }
             _ => f64::NAN,
@@ -102,7 +102,7 @@ pub(crate) fn fold_parameters(dae: &mut Dae, parameters: Vec<VarId>) -> Vec<VarI
         if value.is_finite() {
             defaults.set(parameter, value);
             let position = parameter.0 as usize;
-            dae.variables[position].kind = Kind::Constant(value);
+            dae.variables[position].kind = VariableKind::Constant(value);
             replacements[position] = Some(dae.pool.constant(value));
         } else {
             rest.push(parameter);

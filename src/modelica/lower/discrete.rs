@@ -1,7 +1,7 @@
 //! Which Reals are discrete: those that a when-clause assigns (MLS §3.8.4, §4.5).
 
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::expressions::Lowering;
 use crate::symbolic::VarId;
 use crate::syntax::ast::{self, ComponentReference, EquationKind, ExpressionKind, StatementKind};
@@ -19,8 +19,8 @@ impl Builder<'_> {
         for target in targets {
             for variable in self.target_scalars(target) {
                 let kind = &mut self.dae.variables[variable.0 as usize].kind;
-                if *kind == Kind::Unknown {
-                    *kind = Kind::Discrete;
+                if *kind == VariableKind::Unknown {
+                    *kind = VariableKind::Discrete;
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Equations and assertions: scalar, with their places. Data only.
 
-use super::text_part::TextPart;
+use super::string_part::StringPart;
 use crate::source::Span;
 use crate::symbolic::Expr;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ pub struct Assertion {
     /// The text for people as far as it is known when compiling.
     pub message: Arc<str>,
     /// The same in parts.
-    pub parts: Vec<TextPart<Expr>>,
+    pub parts: Vec<StringPart<Expr>>,
     /// What a violation means.
     pub level: Level,
     /// Where it is written.

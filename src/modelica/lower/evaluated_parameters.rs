@@ -2,7 +2,7 @@
 //! decide sizes in the functions which give other parameters their values.
 
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::errors::NO_CONSTANT_VALUE;
 use super::expressions::{Array, Lowering};
 use crate::diag::Diagnostic;
@@ -59,7 +59,7 @@ impl Builder<'_> {
         let first = self.scalars.first[position].0;
         for scalar in first..first + variable.len() as u32 {
             if let Some(value) = self.settled_parameter(VarId(scalar), MAX_DEPTH)? {
-                self.dae.variables[scalar as usize].kind = Kind::Constant(value);
+                self.dae.variables[scalar as usize].kind = VariableKind::Constant(value);
             }
         }
         Ok(())
@@ -92,10 +92,12 @@ impl Builder<'_> {
     ) -> Result<Option<f64>, Diagnostic> {
         let position = variable.0 as usize;
         match self.dae.variables[position].kind {
-            Kind::Constant(value) => return Ok(Some(value)),
-            Kind::Parameter { .. } if depth > 0 => {}
+            VariableKind::Constant(value) => return Ok(Some(value)),
+            VariableKind::Parameter { .. } if depth > 0 => {}
             // An Integer or a Boolean that is bound to what is known never changes.
-            Kind::Discrete if depth > 0 && self.dae.variables[position].base != BaseType::Real => {
+            VariableKind::Discrete
+                if depth > 0 && self.dae.variables[position].base != BaseType::Real =>
+            {
                 return self.settled_variable(variable, depth);
             }
             _ => return Ok(None),
@@ -110,7 +112,7 @@ impl Builder<'_> {
             [(variable.0 - self.scalars.first[at].0) as usize];
         let value = self.settled_below(element, depth - 1)?;
         if value.is_some() {
-            self.dae.variables[position].kind = Kind::Parameter { tunable: false };
+            self.dae.variables[position].kind = VariableKind::Parameter { tunable: false };
         }
         Ok(value)
     }
@@ -137,7 +139,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The flat variable that a scalar is an element of: the last that does not begin behind it.
+    /// The flat variable that a scalar is an element of: the last that does not begin after it.
     pub(super) fn flat_position(&self, variable: VarId) -> Option<usize> {
         self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// The part of a system that acts at events alone.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Events {
-    /// `v = …` for every variable of kind [`Kind::Discrete`](super::Kind::Discrete): the left side
+    /// `v = …` for every variable of kind [`VariableKind::Discrete`](super::Kind::Discrete): the left side
     /// is the variable.
     pub equations: Vec<Equation>,
     /// `floor` of what varies continuously.
@@ -60,7 +60,7 @@ pub struct Sample {
 }
 
 /// Recorded inputs with the same knots. Between two knots such an input is
-/// `value + slope*(time - since)`.
+/// `value + rate*(time - since)`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Recording {
     /// Times at which an input jumps or bends, seconds, ascending; two at one time are before and
@@ -77,9 +77,9 @@ pub(crate) struct Recording {
 pub(crate) struct Track {
     /// The variable that holds the sample of the last knot.
     pub value: VarId,
-    /// The variable that holds the slope from there to the next knot; none for an input that is
+    /// The variable that holds the rate from there to the next knot; none for an input that is
     /// held.
-    pub slope: Option<VarId>,
+    pub rate: Option<VarId>,
     /// A sample for each knot.
     pub samples: Arc<[f64]>,
 }
@@ -166,7 +166,7 @@ impl Transport {
     }
 }
 
-/// `reinit(state, value)`, carried out when the condition holds.
+/// `reinit(state, value)`, executed when the condition becomes true.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Reinit {
     /// The state as written.
@@ -179,7 +179,7 @@ pub(crate) struct Reinit {
     pub span: Span,
 }
 
-/// `terminate(message)`, carried out when the condition holds; its message is an assertion's.
+/// `terminate(message)`, executed when the condition becomes true; its message is an assertion's.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Termination {
     /// When.

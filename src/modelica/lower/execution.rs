@@ -1,4 +1,4 @@
-//! Statements of algorithms while they are carried out on expressions.
+//! Symbolic evaluation of the statements of algorithms.
 
 use crate::symbolic::{Expr, VarId};
 use indexmap::IndexMap;
@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 /// The variables of the loops around a statement, innermost last.
 pub(super) type Loops = super::loops::Loops<Expr>;
 
-/// Values of the variables that an algorithm assigns, while its statements are carried out.
+/// Values of the variables that an algorithm assigns, during symbolic evaluation.
 #[derive(Debug, Default)]
 pub(super) struct Execution {
     /// In the order of the first assignment.

@@ -1,4 +1,4 @@
-//! User functions become expressions: statements are carried out on symbolic values, loops of known
+//! Inlining of user functions: statements are evaluated symbolically, loops of known
 //! length unrolled, branches merged into if-expressions (MLS ch. 11, §12.4).
 //!
 //! Not possible for external and impure functions, for `while`, `break`, `return` and subscripts
@@ -70,7 +70,7 @@ pub(super) fn inline(
     result
 }
 
-/// A call being carried out.
+/// A call being evaluated.
 struct Call<'a, 'b> {
     builder: &'a mut Builder<'b>,
     function: Arc<Function>,
@@ -440,12 +440,12 @@ fn merge(
             }
         }
         (Lowered::Text(a), Lowered::Text(b)) if a != b => *b = UNKNOWN_TEXT.into(),
-        (Lowered::Texts(a), Lowered::Texts(b)) => match a.joined(b) {
+        (Lowered::Strings(a), Lowered::Strings(b)) => match a.joined(b) {
             Some(joined) => *b = joined,
             None => b.forget(),
         },
-        (Lowered::Text(_), Lowered::Texts(b)) => b.forget(),
-        (Lowered::Texts(_), b @ Lowered::Text(_)) => *b = Lowered::Text(UNKNOWN_TEXT.into()),
+        (Lowered::Text(_), Lowered::Strings(b)) => b.forget(),
+        (Lowered::Strings(_), b @ Lowered::Text(_)) => *b = Lowered::Text(UNKNOWN_TEXT.into()),
         _ => {}
     }
 }
@@ -466,7 +466,7 @@ fn check_rank(
             input.dims.len()
         )
         .at(span)),
-        Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => Err(fault!(
+        Lowered::Text(_) | Lowered::Strings(_) | Lowered::Numbered(_) => Err(fault!(
             NOT_SUPPORTED,
             "the String argument `{}` of `{}`",
             input.name,

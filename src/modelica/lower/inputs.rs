@@ -1,6 +1,6 @@
 //! Inputs that nothing is connected to (MLS §4.4.2.2).
 
-use super::dae::{Dae, Kind};
+use super::dae::{Dae, VariableKind};
 use super::equation::Equation;
 use super::errors::NOT_SUPPORTED;
 use super::recordings::follow;
@@ -19,7 +19,7 @@ pub(super) fn unbound_inputs(dae: &mut Dae, flat: &FlatModel) {
     let (mut used, mut recorded) = (None, Vec::new());
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
-        if !matches!(variable.kind, Kind::Unknown | Kind::Discrete) {
+        if !matches!(variable.kind, VariableKind::Unknown | VariableKind::Discrete) {
             continue;
         }
         let is_top_level = variable.causality == Some(CausalityPrefix::Input);
@@ -45,7 +45,7 @@ pub(super) fn unbound_inputs(dae: &mut Dae, flat: &FlatModel) {
 fn used_or_differentiated(dae: &mut Dae) -> Vec<bool> {
     let mut used = used_variables(dae);
     for variable in &dae.variables {
-        if let Kind::Derivative(of) = variable.kind {
+        if let VariableKind::Derivative(of) = variable.kind {
             used[of.0 as usize] = true;
         }
     }

@@ -1,10 +1,10 @@
-//! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
+//! Messages: of assertions, and of functions that print (MLS §8.3.7, §12.9).
 
 use super::builder::Builder;
 use super::equation::{Assertion, Level};
 use super::errors::NOT_SUPPORTED;
 use super::events::Termination;
-use super::expressions::{Lowered, Lowering, Target, TextPart};
+use super::expressions::{Lowered, Lowering, StringPart, Target};
 use super::expressions::{message_parts, message_text, nth};
 use super::function::{confirms, fails, prints};
 use super::loops::LoopVariable;
@@ -20,8 +20,8 @@ use crate::syntax::ast::{
 use std::sync::Arc;
 
 /// What is printed ends its line once, whether or not the text does.
-fn end_line(parts: &mut [TextPart<Expr>]) {
-    if let Some(TextPart::Text(last)) = parts.last_mut() {
+fn end_line(parts: &mut [StringPart<Expr>]) {
+    if let Some(StringPart::Text(last)) = parts.last_mut() {
         *last = last.trim_end_matches('\n').into();
     }
 }
@@ -67,7 +67,7 @@ impl Builder<'_> {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = true;
-        let mut parts = vec![TextPart::Text("the model ends the simulation: ".into())];
+        let mut parts = vec![StringPart::Text("the model ends the simulation: ".into())];
         let asserted = lowering.target.dae.assertions.len();
         parts.extend(message_parts(&mut lowering, nth(arguments, 0, "message")));
         self.dae.assertions.truncate(asserted);
@@ -86,7 +86,7 @@ impl Builder<'_> {
         self.dae.warnings.push(warning.at(span).warning());
     }
 
-    /// The value of a call that writes and confirms it, assigned where statements are carried out;
+    /// The value of a call that writes and confirms it, assigned where statements are executed;
     /// `None` for other expressions.
     pub(super) fn confirmed(
         &mut self,
@@ -139,7 +139,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Outputs that nobody uses: the calls behind them are made for what they assert.
+    /// Unused outputs: their calls are made for what they assert.
     pub(super) fn unused(&mut self, outputs: &[Lowered<Expr>], span: Span) {
         let mut scalars = Vec::new();
         outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
@@ -157,7 +157,7 @@ impl Builder<'_> {
     }
 
     /// The call of a function at an instant: what it writes is written whenever the statement is
-    /// carried out.
+    /// executed.
     fn effect(
         &mut self,
         user: &Arc<Function>,
@@ -188,8 +188,8 @@ impl Builder<'_> {
         message_text(&mut lowering, text).contains(UNKNOWN_TEXT)
     }
 
-    /// A call that writes a text with numbers of the simulation to a file: it is a function of what
-    /// it reads, which puts the text together when it is carried out.
+    /// A call that writes a string with numbers of the simulation to a file: it is a function of
+    /// what it reads, which composes the string when it is executed.
     fn writing(
         &mut self,
         call: &Expression,
@@ -206,9 +206,9 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What was found to write is carried out where its statement is.
+    /// A call that writes is executed at the place of its statement.
     fn carry_out(&mut self, span: Span) {
-        let parts: Vec<_> = self.calls.written.drain(..).map(TextPart::Numbered).collect();
+        let parts: Vec<_> = self.calls.written.drain(..).map(StringPart::Numbered).collect();
         if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
@@ -218,9 +218,14 @@ impl Builder<'_> {
 
 impl Assertion {
     /// An assertion of this text.
-    pub fn new(condition: Expr, parts: Vec<TextPart<Expr>>, level: Level, span: Span) -> Assertion {
-        let known = |part: &TextPart<Expr>| match part {
-            TextPart::Text(text) => text.to_string(),
+    pub fn new(
+        condition: Expr,
+        parts: Vec<StringPart<Expr>>,
+        level: Level,
+        span: Span,
+    ) -> Assertion {
+        let known = |part: &StringPart<Expr>| match part {
+            StringPart::Text(text) => text.to_string(),
             _ => UNKNOWN_TEXT.to_owned(),
         };
         let message = parts.iter().map(known).collect::<String>().into();
@@ -230,11 +235,11 @@ impl Assertion {
     /// Visits every expression.
     pub(crate) fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
         visit(&mut self.condition);
-        self.parts.iter_mut().flat_map(TextPart::scalars_mut).for_each(visit);
+        self.parts.iter_mut().flat_map(StringPart::scalars_mut).for_each(visit);
     }
 
     /// The values in its text.
     pub fn values(&self) -> Vec<Expr> {
-        self.parts.iter().flat_map(TextPart::scalars).copied().collect()
+        self.parts.iter().flat_map(StringPart::scalars).copied().collect()
     }
 }

@@ -42,8 +42,8 @@ pub(super) fn append_numbers(value: &Value, numbers: &mut Vec<f64>) -> Option<()
 }
 
 /// A scalar, where there are no sizes, or an array of a type; `None` if that is not of numbers.
-pub(super) fn value_of(numbers: &[f64], dims: &[usize], wanted: &ValueType) -> Option<Value> {
-    let elements = match wanted {
+pub(super) fn value_of(numbers: &[f64], dims: &[usize], expected: &ValueType) -> Option<Value> {
+    let elements = match expected {
         ValueType::Real => Elements::Real(numbers.to_vec()),
         ValueType::Integer => Elements::Integer(numbers.iter().map(|x| *x as i64).collect()),
         ValueType::Boolean => Elements::Boolean(numbers.iter().map(|x| *x != 0.0).collect()),

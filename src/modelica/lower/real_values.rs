@@ -1,6 +1,6 @@
 //! Which expressions have Real values.
 
-use super::dae::{Dae, Kind};
+use super::dae::{Dae, VariableKind};
 use crate::flatten::BaseType;
 use crate::symbolic::function::ResultType;
 use crate::symbolic::{Expr, Node};
@@ -17,7 +17,7 @@ pub(crate) fn is_real(dae: &Dae, e: Expr) -> bool {
             Node::Constant(number) if number.0.fract() != 0.0 => return true,
             Node::Variable(v) => {
                 let variable = dae.variable(*v);
-                if variable.base == BaseType::Real && variable.kind != Kind::Frozen {
+                if variable.base == BaseType::Real && variable.kind != VariableKind::Frozen {
                     return true;
                 }
             }

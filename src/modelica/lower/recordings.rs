@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! held     u = value
-//! linear   u = value + slope*(time - since)
+//! linear   u = value + rate*(time - since)
 //! ```
 //!
-//! `value`, `slope` and `since` are constant between knots and known, so that index reduction finds
-//! u' = slope, and that the right-hand side is linear in time where it is linear in u.
+//! `value`, `rate` and `since` are constant between knots and known, so that index reduction finds
+//! u' = rate, and that the right-hand side is linear in time where it is linear in u.
 
 use super::build::scalar_of_nothing;
-use super::dae::{Dae, Kind};
+use super::dae::{Dae, VariableKind};
 use super::equation::Equation;
 use super::events::{Recording, Track};
 use crate::flatten::{RecordedInput, Variability};
@@ -38,25 +38,25 @@ fn recording(dae: &mut Dae, inputs: &[(VarId, &RecordedInput)]) -> Recording {
     let mut tracks = Vec::new();
     for (variable, input) in inputs {
         let value = signal(dae, "value", *variable);
-        let slope = (!input.is_held).then(|| signal(dae, "slope", *variable));
+        let rate = (!input.is_held).then(|| signal(dae, "rate", *variable));
         let mut right = dae.pool.variable(value);
-        if let Some((slope, since)) = slope.zip(since) {
-            let moved = change_since(dae, slope, since);
+        if let Some((rate, since)) = rate.zip(since) {
+            let moved = change_since(dae, rate, since);
             right = dae.pool.add(right, moved);
         }
         let left = dae.pool.variable(*variable);
         let span = dae.variable(*variable).span;
         dae.equations.push(Equation::new(left, right, span));
-        tracks.push(Track { value, slope, samples: of(&input.values) });
+        tracks.push(Track { value, rate, samples: of(&input.values) });
     }
     Recording { knots: of(times), since, tracks }
 }
 
-/// `slope*(time - since)`
-fn change_since(dae: &mut Dae, slope: VarId, since: VarId) -> Expr {
-    let [slope, since, time] = [slope, since, VarId(0)].map(|v| dae.pool.variable(v));
+/// `rate*(time - since)`
+fn change_since(dae: &mut Dae, rate: VarId, since: VarId) -> Expr {
+    let [rate, since, time] = [rate, since, VarId(0)].map(|v| dae.pool.variable(v));
     let passed = dae.pool.sub(time, since);
-    dae.pool.mul(slope, passed)
+    dae.pool.mul(rate, passed)
 }
 
 /// Whether an input jumps or bends at a sample. The first one begins the recording.
@@ -74,7 +74,7 @@ fn is_knot(inputs: &[(VarId, &RecordedInput)], at: usize) -> bool {
 fn signal(dae: &mut Dae, what: &str, of: VarId) -> VarId {
     let id = VarId(dae.variables.len() as u32);
     let name = format!("${what}({})", dae.variable(of).name);
-    let mut variable = scalar_of_nothing(&name, Kind::Signal, Span::NONE);
+    let mut variable = scalar_of_nothing(&name, VariableKind::Signal, Span::NONE);
     variable.base = dae.variable(of).base.clone();
     variable.variability = Variability::Discrete;
     dae.variables.push(variable);

@@ -1,7 +1,7 @@
 //! Sizes and components of values, known when a model is compiled.
 
-use super::text_array::Texts;
-pub(super) use super::text_array::UNKNOWN_TEXT;
+use super::string_array::StringArray;
+pub(super) use super::string_array::UNKNOWN_TEXT;
 use std::sync::Arc;
 
 /// Sizes of an argument.
@@ -13,8 +13,8 @@ pub enum Shape {
     Record(Vec<(crate::name::Ident, Shape)>),
     /// A text, no scalar; `…` stands for what is not known when compiling.
     Text(Arc<str>),
-    /// An array of texts, no scalars.
-    Texts(Texts),
+    /// An array of Strings, no scalars.
+    Strings(StringArray),
     /// A text that is known at run time: the scalar is its number.
     Numbered,
 }
@@ -25,7 +25,7 @@ impl Shape {
         match self {
             Shape::Array(dims) => dims.iter().product(),
             Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
-            Shape::Text(_) | Shape::Texts(_) => 0,
+            Shape::Text(_) | Shape::Strings(_) => 0,
             Shape::Numbered => 1,
         }
     }
@@ -43,7 +43,7 @@ impl Shape {
                 let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
                 Shape::Record(fields.into_iter().map(field).collect())
             }
-            Shape::Text(_) | Shape::Texts(_) | Shape::Numbered => self,
+            Shape::Text(_) | Shape::Strings(_) | Shape::Numbered => self,
         }
     }
 
@@ -52,7 +52,7 @@ impl Shape {
         match self {
             Shape::Array(_) | Shape::Numbered => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
-            Shape::Text(_) | Shape::Texts(_) => true,
+            Shape::Text(_) | Shape::Strings(_) => true,
         }
     }
 
@@ -62,7 +62,9 @@ impl Shape {
             Shape::Array(_) | Shape::Numbered => false,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_unknown_text()),
             Shape::Text(text) => text.contains(UNKNOWN_TEXT),
-            Shape::Texts(texts) => texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)),
+            Shape::Strings(strings) => {
+                strings.strings.iter().any(|text| text.contains(UNKNOWN_TEXT))
+            }
         }
     }
 
@@ -71,32 +73,32 @@ impl Shape {
         match self {
             Shape::Numbered => true,
             Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_number_of_text()),
-            Shape::Array(_) | Shape::Text(_) | Shape::Texts(_) => false,
+            Shape::Array(_) | Shape::Text(_) | Shape::Strings(_) => false,
         }
     }
 
-    /// Makes all texts unknown.
-    pub(crate) fn forget_texts(&mut self) {
+    /// Makes all Strings unknown.
+    pub(crate) fn forget_strings(&mut self) {
         match self {
             Shape::Array(_) | Shape::Numbered => {}
-            Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
+            Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_strings()),
             Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
-            Shape::Texts(texts) => texts.forget(),
+            Shape::Strings(strings) => strings.forget(),
         }
     }
 
-    /// The shape of a value that may have either shape: texts that differ are not known. `None` if
-    /// sizes or components differ.
+    /// The shape of a value that may have either shape: Strings that differ are not known. `None`
+    /// if sizes or components differ.
     pub fn joined(&self, other: &Shape) -> Option<Shape> {
         match (self, other) {
             (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
             (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
             (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
             (Shape::Numbered, Shape::Numbered) => Some(Shape::Numbered),
-            (Shape::Texts(a), Shape::Texts(b)) => a.joined(b).map(Shape::Texts),
+            (Shape::Strings(a), Shape::Strings(b)) => a.joined(b).map(Shape::Strings),
             // Arrays whose sizes are not looked at are one text, which is not known.
-            (Shape::Texts(a), Shape::Text(_)) | (Shape::Text(_), Shape::Texts(a)) => {
-                Some(Shape::Texts(Texts::unknown(a.dims.clone())))
+            (Shape::Strings(a), Shape::Text(_)) | (Shape::Text(_), Shape::Strings(a)) => {
+                Some(Shape::Strings(StringArray::unknown(a.dims.clone())))
             }
             (Shape::Record(a), Shape::Record(b)) if a.len() == b.len() => {
                 let fields = a.iter().zip(b);

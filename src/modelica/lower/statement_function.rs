@@ -1,4 +1,4 @@
-//! Statements of algorithm sections that cannot be carried out on expressions, such as loops whose
+//! Statements of algorithm sections that cannot be evaluated symbolically, such as loops whose
 //! ends depend on variables: each is a function of what it reads (MLS §11.1.1), and what it assigns
 //! are results of a call. Relations in it cause no events.
 

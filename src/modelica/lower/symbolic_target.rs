@@ -3,14 +3,14 @@
 use super::build::derivative_of;
 use super::build::scalar_of_nothing;
 use super::builder::{Builder, Folding};
-use super::dae::{Homotopy, Kind, Relation};
+use super::dae::{Homotopy, Relation, VariableKind};
 use super::equation::{Assertion, Level};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{
-    Array, Binary, Branch, ClockedCall, Lowered, Lowering, Target, TextPart, Unary,
+    Array, Binary, Branch, ClockedCall, Lowered, Lowering, StringPart, Target, Unary,
 };
 use super::shape::UNKNOWN_TEXT;
-use super::text_array::Texts;
+use super::string_array::StringArray;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -83,7 +83,7 @@ impl Target for Builder<'_> {
             None => {
                 let variable = VarId(self.dae.variables.len() as u32);
                 let name = format!("$relation[{}]", self.dae.relations.len() + 1);
-                let mut frozen = scalar_of_nothing(&name, Kind::Frozen, span);
+                let mut frozen = scalar_of_nothing(&name, VariableKind::Frozen, span);
                 frozen.base = BaseType::Boolean;
                 frozen.variability = Variability::Discrete;
                 self.dae.variables.push(frozen);
@@ -174,15 +174,15 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String && !variable.dims.is_empty() {
-            return Ok(Lowered::Texts(self.text_array(position)));
+            return Ok(Lowered::Strings(self.string_array(position)));
         }
         if variable.base == BaseType::String {
             let first = self.scalars.first[position];
             return Ok(match self.dae.variable(first).kind {
-                Kind::Discrete if self.execution.raw > 0 => {
+                VariableKind::Discrete if self.execution.raw > 0 => {
                     Lowered::Numbered(self.dae.pool.variable(first))
                 }
-                Kind::Discrete => Lowered::Numbered(self.value_now(first)),
+                VariableKind::Discrete => Lowered::Numbered(self.value_now(first)),
                 _ => Lowered::Text(self.text(position)),
             });
         }
@@ -272,7 +272,7 @@ impl Target for Builder<'_> {
         super::clocks::is_clock(self.flat, e)
     }
 
-    fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
+    fn string_number(&mut self, text: &Arc<str>) -> Option<Expr> {
         Some(self.number_of(text))
     }
 
@@ -286,15 +286,15 @@ impl Target for Builder<'_> {
         variable.binding.clone().filter(|_| is_scalar)
     }
 
-    fn settles_texts(&mut self) -> Option<&mut bool> {
-        Some(&mut self.calls.settles_texts)
+    fn evaluates_string_parameters(&mut self) -> Option<&mut bool> {
+        Some(&mut self.calls.evaluates_string_parameters)
     }
 
-    fn wants_texts(&mut self, wanted: bool) {
-        self.calls.functions.wants_texts = wanted;
+    fn needs_string_outputs(&mut self, needed: bool) {
+        self.calls.functions.needs_string_outputs = needed;
     }
 
-    fn compose(&mut self, parts: &[TextPart<Expr>], _: Span) -> Result<Expr, Diagnostic> {
+    fn compose(&mut self, parts: &[StringPart<Expr>], _: Span) -> Result<Expr, Diagnostic> {
         let (code, arguments) = self.calls.functions.composer(parts);
         Ok(self.dae.pool.call(code, 0, &arguments))
     }
@@ -391,25 +391,25 @@ impl Builder<'_> {
 
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
     pub(super) fn text(&mut self, position: usize) -> Arc<str> {
-        match self.text_binding(position) {
+        match self.bound_strings(position) {
             Some(Lowered::Text(text)) => text,
             _ => UNKNOWN_TEXT.into(),
         }
     }
 
-    /// The texts that an array is bound to, as far as they are known.
-    fn text_array(&mut self, position: usize) -> Texts {
+    /// The Strings that an array is bound to, as far as they are known.
+    fn string_array(&mut self, position: usize) -> StringArray {
         let dims = self.flat.variables[position].dims.clone();
-        match self.text_binding(position) {
-            Some(Lowered::Texts(texts)) if texts.dims == dims => texts,
-            Some(Lowered::Text(text)) => Texts::filled(dims, text),
-            _ => Texts::unknown(dims),
+        match self.bound_strings(position) {
+            Some(Lowered::Strings(strings)) if strings.dims == dims => strings,
+            Some(Lowered::Text(text)) => StringArray::filled(dims, text),
+            _ => StringArray::unknown(dims),
         }
     }
 
-    /// The value that a variable of texts is bound to; `None` if it depends on itself or is not to
+    /// The value that a String variable is bound to; `None` if it depends on itself or is not to
     /// be had.
-    fn text_binding(&mut self, position: usize) -> Option<Lowered<Expr>> {
+    fn bound_strings(&mut self, position: usize) -> Option<Lowered<Expr>> {
         let flat = self.flat;
         let variable = &flat.variables[position];
         let binding = match &variable.binding {
@@ -466,15 +466,19 @@ impl Builder<'_> {
         let condition = pool.and(above, below);
         if self.dae.assertions.last().is_none_or(|last| last.condition != condition) {
             let message = "a subscript lies outside its array".into();
-            let parts = vec![TextPart::Text(message)];
+            let parts = vec![StringPart::Text(message)];
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         }
     }
 
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
-        let varies =
-            |v: VarId| !matches!(self.dae.variable(v).kind, Kind::Parameter { .. } | Kind::Solved);
+        let varies = |v: VarId| {
+            !matches!(
+                self.dae.variable(v).kind,
+                VariableKind::Parameter { .. } | VariableKind::Solved
+            )
+        };
         !self.dae.pool.any_variable(a, varies)
     }
 
@@ -483,7 +487,11 @@ impl Builder<'_> {
         let varies = |v: VarId| {
             matches!(
                 self.dae.variable(v).kind,
-                Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Delayed | Kind::Text
+                VariableKind::Time
+                    | VariableKind::Unknown
+                    | VariableKind::Derivative(_)
+                    | VariableKind::Delayed
+                    | VariableKind::Text
             )
         };
         self.dae.pool.any_variable(a, varies)
@@ -524,25 +532,28 @@ impl Builder<'_> {
     fn is_of_time(&self, e: Expr) -> bool {
         let is_other = |v: VarId| {
             let kind = &self.dae.variable(v).kind;
-            !matches!(kind, Kind::Time | Kind::Parameter { .. } | Kind::Constant(_))
+            !matches!(
+                kind,
+                VariableKind::Time | VariableKind::Parameter { .. } | VariableKind::Constant(_)
+            )
         };
         !self.dae.pool.any_variable(e, is_other)
     }
 
     /// `der` of an expression: the sum of partial derivatives times derivatives.
     fn chain_rule(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        let mut slopes = rustc_hash::FxHashMap::default();
+        let mut derivatives = rustc_hash::FxHashMap::default();
         for variable in self.dae.pool.variables(a) {
-            let slope = match self.dae.variable(variable).kind {
-                Kind::Time => self.dae.pool.constant(1.0),
-                Kind::Unknown => {
+            let derivative = match self.dae.variable(variable).kind {
+                VariableKind::Time => self.dae.pool.constant(1.0),
+                VariableKind::Unknown => {
                     let derivative = self.derivative_variable(variable, span)?;
                     self.dae.pool.variable(derivative)
                 }
-                Kind::Delayed => {
+                VariableKind::Delayed => {
                     return Err(fault!(NOT_SUPPORTED, "the derivative of a delayed value").at(span));
                 }
-                Kind::Derivative(_) => {
+                VariableKind::Derivative(_) => {
                     return Err(
                         fault!(NOT_SUPPORTED, "second derivatives need a variable for the \
                         first derivative";
@@ -552,10 +563,10 @@ impl Builder<'_> {
                 }
                 _ => continue,
             };
-            slopes.insert(variable, slope);
+            derivatives.insert(variable, derivative);
         }
         let pool = &mut self.dae.pool;
-        Ok(crate::symbolic::differentiate_forward(pool, a, &|v| slopes.get(&v).copied()))
+        Ok(crate::symbolic::differentiate_forward(pool, a, &|v| derivatives.get(&v).copied()))
     }
 
     fn derivative_variable(&mut self, of: VarId, span: Span) -> Result<VarId, Diagnostic> {
@@ -563,7 +574,7 @@ impl Builder<'_> {
             return Ok(*known);
         }
         let source = self.dae.variable(of);
-        if source.kind != Kind::Unknown || source.base != BaseType::Real {
+        if source.kind != VariableKind::Unknown || source.base != BaseType::Real {
             return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
         }
         let variable = derivative_of(source, of);
@@ -579,7 +590,7 @@ impl Builder<'_> {
         }
         let first = self.dae.variables.len() as u32;
         for name in ["$homotopy.active", "$homotopy.lambda"] {
-            self.dae.variables.push(scalar_of_nothing(name, Kind::Frozen, Span::NONE));
+            self.dae.variables.push(scalar_of_nothing(name, VariableKind::Frozen, Span::NONE));
         }
         let variables = Homotopy { active: VarId(first), lambda: VarId(first + 1) };
         self.dae.homotopy = Some(variables);
@@ -590,7 +601,7 @@ impl Builder<'_> {
     /// What a scalar variable stands for in the expression that is made.
     fn scalar_now(&mut self, id: u32) -> Expr {
         match self.dae.variables[id as usize].kind {
-            Kind::Constant(value) => self.dae.pool.constant(value),
+            VariableKind::Constant(value) => self.dae.pool.constant(value),
             _ if self.execution.raw > 0 => self.dae.pool.variable(VarId(id)),
             _ => self.value_now(VarId(id)),
         }

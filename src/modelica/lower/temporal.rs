@@ -2,11 +2,11 @@
 
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::equation::{Assertion, Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
-use super::expressions::{Array, Target, TextPart, size_fault};
+use super::expressions::{Array, StringPart, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -66,7 +66,10 @@ impl Builder<'_> {
         }
         let variable = self.dae.pool.as_variable(a);
         match variable.map(|v| (v, self.dae.variable(v).kind)) {
-            Some((v, Kind::Discrete | Kind::Unknown | Kind::Derivative(_))) => {
+            Some((
+                v,
+                VariableKind::Discrete | VariableKind::Unknown | VariableKind::Derivative(_),
+            )) => {
                 let previous = self.previous_variable(v);
                 Ok(self.dae.pool.variable(previous))
             }
@@ -81,8 +84,11 @@ impl Builder<'_> {
             return *known;
         }
         let source = self.dae.variable(of);
-        let mut variable =
-            scalar_of_nothing(&format!("pre({})", source.name), Kind::Previous(of), source.span);
+        let mut variable = scalar_of_nothing(
+            &format!("pre({})", source.name),
+            VariableKind::Previous(of),
+            source.span,
+        );
         variable.base = source.base.clone();
         variable.variability = Variability::Discrete;
         let id = self.declare_scalar(variable);
@@ -123,7 +129,7 @@ impl Builder<'_> {
     /// A Boolean as a discrete variable, so that it has a previous value.
     pub(super) fn condition(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
         let known = self.dae.pool.as_variable(b).map(|v| self.dae.variable(v).kind);
-        if known == Some(Kind::Discrete) || self.is_parametric(b) {
+        if known == Some(VariableKind::Discrete) || self.is_parametric(b) {
             return Ok(b);
         }
         if let Some(variable) = self.scalars.conditions.get(&b) {
@@ -136,7 +142,7 @@ impl Builder<'_> {
             .at(span));
         }
         let name = format!("$condition[{}]", self.scalars.conditions.len() + 1);
-        let mut variable = scalar_of_nothing(&name, Kind::Discrete, span);
+        let mut variable = scalar_of_nothing(&name, VariableKind::Discrete, span);
         variable.base = BaseType::Boolean;
         variable.variability = Variability::Discrete;
         let id = self.declare_scalar(variable);
@@ -166,7 +172,7 @@ impl Builder<'_> {
     }
 
     fn signal(&mut self, name: &str) -> VarId {
-        let mut variable = scalar_of_nothing(name, Kind::Signal, Span::NONE);
+        let mut variable = scalar_of_nothing(name, VariableKind::Signal, Span::NONE);
         variable.base = BaseType::Boolean;
         variable.variability = Variability::Discrete;
         self.declare_scalar(variable)
@@ -213,7 +219,7 @@ impl Builder<'_> {
         }
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, interval, zero);
-        let parts = vec![TextPart::Text("the interval of `sample` must be positive".into())];
+        let parts = vec![StringPart::Text("the interval of `sample` must be positive".into())];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
         self.dae.events.samples.push(Sample { variable, start, since_start, interval, span });
@@ -240,10 +246,10 @@ impl Builder<'_> {
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
         let message = "the delay time of `delay` must be positive".into();
-        let parts = vec![TextPart::Text(message)];
+        let parts = vec![StringPart::Text(message)];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
-        let variable = self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span));
+        let variable = self.declare_scalar(scalar_of_nothing(&name, VariableKind::Delayed, span));
         self.dae.events.delays.push(Delay { variable, argument, time, span });
         Ok(self.dae.pool.variable(variable))
     }
@@ -282,7 +288,7 @@ impl Builder<'_> {
             return self.dae.pool.variable(known.variable);
         }
         let name = format!("$floor[{}]", roundings.len() + 1);
-        let mut variable = scalar_of_nothing(&name, Kind::Frozen, span);
+        let mut variable = scalar_of_nothing(&name, VariableKind::Frozen, span);
         variable.variability = Variability::Discrete;
         let variable = self.declare_scalar(variable);
         self.dae.events.roundings.push(Rounding { variable, argument, span });

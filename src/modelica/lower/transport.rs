@@ -3,12 +3,12 @@
 
 use super::build::scalar_of_nothing;
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::events::Transport;
 use super::expressions::Array;
-use super::text_part::TextPart;
+use super::string_part::StringPart;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
@@ -117,12 +117,12 @@ impl Builder<'_> {
 
     fn transported(&mut self, span: Span) -> VarId {
         let name = format!("$transported[{}]", self.dae.variables.len());
-        self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span))
+        self.declare_scalar(scalar_of_nothing(&name, VariableKind::Delayed, span))
     }
 
     fn require(&mut self, operator: RelationOperator, a: Expr, b: Expr, message: &str, span: Span) {
         let condition = self.dae.pool.relation(operator, a, b);
-        let parts = vec![TextPart::Text(message.into())];
+        let parts = vec![StringPart::Text(message.into())];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
     }
 }

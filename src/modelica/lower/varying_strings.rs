@@ -1,7 +1,7 @@
-//! Texts that change at events: discrete variables whose values are the numbers of texts.
+//! Strings that change at events: discrete variables whose values are the numbers of Strings.
 
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::equation::Equation;
 use super::expressions::{Lowered, Lowering};
 use super::shape::UNKNOWN_TEXT;
@@ -12,8 +12,8 @@ use crate::syntax::ast::Expression;
 use std::sync::Arc;
 
 impl Builder<'_> {
-    /// Finds the texts whose values are not known when compiling.
-    pub(super) fn find_varying_texts(&mut self) {
+    /// Finds the Strings whose values are not known when compiling.
+    pub(super) fn find_varying_strings(&mut self) {
         let flat = self.flat;
         for (position, variable) in flat.variables.values().enumerate() {
             if variable.base != BaseType::String || variable.variability <= Variability::Parameter {
@@ -26,7 +26,7 @@ impl Builder<'_> {
             if varies {
                 let first = self.scalars.first[position].0 as usize;
                 let scalars = &mut self.dae.variables[first..first + variable.len()];
-                scalars.iter_mut().for_each(|scalar| scalar.kind = Kind::Discrete);
+                scalars.iter_mut().for_each(|scalar| scalar.kind = VariableKind::Discrete);
             }
         }
     }
@@ -36,7 +36,7 @@ impl Builder<'_> {
         let variable = &self.flat.variables[position];
         variable.base == BaseType::String
             && !variable.is_empty()
-            && self.dae.variable(self.scalars.first[position]).kind == Kind::Discrete
+            && self.dae.variable(self.scalars.first[position]).kind == VariableKind::Discrete
     }
 
     /// Binding equation and start value of a text that changes.
@@ -47,7 +47,7 @@ impl Builder<'_> {
             return Ok(());
         }
         if let Some(binding) = &variable.binding {
-            let text = Lowering::new(self).text_at_run_time(binding)?;
+            let text = Lowering::new(self).run_time_string(binding)?;
             let right = Lowering::new(self).number_of_text(text, binding.span)?;
             let left = self.dae.pool.variable(first);
             self.dae.equations.push(Equation::new(left, right, binding.span));
@@ -74,8 +74,8 @@ impl Builder<'_> {
         start: &Expression,
         len: usize,
     ) -> Result<Vec<Expr>, Diagnostic> {
-        let texts = match Lowering::new(self).lower(start)? {
-            Lowered::Texts(texts) if texts.texts.len() == len => texts.texts,
+        let strings = match Lowering::new(self).lower(start)? {
+            Lowered::Strings(strings) if strings.strings.len() == len => strings.strings,
             text => {
                 let number = Lowering::new(self).number_of_text(text, start.span)?;
                 return Ok(vec![number; len]);
@@ -84,7 +84,7 @@ impl Builder<'_> {
         let number = |text: &Arc<str>| {
             Lowering::new(self).number_of_text(Lowered::Text(text.clone()), start.span)
         };
-        texts.iter().map(number).collect()
+        strings.iter().map(number).collect()
     }
 
     /// The number of a text, counted from 0 as they occur.

@@ -5,12 +5,12 @@
 //! branch before it is active; a branch with `initial()` also during initialization (MLS §8.6).
 
 use super::builder::Builder;
-use super::dae::Kind;
+use super::dae::VariableKind;
 use super::equation::{Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::Reinit;
 use super::execution::Loops;
-use super::expressions::{Array, Lowering, TextPart};
+use super::expressions::{Array, Lowering, StringPart};
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -118,7 +118,7 @@ impl Builder<'_> {
     ) -> Result<(), Diagnostic> {
         let (name, kind) =
             (self.dae.variable(variable).name.clone(), self.dae.variable(variable).kind);
-        if kind != Kind::Discrete {
+        if kind != VariableKind::Discrete {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` cannot be assigned in a when-clause").at(span)
             );
@@ -283,10 +283,10 @@ impl Builder<'_> {
         self.guard_assertions(from, guard);
         for mut assertion in self.dae.assertions.split_off(from) {
             if assertion.level == Level::Effect {
-                // Calls are carried out only where their statement is.
+                // Calls are executed only where their statement is.
                 let zero = self.dae.pool.constant(0.0);
                 for part in &mut assertion.parts {
-                    if let TextPart::Numbered(call) = part {
+                    if let StringPart::Numbered(call) = part {
                         *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
                     }
                 }
@@ -307,7 +307,8 @@ impl Builder<'_> {
         }
         for (state, value) in states.elements.iter().zip(&values.elements) {
             let variable = self.dae.pool.as_variable(*state);
-            let Some(state) = variable.filter(|v| self.dae.variable(*v).kind == Kind::Unknown)
+            let Some(state) =
+                variable.filter(|v| self.dae.variable(*v).kind == VariableKind::Unknown)
             else {
                 return Err(
                     fault!(NOT_SUPPORTED, "`reinit` of a variable that is not a state").at(span)

@@ -20,7 +20,7 @@ pub(super) struct History {
     /// Times, not descending; equal ones at a jump.
     times: VecDeque<f64>,
     pub(super) values: VecDeque<f64>,
-    /// Positions of the first points of the pieces behind the one that is read.
+    /// Positions of the first points of the pieces after the one that is read.
     jumps: VecDeque<usize>,
     /// Position of the first point of the piece that is read; `None` before the start.
     first: Option<usize>,
@@ -73,8 +73,8 @@ impl History {
         let Some(first) = self.first else { return self.values.front().copied().unwrap_or(0.0) };
         let end = self.jumps.front().copied().unwrap_or(self.times.len());
         let n = (end - first).min(POINTS);
-        let behind = self.times.partition_point(|time| *time <= t);
-        let start = behind.saturating_sub(n / 2).clamp(first, end - n);
+        let after = self.times.partition_point(|time| *time <= t);
+        let start = after.saturating_sub(n / 2).clamp(first, end - n);
         cubic(&self.times, &self.values, start..start + n, t)
     }
 
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_behind_is_forgotten() {
+    fn old_values_are_forgotten() {
         let mut history = recorded(0.01, 10_000, f64::sin);
         for i in 0..99 {
             history.advance(f64::from(i));

@@ -1,6 +1,6 @@
 //! Difference quotients where a derivative has no finite value: `sqrt(x)` at 0, and `sqrt(x^2)`,
-//! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient over
-//! a short way is a slope that Newton's method goes on with.
+//! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient
+//! over a short distance is a Jacobian entry with which Newton's method continues.
 
 use super::execution::Operation;
 use crate::sim::Failure;
@@ -29,7 +29,7 @@ pub fn quotient(
         }
     };
     column.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / step);
-    match column.iter().all(|slope| slope.is_finite()) {
+    match column.iter().all(|entry| entry.is_finite()) {
         true => Ok(()),
         false => Err(Failure::Domain { origin: u32::MAX, operation: Operation::OTHER }),
     }

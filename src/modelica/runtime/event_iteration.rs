@@ -10,8 +10,8 @@
 //! until nothing changed
 //! ```
 //!
-//! Samples are true in all rounds of their event; behind it the iteration is done once more with
-//! all of them false, as an event of its own if the model shows them.
+//! Samples are true in all rounds of their event; after it the iteration is repeated with all of
+//! them false, as an event of its own if the model shows them.
 
 use super::execution::run;
 use super::instants::{AT_ONCE, Change, Clock, Stage, either};
@@ -203,7 +203,7 @@ impl System {
 
     /// Rounds until `pre(v) = v` and no state is set. Where relations do not come to rest with the
     /// previous values at hand, these follow after every pass: an element that breaks away leaves
-    /// the relation behind that made it do so, and only what it was before holds it where it is.
+    /// the range of the relation that caused it, and only what it was before holds it where it is.
     fn iterate_rounds(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let (mut changed, mut terminated) = (false, false);
         let mut is_stepwise = false;
@@ -396,9 +396,9 @@ impl System {
         let mut changed = false;
         for (rounding, code) in program.events.roundings.iter().zip(&program.events.rounded) {
             let value = match rounding.time {
-                Some((slope, rest)) => {
-                    let direction = if self.is_at_start { 0.0 } else { slope };
-                    rounded_in_time(slope * t + self.registers[rest as usize], direction)
+                Some((rate, rest)) => {
+                    let direction = if self.is_at_start { 0.0 } else { rate };
+                    rounded_in_time(rate * t + self.registers[rest as usize], direction)
                 }
                 None => match code.tape.run(&mut self.registers) {
                     Ok(()) => self.registers[code.outputs[0] as usize].floor(),
@@ -418,9 +418,9 @@ impl System {
     /// Whether what is rounded decreases in time and is whole at `t`.
     pub(super) fn rounds_down_after(&self, t: f64) -> bool {
         self.program.events.roundings.iter().any(|rounding| {
-            rounding.time.is_some_and(|(slope, rest)| {
-                let value = slope * t + self.registers[rest as usize];
-                rounded_in_time(value, slope) != rounded_in_time(value, 0.0)
+            rounding.time.is_some_and(|(rate, rest)| {
+                let value = rate * t + self.registers[rest as usize];
+                rounded_in_time(value, rate) != rounded_in_time(value, 0.0)
             })
         })
     }
@@ -453,11 +453,11 @@ impl System {
     }
 }
 
-/// `floor`; at a jump the value that follows in the direction of the slope.
-fn rounded_in_time(value: f64, slope: f64) -> f64 {
+/// `floor`; at a jump the value that follows in the direction of the rate.
+fn rounded_in_time(value: f64, rate: f64) -> f64 {
     let nearest = value.round();
     if (value - nearest).abs() > AT_ONCE * value.abs().max(1.0) {
         return value.floor();
     }
-    if slope >= 0.0 { nearest } else { nearest - 1.0 }
+    if rate >= 0.0 { nearest } else { nearest - 1.0 }
 }

@@ -5,9 +5,10 @@
 //! x' = ∓ sign(det J) J⁻¹ F(x₀) / ‖J⁻¹ F(x₀)‖
 //! ```
 //!
-//! Where the curve turns back (a fold, or a kink between pieces of opposite slope), det J changes
-//! its sign and the curve is followed on: a comparator with positive feedback that has left its upper
-//! limit goes through its steep piece to its lower limit. Lengths are relative to max(|x₀|, nominal).
+//! Where the curve turns back (a fold, or a kink between a rising and a falling piece), det J
+//! changes its sign and the curve is followed on: a comparator with positive feedback that has left
+//! its upper limit goes through its steep piece to its lower limit. Lengths are relative to
+//! max(|x₀|, nominal).
 //!
 //! Reference: [Branin 1972](gapilib_base::bibliography#branin-1972).
 
@@ -184,8 +185,8 @@ mod tests {
         }
 
         fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-            let slope = if (15e3 * x[0]).abs() < 15.0 { 15e3 } else { 0.0 };
-            out.copy_from_slice(&[3.0, -slope, -1.0, 1.0]);
+            let gain = if (15e3 * x[0]).abs() < 15.0 { 15e3 } else { 0.0 };
+            out.copy_from_slice(&[3.0, -gain, -1.0, 1.0]);
             Ok(())
         }
     }

@@ -199,8 +199,8 @@ mod tests {
         }
     }
 
-    /// The slope is 10¹⁴ times that of the start: rounding leaves residuals that are large beside the
-    /// latter.
+    /// The derivative is 10¹⁴ times that at the start: rounding leaves residuals that are large
+    /// beside the latter.
     #[test]
     fn a_solution_far_away_is_one() {
         let mut x = [293.0];

@@ -1,4 +1,4 @@
-//! Exact slopes of chosen variables, as a model that is linearized needs them.
+//! The exact Jacobian of chosen variables, as a model that is linearized needs them.
 
 use super::difference_quotients::quotient;
 use super::execution::read;
@@ -26,23 +26,29 @@ impl System {
 
     /// ∂v/∂y of variables v (positions in [`Program::variables`](crate::codegen::Program::variables)): a row
     /// for each, columns as those of [`System::dense_jacobian`].
-    pub fn slopes(&self, variables: &[usize], t: f64, y: &[f64]) -> Result<DMatrix<f64>, Failure> {
+    pub fn jacobian_of(
+        &self,
+        variables: &[usize],
+        t: f64,
+        y: &[f64],
+    ) -> Result<DMatrix<f64>, Failure> {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = crate::codegen::sequence::expressions(&program, &mut pool, variables);
         let columns = &program.unknowns;
         let needed = slice(&pool, &program.integrated, &outputs);
         let mut next = program.sorted.dae.variables.len() as u32;
-        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
-        let places: Vec<(usize, usize)> = slopes
+        let derivatives = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
+        let places: Vec<(usize, usize)> = derivatives
             .rows
             .iter()
             .enumerate()
             .flat_map(|(row, entries)| entries.keys().map(move |column| (row, *column)))
             .collect();
-        let entries: Vec<_> = slopes.rows.iter().flat_map(|row| row.values().copied()).collect();
+        let entries: Vec<_> =
+            derivatives.rows.iter().flat_map(|row| row.values().copied()).collect();
         let mut registers = program.registers.clone();
-        let code = compile_outputs(&pool, &mut registers, &slopes.sequence, &entries);
+        let code = compile_outputs(&pool, &mut registers, &derivatives.sequence, &entries);
         let mut system = self.clone();
         system.registers.extend(&registers);
         system.load(t, y);

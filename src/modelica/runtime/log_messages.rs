@@ -1,5 +1,5 @@
-//! What a model tells while it is simulated: warnings, and texts that it prints (MLS §8.3.7). Only
-//! systems that somebody listens to look after them.
+//! The log of a simulation: warnings, and messages that the model prints (MLS §8.3.7). Only systems
+//! with a listener keep it.
 
 use super::execution::run;
 use super::simulation_log::{LogMessage, SimulationLog};
@@ -8,7 +8,7 @@ use crate::bytecode::Journal;
 use crate::codegen::code::{LogAssertion, Outputs};
 use crate::codegen::errors::{ASSERTION_FAILED, DOMAIN_ERROR};
 use crate::diag::Diagnostic;
-use crate::lower::{Assertion, Level, TextPart, warning_of};
+use crate::lower::{Assertion, Level, StringPart, warning_of};
 use crate::sim::{self, SimError, SimErrorKind};
 use crate::value::format::written;
 
@@ -18,7 +18,7 @@ impl System {
         self.log = Some(SimulationLog::default());
     }
 
-    /// What the model would have written in the last simulation, if somebody listened to it.
+    /// What the model would have written in the last simulation, if there was a listener.
     pub fn journal(&self) -> &Journal {
         self.registers.calls.journal()
     }
@@ -30,7 +30,7 @@ impl System {
         all.map(|notice| warning_of(functions, notice)).collect()
     }
 
-    /// What the model has told in the last simulation, and how much more there was.
+    /// The log messages of the last simulation, and how many more there were.
     pub fn log_messages(&self) -> (Vec<LogMessage>, u64) {
         let Some(log) = &self.log else { return (Vec::new(), 0) };
         (log.recorded.clone(), log.omitted)
@@ -62,7 +62,7 @@ impl System {
         done
     }
 
-    /// What is told at an event.
+    /// The log messages of an event.
     pub(super) fn log_assertions_at_event(&mut self, t: f64) -> Result<(), sim::Failure> {
         let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
@@ -124,7 +124,7 @@ impl System {
             return said.reworded(self.program.failed_value(origin, operation, &when));
         }
         let dae = &self.program.sorted().dae;
-        let texts = match failure {
+        let strings = match failure {
             sim::Failure::Assertion { assertion } => {
                 let text = self.failed_message.as_ref().filter(|(known, _)| *known == assertion);
                 dae.assertion(assertion).map(|a| &*a.message).zip(text.map(|(_, text)| &**text))
@@ -137,7 +137,7 @@ impl System {
             }
             _ => None,
         };
-        match texts.filter(|(known, _)| known.contains(UNKNOWN)) {
+        match strings.filter(|(known, _)| known.contains(UNKNOWN)) {
             Some((known, text)) => {
                 let message = said.message.replacen(known, text, 1);
                 said.reworded(message)
@@ -158,10 +158,10 @@ impl System {
         for part in &assertion.parts {
             let row: Vec<f64> = outputs.by_ref().take(part.scalars().len()).collect();
             let text = match part {
-                TextPart::Text(known) => Some(known.clone()),
+                StringPart::Text(known) => Some(known.clone()),
                 _ if !are_known => None,
-                TextPart::Numbered(_) => self.registers.calls.text(row[0]),
-                TextPart::Written(_, format) => written(&row, format.as_deref()).ok(),
+                StringPart::Numbered(_) => self.registers.calls.text(row[0]),
+                StringPart::Written(_, format) => written(&row, format.as_deref()).ok(),
             };
             words += text.as_deref().unwrap_or(UNKNOWN);
         }

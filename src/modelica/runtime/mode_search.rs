@@ -3,7 +3,7 @@
 //! Each relation taken for itself may contradict the values that solving with it gives, although
 //! together with another one it holds: a limiter with positive feedback jumps from its upper to its
 //! lower limit and has no solution between them. What keeps changing is tried in all combinations,
-//! then together with what other relations want to change, and with those of the same blocks; of
+//! then together with other relations that would change, and with those of the same blocks; of
 //! combinations that hold, that with the fewest changes is taken.
 
 use super::instants::Stage;
@@ -119,14 +119,14 @@ impl System {
                 return false;
             }
             if self.moved_lagged().is_none() {
-                return !self.note_restless(t) && !self.update_roundings(t);
+                return !self.note_inconsistent(t) && !self.update_roundings(t);
             }
         }
         false
     }
 
     /// Marks the relations that do not hold; whether there are any.
-    fn note_restless(&mut self, t: f64) -> bool {
+    fn note_inconsistent(&mut self, t: f64) -> bool {
         let mut any = false;
         self.reschedule();
         for at in 0..self.program.relations.len() {

@@ -200,8 +200,8 @@ mod tests {
                 f[1] = (x[0] - x[1]) * (x[0] - x[1]);
             },
             |x, j| {
-                let slope = 2.0 * (x[0] - x[1]);
-                j.copy_from_slice(&[1.0, slope, 1.0, -slope]);
+                let entry = 2.0 * (x[0] - x[1]);
+                j.copy_from_slice(&[1.0, entry, 1.0, -entry]);
             },
         );
         assert!(isolated(meeting, &[1.5, 1.5]));

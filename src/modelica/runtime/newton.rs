@@ -28,7 +28,7 @@ use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
 use std::sync::Arc;
 
 /// How far beside the guess another attempt begins, relative to its magnitude: small
-/// enough to stay on the branch of the solution, and large enough for a slope of its own.
+/// enough to stay on the branch of the solution, and large enough for a Jacobian of its own.
 const DISPLACEMENT: f64 = 1e-3;
 
 /// The workspace of one loop.

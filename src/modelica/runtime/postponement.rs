@@ -1,14 +1,14 @@
-//! Relations on time that hold at an instant and not behind it, or the other way round, where what
-//! is to hold behind it has no values at the instant itself.
+//! Relations on time that hold at an instant and not after it, or vice versa, where what holds
+//! after it has no values at the instant itself.
 //!
 //! ```text
 //! z = if time <= 0 then 0 else y/time     at t = 0 the second branch is 0/0
 //! ```
 //!
-//! A relation has at its instant the value that it has behind it, so that all that happens at one
+//! A relation has at its instant the value that it has after it, so that all that happens at one
 //! time is one event. Where the equations then fail, the instant itself has what the relation says
 //! literally, and it changes a little later. At the start it has what it says literally as well: an
-//! event at the same time follows where that is another value than behind it.
+//! event at the same time follows where that is another value than after it.
 
 use super::execution::run;
 use super::instants::{AT_ONCE, same_time};
@@ -21,7 +21,7 @@ const RELATIVE: f64 = 4.0 * AT_ONCE;
 const ABSOLUTE: f64 = 1e-13;
 
 /// A time a little after another one.
-fn behind(time: f64) -> f64 {
+fn after(time: f64) -> f64 {
     time + if time == 0.0 { ABSOLUTE } else { RELATIVE * time.abs() }
 }
 
@@ -29,10 +29,11 @@ impl System {
     /// The time at which a relation on time changes.
     pub(super) fn set_switch(&mut self, at: usize, time: Option<f64>) {
         let time = time.filter(|time| time.is_finite());
-        self.switches[at] = if self.postponed[at] { time.map(behind) } else { time };
+        self.switches[at] = if self.postponed[at] { time.map(after) } else { time };
     }
 
-    /// The relations that change at `t` and do not have literally the value that they have behind it.
+    /// The relations that change at `t` and do not have literally the value that they have after
+    /// it.
     fn to_postpone(&self, t: f64) -> impl Iterator<Item = usize> + '_ {
         let relations = self.program.relations.iter().enumerate();
         let switches = relations.zip(&self.switches).zip(&self.postponed);
@@ -50,7 +51,7 @@ impl System {
         self.to_postpone(t).next().is_some() || self.rounds_down_after(t)
     }
 
-    /// Lets the relations that change at `t` change behind it; whether there are any.
+    /// Lets the relations that change at `t` change after it; whether there are any.
     pub(super) fn postpone(&mut self, t: f64) -> bool {
         let found: Vec<usize> = self.to_postpone(t).collect();
         for at in &found {
@@ -60,7 +61,7 @@ impl System {
         !found.is_empty()
     }
 
-    /// Makes an attempt at what holds behind an instant; where it fails, what holds literally at it.
+    /// Tries what holds after an instant; where it fails, what holds literally at it.
     pub(super) fn at_instant<T>(
         &mut self,
         t: f64,

@@ -51,13 +51,13 @@ pub(super) enum End {
 impl Piece {
     fn value(&self, s: f64) -> f64 {
         let n = self.at.len();
-        let behind = self.at.partition_point(|at| *at <= s);
+        let after = self.at.partition_point(|at| *at <= s);
         if self.linear {
-            let start = behind.saturating_sub(1).min(n.saturating_sub(2));
+            let start = after.saturating_sub(1).min(n.saturating_sub(2));
             return cubic(&self.at, &self.values, start..n.min(start + 2), s);
         }
         let width = n.min(4);
-        let start = behind.saturating_sub(width / 2).min(n - width);
+        let start = after.saturating_sub(width / 2).min(n - width);
         cubic(&self.at, &self.values, start..start + width, s)
     }
 
@@ -121,7 +121,7 @@ impl Profile {
         Profile { pieces, reading: 0, scale }
     }
 
-    /// A profile that has one value up to `s`, behind which others follow.
+    /// A profile that has one value up to `s`, after which others follow.
     pub(super) fn constant_before(s: f64, value: f64, scale: f64) -> Profile {
         let mut profile = Profile::of_points(&[s, s], &[value, value], scale);
         profile.pieces[1].linear = false;
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn cubics_are_exact_behind_the_initial_profile_at_both_ends() {
+    fn cubics_are_exact_past_the_initial_profile_at_both_ends() {
         let cubic = |s: f64| 1.0 - 2.0 * s + 0.5 * s * s - s * s * s;
         let mut profile = Profile::of_points(&[0.0, 1.0], &[cubic(0.0), cubic(1.0)], 1.0);
         for i in 1..20 {

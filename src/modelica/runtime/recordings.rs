@@ -29,7 +29,7 @@ impl System {
             if passed > before {
                 self.knots_passed[at] = passed;
                 self.set_segment(recording, passed);
-                jumps |= program.reads_slopes || recording.jumps((before, passed));
+                jumps |= program.reads_rates || recording.jumps((before, passed));
             }
         }
         jumps
@@ -42,7 +42,7 @@ impl System {
         pairs.filter_map(|(recording, passed)| recording.knots.get(*passed).copied())
     }
 
-    /// Values, slopes and the time they count from, where so many knots have been passed.
+    /// Values, rates and the time they count from, where so many knots have been passed.
     fn set_segment(&mut self, recording: &Recording, passed: usize) {
         let (first, knots) = (passed.saturating_sub(1), &recording.knots);
         if let Some(since) = recording.since {
@@ -50,14 +50,14 @@ impl System {
         }
         for track in &recording.tracks {
             self.registers[track.value.0 as usize] = track.samples[first];
-            if let Some(slope) = track.slope {
+            if let Some(rate) = track.rate {
                 let next = (passed > 0 && passed < knots.len()).then_some(passed);
                 let rise = |next: usize| {
                     let length = knots[next] - knots[first];
                     let rise = track.samples[next] - track.samples[first];
                     if length > 0.0 { rise / length } else { 0.0 }
                 };
-                self.registers[slope.0 as usize] = next.map_or(0.0, rise);
+                self.registers[rate.0 as usize] = next.map_or(0.0, rise);
             }
         }
     }
@@ -76,9 +76,9 @@ impl Recording {
 
     /// Whether an input has another value after these knots than before them.
     fn jumps(&self, (before, passed): (usize, usize)) -> bool {
-        let is_held = |slope: Option<_>| slope.is_none();
+        let is_held = |rate: Option<_>| rate.is_none();
         let first = before.saturating_sub(1);
-        self.tracks.iter().any(|track| match is_held(track.slope) {
+        self.tracks.iter().any(|track| match is_held(track.rate) {
             true => track.samples[first] != track.samples[passed - 1],
             false => track.samples[before..passed].windows(2).any(|pair| pair[0] != pair[1]),
         })

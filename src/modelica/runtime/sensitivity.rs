@@ -31,7 +31,7 @@ impl System {
                 span: f64::INFINITY,
                 is_smooth: true,
                 before: vec![0.0; n],
-                behind: vec![0.0; n],
+                after: vec![0.0; n],
                 refusal: None,
             })
         });
@@ -42,7 +42,7 @@ impl System {
         self.sensitivity.as_ref()?.refusal
     }
 
-    /// Copies the derivatives behind y, if it holds any, to their registers.
+    /// Copies the derivatives after y, if it holds any, to their registers.
     pub(super) fn load_derivatives(&mut self, y: &[f64]) {
         let Some(sensitivity) = &self.sensitivity else { return };
         let n = y.len() / (sensitivity.code.n_columns() + 1);
@@ -56,7 +56,7 @@ impl System {
         }
     }
 
-    /// Copies the derivatives behind y from their registers.
+    /// Copies the derivatives after y from their registers.
     pub(super) fn unload_derivatives(&self, y: &mut [f64]) {
         let Some(sensitivity) = &self.sensitivity else { return };
         let n = self.n_held();
@@ -212,15 +212,15 @@ impl System {
         }
     }
 
-    /// Behind an event: derivatives at a given time again.
+    /// After an event: derivatives at a given time again.
     pub(super) fn leave_event(&mut self, outcome: EventOutcome) -> Result<(), Failure> {
         let Some(mut sensitivity) = self.sensitivity.take() else { return Ok(()) };
-        let left = self.derivatives_behind(outcome, &mut sensitivity);
+        let left = self.derivatives_after(outcome, &mut sensitivity);
         self.sensitivity = Some(sensitivity);
         left
     }
 
-    fn derivatives_behind(
+    fn derivatives_after(
         &mut self,
         outcome: EventOutcome,
         own: &mut Sensitivity,
@@ -231,8 +231,8 @@ impl System {
         }
         let code = own.code.clone();
         if code.time.iter().any(|time| self.registers[*time as usize] != 0.0) {
-            read_into(&code.speeds, self, &mut own.behind)?;
-            self.shift_states(&code, &own.behind, -1.0);
+            read_into(&code.speeds, self, &mut own.after)?;
+            self.shift_states(&code, &own.after, -1.0);
         }
         if outcome != EventOutcome::Again {
             code.time.iter().for_each(|time| self.registers[*time as usize] = 0.0);

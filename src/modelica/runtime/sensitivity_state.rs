@@ -14,8 +14,8 @@ pub(super) struct Sensitivity {
     pub(super) span: f64,
     /// Whether the time of the event has derivatives.
     pub(super) is_smooth: bool,
-    /// Derivatives of the states by time before the event, and behind it.
+    /// Derivatives of the states by time before the event, and after it.
     pub(super) before: Vec<f64>,
-    pub(super) behind: Vec<f64>,
+    pub(super) after: Vec<f64>,
     pub(super) refusal: Option<&'static str>,
 }

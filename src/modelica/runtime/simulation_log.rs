@@ -54,7 +54,7 @@ pub(super) enum OpenLoop {
     Linear { system: u32, places: Vec<usize> },
     /// A torn loop of the initial system.
     Initial { block: u32 },
-    /// Another torn loop; those of events are numbered behind those between events.
+    /// Another torn loop; those of events are numbered after those between events.
     Later { block: u32 },
 }
 

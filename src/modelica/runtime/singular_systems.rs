@@ -1,5 +1,5 @@
 //! Systems that are structurally regular and yet singular: equations that depend on each other leave
-//! unknowns open. Who listens to a simulation is told of them, once for each loop.
+//! unknowns open. They are reported to the listener of a simulation, once for each loop.
 
 use super::simulation_log::OpenLoop;
 use super::system::System;
@@ -72,7 +72,7 @@ impl System {
         }
     }
 
-    /// What the equations left open in the last simulation, if somebody listened to it.
+    /// What the equations did not determine in the last simulation, if there was a listener.
     pub fn undetermined(&self) -> Vec<Undetermined> {
         let Some(log) = &self.log else { return Vec::new() };
         let mut found: Vec<Undetermined> = Vec::new();

@@ -47,7 +47,7 @@ pub struct System {
     /// Whether no event has followed the initialization yet: relations on time have literally the
     /// values that they have at the start, not those after it.
     pub(super) is_at_start: bool,
-    /// Relations on time that change behind their instants.
+    /// Relations on time that change after their instants.
     pub(super) postponed: Vec<bool>,
     /// What reads a parameter that a function has left without value fails with.
     lacking: Option<Failure>,
@@ -104,7 +104,7 @@ pub struct System {
     pub(super) sensitivity: Option<Box<Sensitivity>>,
     /// The text of the assertion that failed last, with its values, and its number.
     pub(super) failed_message: Option<(u32, String)>,
-    /// What is told of a simulation, where somebody listens.
+    /// The log of a simulation, where there is a listener.
     pub(super) log: Option<SimulationLog>,
     /// The modes on both sides of relations.
     pub(super) modes: Modes,

@@ -34,7 +34,7 @@ pub(super) struct Record {
 
 /// Where a profile is read.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct ReadPoint {
     pub at: f64,
     /// The end from which the values come.
     pub from: End,
@@ -44,7 +44,7 @@ pub(super) struct Place {
 
 impl Record {
     /// Before anything has gone in but `inputs`.
-    pub fn start(start: &[f64], place: Place, inputs: &[f64], t: f64) -> Record {
+    pub fn start(start: &[f64], place: ReadPoint, inputs: &[f64], t: f64) -> Record {
         let positive = place.from == End::High;
         let mut record = Record { positive, last: (t, place.position), ..Record::default() };
         record.first = inputs.to_vec();
@@ -68,14 +68,14 @@ impl Record {
     }
 
     /// What goes into a pipe.
-    fn enter(&mut self, place: Place, inputs: &[f64]) {
+    fn enter(&mut self, place: ReadPoint, inputs: &[f64]) {
         match place.from {
             End::High => self.profile.push(End::High, place.position, inputs[0]),
             End::Low => self.profile.push(End::Low, place.position - 1.0, inputs[1]),
         }
     }
 
-    pub fn push(&mut self, is_pipe: bool, place: Place, inputs: &[f64], t: f64) {
+    pub fn push(&mut self, is_pipe: bool, place: ReadPoint, inputs: &[f64], t: f64) {
         if !is_pipe {
             self.delay = t - place.at;
             self.profile.push(End::High, t, inputs[0]);
@@ -104,7 +104,7 @@ impl Record {
     }
 
     /// The values at a place; not a number where the step is too long for what is recorded.
-    pub fn read(&self, is_pipe: bool, place: Place) -> [f64; 2] {
+    pub fn read(&self, is_pipe: bool, place: ReadPoint) -> [f64; 2] {
         let end = self.profile.end(place.from);
         let margin = if is_pipe { 0.0 } else { SHORTEST_DELAY * self.longest * 1.01 };
         let unknown = match place.from {

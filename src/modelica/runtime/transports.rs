@@ -3,7 +3,7 @@
 use super::execution::run;
 use super::profile::End;
 use super::system::System;
-use super::transport_record::{Place, Record};
+use super::transport_record::{ReadPoint, Record};
 use crate::codegen::code::Outputs;
 use crate::codegen::events::CompiledTransport;
 use crate::codegen::memory::Memory;
@@ -19,14 +19,14 @@ fn values(code: &Outputs, registers: &mut Memory) -> Result<Vec<f64>, Failure> {
     Ok(code.outputs.iter().map(|register| registers[*register as usize]).collect())
 }
 
-fn place(code: &CompiledTransport, registers: &mut Memory, t: f64) -> Result<Place, Failure> {
+fn place(code: &CompiledTransport, registers: &mut Memory, t: f64) -> Result<ReadPoint, Failure> {
     Ok(match values(&code.read, registers)?[..] {
         [position, positive] if positive != 0.0 => {
-            Place { at: position - 1.0, from: End::High, position }
+            ReadPoint { at: position - 1.0, from: End::High, position }
         }
-        [position, _] => Place { at: position, from: End::Low, position },
-        [delay] => Place { at: t - delay, from: End::High, position: t },
-        _ => Place { at: t, from: End::High, position: t },
+        [position, _] => ReadPoint { at: position, from: End::Low, position },
+        [delay] => ReadPoint { at: t - delay, from: End::High, position: t },
+        _ => ReadPoint { at: t, from: End::High, position: t },
     })
 }
 

@@ -114,8 +114,8 @@ impl Derivatives<'_> {
             Node::CallDerivative { function, output, inputs, arguments } => {
                 self.call(function, output, &inputs, arguments)
             }
-            Node::Solution { matrix, right, output, is_slope } => {
-                self.solution((matrix, right, is_slope), output)
+            Node::Solution { matrix, right, output, is_derivative } => {
+                self.solution((matrix, right, is_derivative), output)
             }
         };
         derivative.filter(|derivative| self.pool.as_constant(*derivative) != Some(0.0))
@@ -314,7 +314,7 @@ impl Derivatives<'_> {
     }
 
     /// `None` if neither matrix nor right side has derivatives.
-    fn right_of_derivatives(&mut self, (matrix, right, is_slope): System) -> Option<Expr> {
+    fn right_of_derivatives(&mut self, (matrix, right, is_derivative): System) -> Option<Expr> {
         let (of_matrix, of_right) = (self.entries(matrix), self.entries(right));
         if of_matrix.is_empty() && of_right.is_empty() {
             return None;
@@ -326,7 +326,7 @@ impl Derivatives<'_> {
         }
         for (at, derivative) in of_matrix {
             let unknown = (at % n) as u32;
-            let x = self.pool.any_solution(matrix, right, unknown, is_slope);
+            let x = self.pool.any_solution(matrix, right, unknown, is_derivative);
             let term = self.pool.mul(derivative, x);
             rights[at / n] = self.pool.sub(rights[at / n], term);
         }

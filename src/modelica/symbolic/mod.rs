@@ -11,9 +11,9 @@
 //! let x = pool.variable(VarId(0));
 //! let sine = pool.function("sin", &[x]);
 //! let product = pool.mul(x, sine);
-//! let slope = derivative(&mut pool, product, VarId(0));
+//! let partial = derivative(&mut pool, product, VarId(0));
 //! let expected = 0.5f64.sin() + 0.5 * 0.5f64.cos();
-//! assert!((evaluate(&pool, slope, &[0.5][..]) - expected).abs() < 1e-15);
+//! assert!((evaluate(&pool, partial,  &[0.5][..]) - expected).abs() < 1e-15);
 //! ```
 
 mod derivative;

@@ -13,7 +13,7 @@ impl Expr {
     }
 }
 
-/// A variable, numbered by whoever owns the pool.
+/// A variable, numbered by the owner of the pool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 pub struct VarId(pub u32);
 
@@ -198,7 +198,7 @@ pub enum Node {
         output: u32,
         /// Whether x is the derivative of the solution of another system with the same matrix:
         /// where this is singular it need not have a solution.
-        is_slope: bool,
+        is_derivative: bool,
     },
 }
 

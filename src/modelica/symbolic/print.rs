@@ -7,8 +7,8 @@ use super::pool::Pool;
 /// pool can be exponentially long.
 const LONGEST: usize = 20_000;
 
-/// The text of an expression; a user function `i` is written `f<i>.<output>(…)`. Texts that grow
-/// beyond some thousand characters end in `…`.
+/// The text of an expression; a user function `i` is written `f<i>.<output>(…)`. Strings of more
+/// than some thousand characters end in `…`.
 pub fn print(pool: &Pool, expr: Expr, name: &dyn Fn(VarId) -> String) -> String {
     let mut text = String::new();
     let mut pending = vec![Piece::Operand(expr, 0)];

@@ -13,7 +13,7 @@ use super::node::{Expr, Node, RelationOperator};
 use super::pool::Pool;
 use rustc_hash::FxHashMap;
 
-/// Roundings that a variable or the value of a function may have behind it.
+/// Roundings that a variable or the value of a function may contain.
 const ROUNDINGS: f64 = 8.0;
 
 /// A condition that holds where this one does, and where it fails by no more than what sums and

@@ -252,8 +252,8 @@ impl Pool {
     /// Another unknown of the system that an expression is an unknown of.
     pub(crate) fn other_unknown(&mut self, solution: Expr, output: u32) -> Expr {
         match *self.node(solution) {
-            Node::Solution { matrix, right, is_slope, .. } => {
-                self.any_solution(matrix, right, output, is_slope)
+            Node::Solution { matrix, right, is_derivative, .. } => {
+                self.any_solution(matrix, right, output, is_derivative)
             }
             _ => solution,
         }
@@ -264,14 +264,14 @@ impl Pool {
         matrix: Expr,
         right: Expr,
         output: u32,
-        is_slope: bool,
+        is_derivative: bool,
     ) -> Expr {
         let zero = |e: &Expr| self.as_constant(*e) == Some(0.0);
-        // Zero solves any homogeneous system, but of a singular one it is not the only solution, and
-        // whoever solves it must find that out.
-        match is_slope && self.entries(right).iter().all(zero) {
+        // Zero solves any homogeneous system, but of a singular one it is not the only solution,
+        // and the solver must detect that.
+        match is_derivative && self.entries(right).iter().all(zero) {
             true => self.constant(0.0),
-            false => self.intern(Node::Solution { matrix, right, output, is_slope }),
+            false => self.intern(Node::Solution { matrix, right, output, is_derivative }),
         }
     }
 
@@ -315,8 +315,8 @@ impl Pool {
                 let entries: Vec<Expr> = entries.iter().map(|e| map(*e)).collect();
                 self.list(&entries)
             }
-            Node::Solution { matrix, right, output, is_slope } => {
-                self.any_solution(map(*matrix), map(*right), *output, *is_slope)
+            Node::Solution { matrix, right, output, is_derivative } => {
+                self.any_solution(map(*matrix), map(*right), *output, *is_derivative)
             }
         }
     }

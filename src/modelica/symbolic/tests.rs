@@ -44,7 +44,8 @@ impl Tree {
         }
     }
 
-    /// Whether every part is finite and has a finite slope: not so `tanh(x / 0)` and `sqrt(0) * 0`.
+    /// Whether every part is finite and has a finite derivative: not so `tanh(x / 0)` and `sqrt(0)
+    /// * 0`.
     fn regular(&self, x: &[f64]) -> bool {
         self.value(x).is_finite()
             && match self {
@@ -118,8 +119,8 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 
 /// Central difference and an estimate of its error, from two step sizes.
 fn difference(f: &dyn Fn(f64) -> f64) -> (f64, f64) {
-    let slope = |h: f64| (f(h) - f(-h)) / (2.0 * h);
-    let (wide, narrow) = (slope(2e-5), slope(1e-5));
+    let partial = |h: f64| (f(h) - f(-h)) / (2.0 * h);
+    let (wide, narrow) = (partial(2e-5), partial(1e-5));
     (narrow, (wide - narrow).abs())
 }
 
@@ -140,7 +141,7 @@ proptest! {
     fn derivative_agrees_with_differences(tree in tree(), x in point(), which in 0usize..3) {
         let mut pool = Pool::new();
         let expr = tree.build(&mut pool);
-        let slope = derivative(&mut pool, expr, VarId(which as u32));
+        let partial = derivative(&mut pool, expr, VarId(which as u32));
         let at = |h: f64| {
             let mut x = x;
             x[which] += h;
@@ -150,7 +151,7 @@ proptest! {
         // Near a pole or a jump the difference says nothing.
         prop_assume!(tree.regular(&x) && at(0.0).abs() < 1e4);
         prop_assume!(expected.is_finite() && uncertainty < 1e-6 * (1.0 + expected.abs()));
-        let value = evaluate(&pool, slope, &x[..]);
+        let value = evaluate(&pool, partial, &x[..]);
         prop_assert!(close(value, expected, 1e-5), "{value} is not {expected}");
     }
 
@@ -184,7 +185,7 @@ proptest! {
 #[test]
 fn every_function_has_the_derivative_of_its_value() {
     let candidates = [[0.3, 0.8], [0.7, -0.4], [-0.6, 0.9], [2.3, 1.1], [-2.6, -0.7]];
-    // What is drawn by chance has no slope.
+    // Random values have no derivative.
     let smooth = |function: &function::Function| function.name != "RandomUniform";
     for (id, function) in function::functions().filter(|(_, function)| smooth(function)) {
         let mut checked = 0;
@@ -197,14 +198,14 @@ fn every_function_has_the_derivative_of_its_value() {
                 (0..function.arity() as u32).map(|i| pool.variable(VarId(i))).collect();
             let expr = pool.apply(id, &arguments);
             for which in 0..function.arity() {
-                let slope = derivative(&mut pool, expr, VarId(which as u32));
+                let partial = derivative(&mut pool, expr, VarId(which as u32));
                 let at = |h: f64| {
                     let mut x = x.to_vec();
                     x[which] += h;
                     evaluate(&pool, expr, &x[..])
                 };
                 let (expected, _) = difference(&at);
-                let value = evaluate(&pool, slope, x);
+                let value = evaluate(&pool, partial, x);
                 assert!(
                     close(value, expected, 1e-8),
                     "{} for argument {which} at {x:?}: {value} is not {expected}",
@@ -329,31 +330,31 @@ fn a_call_is_differentiated_by_the_chain_rule() {
     let x = pool.variable(VarId(0));
     let square = pool.mul(x, x);
     let call = pool.call(7, 1, &[square, x]);
-    let slope = derivative(&mut pool, call, VarId(0));
-    let text = print(&pool, slope, &|v| format!("x{}", v.0));
+    let partial = derivative(&mut pool, call, VarId(0));
+    let text = print(&pool, partial, &|v| format!("x{}", v.0));
     assert_eq!(text, "f7.1'0(x0 * x0, x0) * (x0 + x0) + f7.1'1(x0 * x0, x0)");
-    let second = derivative(&mut pool, slope, VarId(0));
+    let second = derivative(&mut pool, partial, VarId(0));
     let text = print(&pool, second, &|v| format!("x{}", v.0));
     assert!(text.contains("f7.1'0'1(x0 * x0, x0)"), "{text}");
 }
 
 #[test]
-fn text_has_the_parentheses_it_needs() {
+fn printed_expressions_have_the_parentheses_they_need() {
     let mut pool = Pool::new();
     let (x, y) = (pool.variable(VarId(0)), pool.variable(VarId(1)));
     let mut text = |build: &dyn Fn(&mut Pool) -> Expr| {
         let expr = build(&mut pool);
         print(&pool, expr, &|v| ["x", "y"][v.0 as usize].to_owned())
     };
-    let text_of = text(&|p| {
+    let printed = text(&|p| {
         let sum = p.add(x, y);
         let difference = p.sub(x, sum);
         let two = p.constant(2.0);
         let power = p.pow(difference, two);
         p.div(x, power)
     });
-    assert_eq!(text_of, "x / (x - (x + y)) ^ 2.0");
-    let text_of = text(&|p| {
+    assert_eq!(printed, "x / (x - (x + y)) ^ 2.0");
+    let printed = text(&|p| {
         let less = p.relation(RelationOperator::Less, x, y);
         let not = p.not(less);
         let minus = p.constant(-1.5);
@@ -362,13 +363,13 @@ fn text_has_the_parentheses_it_needs() {
         let both = p.and(not, other);
         p.if_then_else(both, power, y)
     });
-    assert_eq!(text_of, "if not x < y and x > y then (-1.5) ^ x else y");
-    let text_of = text(&|p| {
+    assert_eq!(printed, "if not x < y and x > y then (-1.5) ^ x else y");
+    let printed = text(&|p| {
         let less = p.relation(RelationOperator::Less, x, y);
         let not = p.not(less);
         p.and(less, not)
     });
-    assert_eq!(text_of, "0.0", "nothing and its opposite");
+    assert_eq!(printed, "0.0", "nothing and its opposite");
 }
 
 #[test]
@@ -381,16 +382,16 @@ fn depth_is_no_limit() {
         expr = pool.add(expr, x);
     }
     assert!(evaluate(&pool, expr, &[0.1][..]).is_finite());
-    let slope = derivative(&mut pool, expr, VarId(0));
-    assert_eq!(pool.variables(slope), vec![VarId(0)]);
-    assert!(print(&pool, slope, &|_| "x".into()).ends_with('…'));
+    let partial = derivative(&mut pool, expr, VarId(0));
+    assert_eq!(pool.variables(partial), vec![VarId(0)]);
+    assert!(print(&pool, partial, &|_| "x".into()).ends_with('…'));
     let one = pool.constant(1.0);
     let at_one = substitute(&mut pool, expr, &|_| Some(one));
     assert!(pool.as_constant(at_one).is_some());
 }
 
 #[test]
-fn solutions_of_linear_systems_have_values_and_slopes() {
+fn solutions_of_linear_systems_have_values_and_derivatives() {
     let mut pool = Pool::new();
     let [x, y] = [0, 1].map(|v| pool.variable(VarId(v)));
     let one = pool.constant(1.0);
@@ -402,14 +403,14 @@ fn solutions_of_linear_systems_have_values_and_slopes() {
     let u = pool.solution(matrix, right, 0);
     assert!((evaluate(&pool, u, &[2.0, 3.0][..]) - exact(2.0, 3.0)).abs() < 1e-14);
     for (at, step) in [(0, [1e-6, 0.0]), (1, [0.0, 1e-6])] {
-        let slope = derivative(&mut pool, u, VarId(at));
+        let partial = derivative(&mut pool, u, VarId(at));
         let difference =
             (exact(2.0 + step[0], 3.0 + step[1]) - exact(2.0 - step[0], 3.0 - step[1])) / 2e-6;
-        assert!((evaluate(&pool, slope, &[2.0, 3.0][..]) - difference).abs() < 1e-8);
+        assert!((evaluate(&pool, partial, &[2.0, 3.0][..]) - difference).abs() < 1e-8);
     }
     // Of a second derivative too.
-    let slope = derivative(&mut pool, u, VarId(0));
-    let curvature = derivative(&mut pool, slope, VarId(0));
+    let partial = derivative(&mut pool, u, VarId(0));
+    let curvature = derivative(&mut pool, partial, VarId(0));
     let difference = (exact(2.001, 3.0) - 2.0 * exact(2.0, 3.0) + exact(1.999, 3.0)) / 1e-6;
     assert!((evaluate(&pool, curvature, &[2.0, 3.0][..]) - difference).abs() < 1e-4);
     let zero = pool.constant(0.0);

@@ -148,18 +148,18 @@ impl<'t> Stop<'t> {
     }
 
     fn remedy(&self, repair: &Repair) -> Diagnostic {
-        let wanted = repair.write.trim();
+        let missing = repair.write.trim();
         let gap = Span::new(self.source, self.before, self.before);
-        match (repair.found, wanted) {
+        match (repair.found, missing) {
             ("", ";") => fault!(MISSING_SEMICOLON, "a `;` is missing")
                 .help("write `;` here")
                 .labelled(gap, "the construct that ends here is not closed"),
-            ("", _) => fault!(SYNTAX_ERROR, "`{wanted}` is missing")
-                .help(format!("write `{wanted}` here"))
-                .labelled(gap, format!("expected `{wanted}`")),
+            ("", _) => fault!(SYNTAX_ERROR, "`{missing}` is missing")
+                .help(format!("write `{missing}` here"))
+                .labelled(gap, format!("expected `{missing}`")),
             (found, _) => self
                 .fault(&format!("unexpected `{found}`"))
-                .help(format!("write `{wanted}`{}", repair.because))
+                .help(format!("write `{missing}`{}", repair.because))
                 .at(self.found),
         }
     }

@@ -5,8 +5,8 @@
 //! stops the reading and is the one [`Diagnostic`] returned: an error in a bracket or an `end` is
 //! reported in preference to what the grammar makes of it later.
 //!
-//! A file of a library is read lazily: [`Outline`] tells where its classes are, and the body of a
-//! class is scanned, read and lowered when somebody looks at its [`Sections`].
+//! A file of a library is read lazily: [`Outline`] finds its classes, and the body of a class is
+//! scanned, parsed and lowered when its [`Sections`] are first read.
 
 pub mod ast;
 mod decode;
@@ -35,7 +35,7 @@ use crate::name::Name;
 use crate::source::{SourceId, Span};
 use ast::{Argument, Expression, Script, StoredDefinition};
 use parser::{Pieces, Rule};
-use place::Place;
+use place::TextOrigin;
 use scan::Dialect;
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ pub fn parse_stored_definition(
 ) -> Result<StoredDefinition, Diagnostic> {
     let rule = Rule::stored_definition;
     parser::parse(
-        &Place::in_source(source),
+        &TextOrigin::in_source(source),
         text,
         rule,
         Dialect::Modelica,
@@ -69,8 +69,8 @@ pub fn parse_stored_definition(
     )
 }
 
-/// Reads a `.mo` file lazily: the heads of its classes now, the sections of each when somebody looks
-/// at them. What cannot be read then is reported by `Sections::error`.
+/// Reads a `.mo` file lazily: the heads of its classes now, the sections of each when they are
+/// first read. What cannot be read then is reported by `Sections::error`.
 ///
 /// ```
 /// use gapilib_modelica::syntax::ast::ClassSpecifier;
@@ -95,8 +95,8 @@ pub fn parse_stored_definition_lazily(
     reading::stored_definition(source, text)
 }
 
-/// Reads a `.mo` file and tells all that is wrong with it, as far as its classes can be told apart:
-/// the first error of each class.
+/// Reads a `.mo` file and reports all errors, as far as its classes can be separated: the first
+/// error of each class.
 ///
 /// # Errors
 /// Syntax errors, in the order of the text.
@@ -185,7 +185,13 @@ pub fn is_keyword(word: &str) -> bool {
 /// It is the whole text, such as the value of a command-line option.
 pub fn parse_expression(source: SourceId, text: &str) -> Result<Expression, Diagnostic> {
     let rule = Rule::lone_expression;
-    parser::parse(&Place::in_source(source), text, rule, Dialect::Fragment, lower::lone_expression)
+    parser::parse(
+        &TextOrigin::in_source(source),
+        text,
+        rule,
+        Dialect::Fragment,
+        lower::lone_expression,
+    )
 }
 
 /// Reads a class name with an optional modification, `M(redeclare package P = Q, p = 2)`: the
@@ -196,7 +202,7 @@ pub fn parse_class_with_modification(
 ) -> Result<(Name, Vec<Argument>), Diagnostic> {
     let rule = Rule::class_with_modification;
     parser::parse(
-        &Place::in_source(source),
+        &TextOrigin::in_source(source),
         text,
         rule,
         Dialect::Fragment,

@@ -92,8 +92,8 @@ impl Scan<'_> {
         }
     }
 
-    /// From an opening bracket to behind its partner. One that is not closed before a `;` outside
-    /// `[…]` ends there: the parser tells of it when it reads the class.
+    /// From an opening bracket to the end of its partner. One that is not closed before a `;`
+    /// outside `[…]` ends there: the parser tells of it when it reads the class.
     fn brackets(&mut self) -> Option<()> {
         let mut open = Vec::new();
         while let Some(byte) = self.peek(0) {
@@ -203,7 +203,8 @@ impl Scan<'_> {
         Some(())
     }
 
-    /// A class, from behind its keyword: a long one is entered, of a short one the head is passed.
+    /// A class, from the end of its keyword on: a long one is entered, of a short one the head is
+    /// passed.
     fn class(&mut self, start: usize) -> Option<()> {
         let mut name = self.next_name()?;
         while matches!(&self.text[name.clone()], b"record" | b"function") {

@@ -3,7 +3,7 @@
 use super::failure;
 use super::grammar::read;
 pub(super) use super::grammar::{Node, Rule};
-use super::place::Place;
+use super::place::TextOrigin;
 use super::scan::{self, Dialect, Scanned};
 use crate::diag::Diagnostic;
 use crate::source::{SourceId, Span};
@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// Scans a text, reads it by `rule`, and gives the nodes inside to `lower`.
 pub(super) fn parse<T>(
-    place: &Place,
+    place: &TextOrigin,
     text: &str,
     rule: Rule,
     dialect: Dialect,
@@ -24,7 +24,7 @@ pub(super) fn parse<T>(
 }
 
 fn parse_scanned<T>(
-    place: &Place,
+    place: &TextOrigin,
     scanned: Scanned,
     rule: Rule,
     lower: impl FnOnce(Nodes<'_>) -> Result<T, Diagnostic>,
@@ -67,7 +67,7 @@ impl Pieces {
         let scanned = scan::scan(source, text, dialect)?;
         let ranges = scanned.pieces();
         if scanned.problem.is_some() {
-            let place = Place::in_source(source);
+            let place = TextOrigin::in_source(source);
             let whole = parse_scanned(&place, scanned, rule, |nodes| lower(0, nodes))?;
             return Ok((Pieces { source, rule, text: String::new(), ranges }, vec![whole]));
         }
@@ -87,19 +87,19 @@ impl Pieces {
     /// The first error in them.
     pub(super) fn lowered<T: Send>(
         &self,
-        wanted: Range<usize>,
+        range: Range<usize>,
         lower: impl Fn(usize, Nodes<'_>) -> Result<T, Diagnostic> + Sync,
     ) -> Result<Vec<T>, Diagnostic> {
-        let read: Vec<Option<_>> = match wanted.len() {
-            1 => vec![self.attempt(wanted.start, &lower)],
-            _ => wanted.clone().into_par_iter().map(|at| self.attempt(at, &lower)).collect(),
+        let read: Vec<Option<_>> = match range.len() {
+            1 => vec![self.attempt(range.start, &lower)],
+            _ => range.clone().into_par_iter().map(|at| self.attempt(at, &lower)).collect(),
         };
-        let each = read.into_iter().zip(wanted).map(|(read, at)| match read {
+        let each = read.into_iter().zip(range).map(|(read, at)| match read {
             Some(read) => read,
             // This thread has more stack, and the time to say what is wrong.
             None => {
                 let part = self.text[self.ranges[at].clone()].to_owned();
-                let place = Place::part(self.source, self.ranges[at].start);
+                let place = TextOrigin::part(self.source, self.ranges[at].start);
                 parse_scanned(&place, Scanned::part(part), self.rule, |nodes| lower(at, nodes))
             }
         });
@@ -113,7 +113,7 @@ impl Pieces {
         lower: &impl Fn(usize, Nodes<'_>) -> Result<T, Diagnostic>,
     ) -> Option<Result<T, Diagnostic>> {
         let range = self.ranges[at].clone();
-        let place = Place::part(self.source, range.start);
+        let place = TextOrigin::part(self.source, range.start);
         let part = &self.text[range];
         let pairs = read(self.rule, part).ok()?;
         Some(lower(at, Nodes { place: &place, pairs, whole: place.span(0, part.len()) }))
@@ -123,9 +123,9 @@ impl Pieces {
 /// The nodes inside a node, one after another. Keywords that carry no information beyond the
 /// rule they stand in are skipped.
 pub(super) struct Nodes<'i> {
-    pub(super) place: &'i Place,
+    pub(super) place: &'i TextOrigin,
     pairs: Pairs<'i, Rule>,
-    /// The node these are inside of, without white space behind it.
+    /// The node these are inside of, without trailing white space.
     pub(super) whole: Span,
 }
 
@@ -136,7 +136,7 @@ impl<'i> Nodes<'i> {
         Nodes { place: self.place, pairs: node.into_inner(), whole }
     }
 
-    /// The place of a node, without the white space that the grammar includes behind it.
+    /// The place of a node, without the trailing white space that the grammar includes.
     pub(super) fn span(&self, node: &Node<'i>) -> Span {
         let written = node.as_str().trim_end();
         let start = node.as_span().start();

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Where a text that is parsed comes from.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct TextOrigin {
     source: SourceId,
     /// Where pieces of the original begin, in the text and in the original; empty if all of it is
     /// there.
@@ -30,18 +30,18 @@ pub(super) struct OutlinedText {
 #[derive(Debug)]
 pub(super) struct Excerpt {
     pub(super) text: String,
-    pub(super) place: Place,
+    pub(super) place: TextOrigin,
 }
 
-impl Place {
+impl TextOrigin {
     /// A text that is a source as a whole.
-    pub(super) fn in_source(source: SourceId) -> Place {
-        Place { source, pieces: Vec::new(), unread: None }
+    pub(super) fn in_source(source: SourceId) -> TextOrigin {
+        TextOrigin { source, pieces: Vec::new(), unread: None }
     }
 
     /// A part of a source that begins at `start`.
-    pub(super) fn part(source: SourceId, start: usize) -> Place {
-        Place { source, pieces: vec![(0, start)], unread: None }
+    pub(super) fn part(source: SourceId, start: usize) -> TextOrigin {
+        TextOrigin { source, pieces: vec![(0, start)], unread: None }
     }
 
     /// The bytes `start..end` of the text as a place in the original.
@@ -50,8 +50,8 @@ impl Place {
             return Span::new(self.source, start, end);
         }
         let first = self.original(start);
-        let behind = if end > start { self.original(end - 1) + 1 } else { first };
-        Span::new(self.source, first, behind)
+        let after = if end > start { self.original(end - 1) + 1 } else { first };
+        Span::new(self.source, first, after)
     }
 
     fn original(&self, at: usize) -> usize {
@@ -79,7 +79,7 @@ impl Place {
 impl Excerpt {
     /// A part of a text without the ranges `cuts`, each of which becomes a line end.
     pub(super) fn new(
-        mut place: Place,
+        mut place: TextOrigin,
         text: &str,
         part: Range<usize>,
         cuts: impl Iterator<Item = Range<usize>>,

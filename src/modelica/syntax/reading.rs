@@ -9,7 +9,7 @@ use super::lazy::Unread;
 use super::lower;
 use super::outline::Outline;
 use super::parser::{self, Rule};
-use super::place::{Excerpt, OutlinedText, Place};
+use super::place::{Excerpt, OutlinedText, TextOrigin};
 use super::scan::Dialect;
 use crate::diag::Diagnostic;
 use crate::source::{SourceId, Span};
@@ -27,8 +27,8 @@ impl Unread<Vec<Section>> for UnreadClass {
     }
 }
 
-/// Reads the heads of the classes of a `.mo` file, in any depth on demand. A text whose classes
-/// cannot be told apart is read as a whole.
+/// Reads the heads of the classes of a `.mo` file, in any depth on demand. A file whose classes
+/// cannot be separated is read as a whole.
 ///
 /// # Errors
 /// A syntax error outside the bodies of the classes, or one that hides where they end.
@@ -60,7 +60,7 @@ pub(super) fn errors(class: &ClassDefinition) -> Vec<Diagnostic> {
     errors
 }
 
-impl Place {
+impl TextOrigin {
     /// The sections of a class whose body was cut out.
     pub(super) fn unread(&self, name: Span) -> Option<Sections> {
         let (text, own) = self.unread.as_ref()?;
@@ -78,7 +78,7 @@ impl OutlinedText {
             None => 0..self.text.len(),
         };
         let cuts = self.outline.long_inside(class);
-        let mut place = Place::in_source(self.source);
+        let mut place = TextOrigin::in_source(self.source);
         place.unread = Some((self.clone(), class));
         Excerpt::new(place, &self.text, whole, cuts)
     }

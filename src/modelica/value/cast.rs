@@ -1,4 +1,4 @@
-//! Between values and Rust's types: an Integer becomes a Real where one is wanted, and nothing
+//! Between values and Rust's types: an Integer becomes a Real where one is expected, and nothing
 //! else changes its type by itself.
 
 use super::errors::TYPE_MISMATCH;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// What a value can be turned into.
 pub trait FromValue: Sized {
-    /// Turns the value into this type; a fault that says what was wanted otherwise.
+    /// Converts the value to this type; a fault that says what was expected otherwise.
     fn from_value(value: Value) -> Result<Self, Fault>;
 }
 
@@ -172,8 +172,8 @@ pub fn like(old: &Value, new: Value) -> Result<Value, Fault> {
     Ok(converted)
 }
 
-fn mismatch(wanted: &str, got: &Value) -> Fault {
-    Fault::new(TYPE_MISMATCH, format!("expected {wanted}, got {}", got.type_name()))
+fn mismatch(expected: &str, got: &Value) -> Fault {
+    Fault::new(TYPE_MISMATCH, format!("expected {expected}, got {}", got.type_name()))
 }
 
 impl FromValue for Value {
@@ -301,8 +301,8 @@ impl FromValue for Vec<Arc<str>> {
 
 impl FromValue for Vec<String> {
     fn from_value(value: Value) -> Result<Vec<String>, Fault> {
-        let texts = Vec::<Arc<str>>::from_value(value)?;
-        Ok(texts.iter().map(|text| text.to_string()).collect())
+        let strings = Vec::<Arc<str>>::from_value(value)?;
+        Ok(strings.iter().map(|text| text.to_string()).collect())
     }
 }
 

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! parents   = truncation(N_Parents)                     best ranks become parents
-//! children  = one_point(parents, Cross_Point)           adjacent ranks, genes behind each point
+//! children  = one_point(parents, Cross_Point)           adjacent ranks, genes after each point
 //! children  = uniform mutation(children, F_Mut)         one number decides whether and what
 //! offspring = elites, children, random individuals      elites unaltered, random ones last
 //! ```

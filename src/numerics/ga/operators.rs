@@ -68,7 +68,7 @@ pub struct Listed {
 }
 
 /// A kind of operator.
-pub struct Kind {
+pub struct OperatorKind {
     /// What it is called, in problem files as well.
     pub name: &'static str,
     /// What it does.
@@ -83,29 +83,29 @@ pub struct Kind {
 }
 
 /// All kinds, in the order of a generation.
-pub const KINDS: [Kind; 5] = [
-    Kind {
+pub const KINDS: [OperatorKind; 5] = [
+    OperatorKind {
         name: "sampling",
         summary: "draws the first generation",
         frequency: None,
         signature: sampling::SIGNATURE,
         entries: || listed(SAMPLINGS),
     },
-    Kind {
+    OperatorKind {
         name: "selection",
         summary: "selects the parents",
         frequency: None,
         signature: selection::SIGNATURE,
         entries: || listed(SELECTIONS),
     },
-    Kind {
+    OperatorKind {
         name: "crossover",
         summary: "makes two children of two parents",
         frequency: Some(("probability", "probability that a pair is crossed")),
         signature: crossover::SIGNATURE,
         entries: || listed(CROSSOVERS),
     },
-    Kind {
+    OperatorKind {
         name: "mutation",
         summary: "changes genes of children at random",
         frequency: Some((
@@ -116,7 +116,7 @@ pub const KINDS: [Kind; 5] = [
         signature: mutation::SIGNATURE,
         entries: || listed(MUTATIONS),
     },
-    Kind {
+    OperatorKind {
         name: "survival",
         summary: "selects the individuals of the next generation",
         frequency: None,
@@ -126,11 +126,11 @@ pub const KINDS: [Kind; 5] = [
 ];
 
 /// The kind of this name.
-pub fn kind(name: &str) -> Option<&'static Kind> {
+pub fn kind(name: &str) -> Option<&'static OperatorKind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-impl Kind {
+impl OperatorKind {
     /// Whether its table has an entry of this name or alias.
     pub fn has(&self, name: &str) -> bool {
         let same = |known: &str| known.eq_ignore_ascii_case(name);
@@ -271,8 +271,8 @@ pub(super) fn usual(name: &str, settings: &[(&str, f64)]) -> Choice {
 /// `bad-operator` where a value is not a number, or there are too many or too few.
 pub(super) fn within(kind: &str, values: &[f64], genes: &[Gene]) -> Result<Vec<f64>, Fault> {
     if values.len() != genes.len() {
-        let (found, wanted) = (values.len(), genes.len());
-        bail!(BAD_OPERATOR, "the {kind} returns {found} genes instead of {wanted}");
+        let (found, expected) = (values.len(), genes.len());
+        bail!(BAD_OPERATOR, "the {kind} returns {found} genes instead of {expected}");
     }
     if let Some(k) = values.iter().position(|value| value.is_nan()) {
         bail!(

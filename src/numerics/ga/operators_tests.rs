@@ -79,10 +79,10 @@ proptest! {
         }
     }
 
-    /// Whatever the fitness is, there are as many parents as wanted; failed ones only where there
-    /// is nobody else, but for ways that do not look at them.
+    /// Whatever the fitness is, there are as many parents as requested; failed ones only where no
+    /// other is left, except for operators that do not read the fitness.
     #[test]
-    fn selections_choose_as_many_as_wanted(
+    fn selections_choose_as_many_as_requested(
         fitness in prop::collection::vec(prop_oneof![
             4 => -1e3..1e3_f64, 1 => Just(f64::NAN), 1 => Just(1e60), 1 => Just(f64::MAX), 1 => Just(-1e300),
         ], 1..30),

@@ -57,7 +57,7 @@ const A2_STREAM: Matrix = [
     [2824425944, 32183930, 2093834863],
 ];
 
-/// The generator behind `Ram_Gen_ARENA`.
+/// The generator that `Ram_Gen_ARENA` uses.
 ///
 /// It also implements rand's generator traits; those draw their bits from the same sequence, but
 /// use more than one number for each word, since one number carries a little less than 32 bits.

@@ -28,7 +28,7 @@ pub enum Version {
 
 /// What the values of a matrix stand for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum MatrixKind {
     /// Numbers.
     Numeric,
     /// Characters: UTF-16 code units or code points, or the bytes of a version 4 file.
@@ -47,7 +47,7 @@ pub struct Matrix {
     /// `rows * columns` values, column after column.
     pub values: Vec<f64>,
     /// What they stand for.
-    pub kind: Kind,
+    pub kind: MatrixKind,
 }
 
 impl Matrix {
@@ -55,7 +55,7 @@ impl Matrix {
     /// `rows * columns` of them.
     pub fn from_columns(rows: usize, columns: usize, values: Vec<f64>) -> Matrix {
         assert_eq!(values.len(), rows * columns, "a matrix has rows times columns values");
-        Matrix { rows, columns, values, kind: Kind::Numeric }
+        Matrix { rows, columns, values, kind: MatrixKind::Numeric }
     }
 
     /// A numeric matrix from its rows, all as long as the first. Panics if they are not.
@@ -63,12 +63,12 @@ impl Matrix {
         let columns = rows.first().map_or(0, Vec::len);
         assert!(rows.iter().all(|row| row.len() == columns), "rows of a matrix are equally long");
         let values = (0..columns).flat_map(|j| rows.iter().map(move |row| row[j])).collect();
-        Matrix { rows: rows.len(), columns, values, kind: Kind::Numeric }
+        Matrix { rows: rows.len(), columns, values, kind: MatrixKind::Numeric }
     }
 
     /// A numeric column.
     pub fn column_vector(values: Vec<f64>) -> Matrix {
-        Matrix { rows: values.len(), columns: 1, values, kind: Kind::Numeric }
+        Matrix { rows: values.len(), columns: 1, values, kind: MatrixKind::Numeric }
     }
 
     /// A character matrix with one line of text a row, as UTF-8 bytes, padded with blanks.
@@ -80,7 +80,7 @@ impl Matrix {
                 values[i + j * lines.len()] = f64::from(byte);
             }
         }
-        Matrix { rows: lines.len(), columns, values, kind: Kind::Char }
+        Matrix { rows: lines.len(), columns, values, kind: MatrixKind::Char }
     }
 
     /// The value in row `i`, column `j`, counted from 0. Panics outside the matrix.
@@ -139,20 +139,21 @@ impl Matrix {
 
     /// Each row as text without the blanks and zeros at its end. Bytes above 127 are read as UTF-8
     /// where they form it, as Latin-1 otherwise.
-    pub fn text_rows(&self) -> Vec<String> {
+    pub fn row_strings(&self) -> Vec<String> {
         (0..self.rows)
             .map(|i| decode_text((0..self.columns).map(|j| self.values[i + j * self.rows])))
             .collect()
     }
 
-    /// Each column as text, see [`Matrix::text_rows`].
-    pub(crate) fn text_columns(&self) -> Vec<String> {
+    /// Each column as text, see [`Matrix::row_strings`].
+    pub(crate) fn column_strings(&self) -> Vec<String> {
         (0..self.columns).map(|j| decode_text(self.column(j).iter().copied())).collect()
     }
 }
 
 /// Number of values of a matrix that a file claims to hold. An empty matrix with a huge number of
-/// rows or columns is refused: it costs a file nothing and whoever goes over its rows a lot.
+/// rows or columns is refused: it takes no space in a file, but much time in every loop over its
+/// rows.
 pub fn size(name: &str, rows: usize, columns: usize) -> Result<usize, Fault> {
     const MAX_EMPTY: usize = 1 << 16;
     match rows.checked_mul(columns) {
@@ -271,7 +272,8 @@ impl MatFile {
 
     /// How columns of matrices are named, if there is a matrix that needs it.
     fn columns_of_matrices(&self) -> Option<String> {
-        let is_wide = |matrix: &Matrix| matrix.kind != Kind::Char && matrix.as_vector().is_none();
+        let is_wide =
+            |matrix: &Matrix| matrix.kind != MatrixKind::Char && matrix.as_vector().is_none();
         let (name, matrix) = self.arrays.iter().find(|(_, matrix)| is_wide(matrix))?;
         let Matrix { rows, columns, .. } = matrix;
         Some(format!(
@@ -311,7 +313,7 @@ impl MatFile {
     /// A matrix whose values are measured ones.
     fn numbers(&self, name: &str) -> Result<&Matrix, Fault> {
         let matrix = self.matrix(name)?;
-        if matrix.kind == Kind::Char {
+        if matrix.kind == MatrixKind::Char {
             return Err(fault!(UNKNOWN_MATRIX, "`{name}` contains text, not numbers")
                 .help(self.inventory()));
         }

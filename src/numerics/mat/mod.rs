@@ -35,7 +35,7 @@ mod v73;
 mod write;
 
 pub use calendar::{Calendar, calendar};
-pub use matrix::{About, Column, Kind, MatFile, Matrix, Version};
+pub use matrix::{About, Column, MatFile, Matrix, MatrixKind, Version};
 pub use number::Storage;
 pub use table::read_csv;
 pub use v5::MAX_INFLATED;

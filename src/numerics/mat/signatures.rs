@@ -2,7 +2,7 @@
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// Whether the bytes are HDF5, by themselves or behind the head of a MAT file of version 7.3.
+/// Whether the bytes are HDF5, by themselves or after the header of a MAT file of version 7.3.
 pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
     let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(HDF5));
     signed(0) || signed(512) || bytes.starts_with(b"MATLAB 7.3 MAT-file")

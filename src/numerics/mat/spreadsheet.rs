@@ -41,7 +41,7 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         bail!(BAD_TABLE, "the spreadsheet has no sheet");
     };
     let mut rows: BTreeMap<u32, BTreeMap<u32, String>> = BTreeMap::new();
-    let (mut count, mut bytes_of_texts) = (0, 0);
+    let (mut count, mut string_bytes) = (0, 0);
     let mut cells = workbook.worksheet_cells_reader(sheet).map_err(|error| unreadable(&error))?;
     while let Some(cell) = cells.next_cell().map_err(|error| unreadable(&error))? {
         count += 1;
@@ -51,8 +51,8 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         let (row, column) = cell.get_position();
         let text = text(cell.get_value());
         // Any number of cells may share one text.
-        bytes_of_texts += text.len();
-        if bytes_of_texts as u64 > MAX_INFLATED {
+        string_bytes += text.len();
+        if string_bytes as u64 > MAX_INFLATED {
             bail!(
                 BAD_TABLE,
                 "the cells of the sheet `{sheet}` contain more than {} MiB",

@@ -3,7 +3,7 @@
 //! a comment. `float` and `int` are read like `double`; of `char` matrices each line is a row.
 
 use super::errors::BAD_TABLE;
-use super::matrix::{self, Kind, MatFile, Matrix, Version};
+use super::matrix::{self, MatFile, Matrix, MatrixKind, Version};
 use crate::diag::Fault;
 use crate::{bail, fault};
 
@@ -102,7 +102,7 @@ fn read_numbers<'a>(
             values.push(value);
         }
     }
-    Ok(Matrix { rows: columns, columns: rows, values, kind: Kind::Numeric }.transposed())
+    Ok(Matrix { rows: columns, columns: rows, values, kind: MatrixKind::Numeric }.transposed())
 }
 
 /// The words of a line with their columns, counted from 1 in characters.

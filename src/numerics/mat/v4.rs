@@ -7,7 +7,7 @@
 //! skipped).
 
 use super::errors::{BAD_MAT_FILE, UNSUPPORTED_MAT_FILE};
-use super::matrix::{self, Kind, MatFile, Matrix, Version};
+use super::matrix::{self, MatFile, Matrix, MatrixKind, Version};
 use super::number::{ByteOrder, Storage};
 use super::reader::Reader;
 use crate::diag::Fault;
@@ -62,7 +62,7 @@ fn read_record(reader: &mut Reader, file: &mut MatFile) -> Result<(), Fault> {
 
 impl Header {
     fn matrix(&self, values: Vec<f64>) -> Matrix {
-        let kind = if self.kind == 1 { Kind::Char } else { Kind::Numeric };
+        let kind = if self.kind == 1 { MatrixKind::Char } else { MatrixKind::Numeric };
         if self.by_rows {
             let (rows, columns) = (self.columns, self.rows);
             return Matrix { rows, columns, values, kind }.transposed();

@@ -7,7 +7,7 @@
 //! values, arrays of more than two dimensions.
 
 use super::errors::{BAD_MAT_FILE, UNREADABLE_MATRIX};
-use super::matrix::{self, Kind, MatFile, Matrix, Version};
+use super::matrix::{self, MatFile, Matrix, MatrixKind, Version};
 use super::number::{ByteOrder, Storage};
 use super::reader::Reader;
 use crate::diag::Fault;
@@ -219,9 +219,9 @@ impl File {
             self.found.warnings.push(format!("integers of `{name}` beyond 2^53 are rounded"));
         }
         let kind = match flags.class {
-            Class::Char => Kind::Char,
-            _ if flags.is_logical => Kind::Logical,
-            _ => Kind::Numeric,
+            Class::Char => MatrixKind::Char,
+            _ if flags.is_logical => MatrixKind::Logical,
+            _ => MatrixKind::Numeric,
         };
         self.found.insert(name, Matrix { rows, columns, values, kind });
         Ok(())

@@ -1,4 +1,4 @@
-//! MAT version 7.3, which is HDF5 behind a head of 512 bytes, and plain HDF5 files.
+//! MAT version 7.3, which is HDF5 after a header of 512 bytes, and plain HDF5 files.
 //!
 //! Datasets of numbers become matrices, groups become structures with dotted names. HDF5 counts
 //! dimensions in the opposite order, so that MATLAB's columns lie one after the other as they do here.
@@ -8,7 +8,7 @@
 //! `MATLAB_class`, `MATLAB_empty`, `MATLAB_sparse` the files that MATLAB R2024a writes.
 
 use super::errors::{BAD_MAT_FILE, UNSUPPORTED_MAT_FILE};
-use super::matrix::{self, Kind, MatFile, Matrix, Version};
+use super::matrix::{self, MatFile, Matrix, MatrixKind, Version};
 use super::v5::MAX_INFLATED;
 use crate::diag::Fault;
 use crate::{bail, fault};
@@ -139,9 +139,9 @@ impl Reader {
             self.found.warnings.push(format!("integers of `{name}` beyond 2^53 are rounded"));
         }
         let kind = match class.as_str() {
-            "char" => Kind::Char,
-            "logical" => Kind::Logical,
-            _ => Kind::Numeric,
+            "char" => MatrixKind::Char,
+            "logical" => MatrixKind::Logical,
+            _ => MatrixKind::Numeric,
         };
         let matrix = Matrix { rows, columns, values, kind };
         // Other programs than MATLAB write rows one after the other.

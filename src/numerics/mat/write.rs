@@ -2,7 +2,7 @@
 //! format, and columns with separators.
 
 use super::errors::UNWRITABLE_MATRIX;
-use super::matrix::{Kind, Matrix};
+use super::matrix::{Matrix, MatrixKind};
 use super::number::Storage;
 use super::v4::STORAGES;
 use super::{TABLES, ending};
@@ -22,7 +22,7 @@ pub fn write_named(file_name: &str, arrays: &IndexMap<String, Matrix>) -> Result
     match ending(file_name).as_str() {
         "csv" => columns(file_name, arrays, ","),
         "tsv" => columns(file_name, arrays, "\t"),
-        text if TABLES.contains(&text) => Ok(text_of(arrays)),
+        text if TABLES.contains(&text) => Ok(table_text(arrays)),
         _ => write_v4(arrays.iter().map(|(name, matrix)| (name.as_str(), matrix))),
     }
 }
@@ -53,14 +53,14 @@ fn columns(
     Ok(text.into_bytes())
 }
 
-fn text_of(arrays: &IndexMap<String, Matrix>) -> Vec<u8> {
+fn table_text(arrays: &IndexMap<String, Matrix>) -> Vec<u8> {
     let mut text = "#1\n".to_owned();
     for (name, matrix) in arrays {
-        let is_text = matrix.kind == Kind::Char;
+        let is_text = matrix.kind == MatrixKind::Char;
         let kind = if is_text { "char" } else { "double" };
         text.push_str(&format!("{kind} {name}({},{})\n", matrix.rows, matrix.columns));
         let rows: Vec<String> = match is_text {
-            true => matrix.text_rows(),
+            true => matrix.row_strings(),
             false => (0..matrix.rows).map(|i| row(matrix, i, " ")).collect(),
         };
         rows.iter().for_each(|row| text.push_str(&format!("{row}\n")));
@@ -81,7 +81,7 @@ pub fn write_v4<'a>(
 ) -> Result<Vec<u8>, Fault> {
     let mut out = Vec::new();
     for (name, matrix) in arrays {
-        let storage = if matrix.kind == Kind::Char { Storage::U8 } else { Storage::F64 };
+        let storage = if matrix.kind == MatrixKind::Char { Storage::U8 } else { Storage::F64 };
         append_v4(&mut out, name, matrix, storage)?;
     }
     Ok(out)
@@ -101,7 +101,7 @@ pub fn append_v4(
         bail!(UNWRITABLE_MATRIX, "version 4 cannot store `{name}` as {storage:?}");
     };
     check_values(name, matrix, storage)?;
-    let text = u32::from(matrix.kind == Kind::Char);
+    let text = u32::from(matrix.kind == MatrixKind::Char);
     let header = [
         10 * code as u32 + text,
         size(name, matrix.rows)?,
@@ -135,9 +135,9 @@ pub fn write_v5<'a>(
 
 fn matrix_v5(name: &str, matrix: &Matrix) -> Result<Vec<u8>, Fault> {
     let (class, data_type, storage) = match matrix.kind {
-        Kind::Numeric => (6, 9, Storage::F64),
-        Kind::Char => (4, 4, Storage::U16),
-        Kind::Logical => (9 | 0x0200, 2, Storage::U8),
+        MatrixKind::Numeric => (6, 9, Storage::F64),
+        MatrixKind::Char => (4, 4, Storage::U16),
+        MatrixKind::Logical => (9 | 0x0200, 2, Storage::U8),
     };
     check_values(name, matrix, storage)?;
     let mut flags = Vec::from(u32::to_le_bytes(class));

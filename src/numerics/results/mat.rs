@@ -164,7 +164,7 @@ fn split_description(text: &str) -> (String, String) {
 
 fn is_transposed(file: &MatFile) -> Result<bool, Fault> {
     let class = match file.arrays.get("Aclass") {
-        Some(class) => class.text_rows(),
+        Some(class) => class.row_strings(),
         None => bail!(
             BAD_RESULT_FILE,
             "the file contains no simulation results: it has no matrix `Aclass`";
@@ -183,7 +183,7 @@ fn is_transposed(file: &MatFile) -> Result<bool, Fault> {
 
 fn strings(file: &MatFile, name: &str, is_transposed: bool) -> Result<Vec<String>, Fault> {
     let matrix = file.matrix(name)?;
-    Ok(if is_transposed { matrix.text_columns() } else { matrix.text_rows() })
+    Ok(if is_transposed { matrix.column_strings() } else { matrix.row_strings() })
 }
 
 /// The matrix as in binNormal: points in time are rows.

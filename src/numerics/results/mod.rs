@@ -92,7 +92,7 @@ pub const BEGINNING: usize = 64;
 /// another Modelica tool: MAT version 4 or text whose first matrix is `Aclass`, CSV whose first
 /// header cell is a quoted time, as data of other origin hardly have it, or a linearized model.
 pub fn are_results(beginning: &[u8]) -> bool {
-    /// Length of the header of a matrix of MAT version 4, behind which its name stands.
+    /// Length of the header of a matrix of MAT version 4; its name follows.
     const HEADER: usize = 20;
     let is_binary = beginning.get(HEADER..).is_some_and(|rest| rest.starts_with(b"Aclass\0"));
     let text = String::from_utf8_lossy(beginning);

@@ -180,10 +180,10 @@ impl ResultTable {
     /// values after its events.
     pub fn keep_times(&mut self, times: &[f64]) {
         let is_last = |row: usize| self.time.get(row + 1).is_none_or(|next| *next > self.time[row]);
-        let is_wanted = |row: usize| {
+        let is_selected = |row: usize| {
             times.binary_search_by(|time| time.total_cmp(&self.time[row])).is_ok() && is_last(row)
         };
-        let rows: Vec<usize> = (0..self.time.len()).filter(|&row| is_wanted(row)).collect();
+        let rows: Vec<usize> = (0..self.time.len()).filter(|&row| is_selected(row)).collect();
         for series in &mut self.series {
             if let Values::Trajectory(values) = &mut series.values {
                 *values = rows.iter().map(|&row| values[row]).collect();
@@ -217,10 +217,11 @@ impl ResultTable {
         }
     }
 
-    /// The variables whose names are wanted; aliases of others take their values with them.
+    /// The variables whose names satisfy `is_selected`; aliases of others keep copies of their
+    /// values.
     #[must_use]
-    pub fn only(&self, wanted: impl Fn(&str) -> bool) -> ResultTable {
-        let kept = self.series.iter().enumerate().filter(|(_, series)| wanted(&series.name));
+    pub fn only(&self, is_selected: impl Fn(&str) -> bool) -> ResultTable {
+        let kept = self.series.iter().enumerate().filter(|(_, series)| is_selected(&series.name));
         let series = kept.map(|(index, series)| {
             let values = match &series.values {
                 Values::Alias { of, .. } => match self.series[*of].values {

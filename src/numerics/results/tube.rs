@@ -63,8 +63,8 @@ impl<'a> Tube<'a> {
         let early = (time - self.half_width).clamp(self.time[0], end);
         let late = (time + self.half_width).clamp(self.time[0], end);
         let first = self.time.partition_point(|t| *t < early);
-        let behind = self.time.partition_point(|t| *t <= late);
-        let inside = self.values[first..behind].iter().copied();
+        let after = self.time.partition_point(|t| *t <= late);
+        let inside = self.values[first..after].iter().copied();
         let at_sides = [self.at(early), self.at(late)];
         let (least, greatest) = bounds(inside.chain(at_sides));
         (least - self.half_height, greatest + self.half_height)
@@ -137,7 +137,7 @@ impl<'a> Tube<'a> {
         if outside.is_nan() { f64::INFINITY } else { outside / self.half_height }
     }
 
-    /// How far the tube reaches before and behind a point, seconds.
+    /// How far the tube reaches before and after a point, seconds.
     pub(crate) fn half_width(&self) -> f64 {
         self.half_width
     }
@@ -160,13 +160,13 @@ fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// Linear between points; the last of those with this time; `None` outside.
 fn interpolated(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
-    let behind = times.partition_point(|t| *t <= time);
-    let last = behind.checked_sub(1)?;
+    let after = times.partition_point(|t| *t <= time);
+    let last = after.checked_sub(1)?;
     if times[last] == time {
         return Some(values[last]);
     }
-    let share = (time - times[last]) / (times.get(behind)? - times[last]);
-    Some(values[last] + share * (values[behind] - values[last]))
+    let share = (time - times[last]) / (times.get(after)? - times[last]);
+    Some(values[last] + share * (values[after] - values[last]))
 }
 
 #[cfg(test)]

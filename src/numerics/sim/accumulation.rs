@@ -32,7 +32,7 @@ const RETURN: f64 = 1e-2;
 const REACH: f64 = 1e-6;
 
 impl Run<'_> {
-    /// Lets the solution rest if the event just handled was the last impact that can be told from
+    /// Lets the solution rest if the event just handled was the last impact distinguishable from
     /// rest; whether the integrator was restarted for it.
     pub(crate) fn rest_after_impact(&mut self) -> Result<bool, SimErrorKind> {
         let Some(crossing) = self.watch.impacts.first().copied() else { return Ok(false) };

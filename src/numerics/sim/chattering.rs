@@ -71,7 +71,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Looks at the relations behind a step without event; y is there.
+    /// Checks the relations after a step without event; y is at its end.
     pub(crate) fn look_between_steps(&mut self) -> Result<(), SimErrorKind> {
         if !self.watch.is_alert {
             return Ok(());
@@ -244,8 +244,8 @@ impl Run<'_> {
         self.restart()
     }
 
-    /// Derivatives follow no solution that slides, rests, or crosses surfaces without events: whoever
-    /// asks for them takes differences then.
+    /// Derivatives follow no solution that slides, rests, or crosses surfaces without events:
+    /// callers use difference quotients then.
     pub(crate) fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
         match self.problem.system.n_directions() {
             0 => Ok(()),
@@ -361,7 +361,7 @@ impl Run<'_> {
     }
 
     /// The rates of change of crossing functions in every mode, one mode after the other; `None`
-    /// where they cannot be told from rounding, or the system has no modes.
+    /// where they are within rounding errors, or the system has no modes.
     fn rates_of_modes(&mut self, crossings: &[usize]) -> Option<Vec<f64>> {
         let sides = self.sides(crossings);
         let system = &mut *self.problem.system;

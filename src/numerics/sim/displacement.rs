@@ -1,4 +1,4 @@
-//! What is left of slides and contacts behind an event.
+//! Which slides and contacts persist after an event.
 //!
 //! An event may displace the states (`reinit`), a surface (a set point that jumps), or the fields. A
 //! surface from which the solution is farther away than errors explain is left: the relation has the
@@ -42,7 +42,7 @@ impl Run<'_> {
     }
 
     /// Goes on with what an event has left of surfaces and contacts.
-    pub(crate) fn go_on_behind_event(
+    pub(crate) fn continue_after_event(
         &mut self,
         mut surfaces: Vec<usize>,
         contacts: Vec<Contact>,
@@ -78,8 +78,8 @@ impl Run<'_> {
         if self.is_displaced(&contact) || contact.force <= 0.0 {
             return Ok(None);
         }
-        let [before, behind] = [&contacts[..at], &contacts[at + 1..]];
-        let others = [before, behind].concat();
+        let [before, after] = [&contacts[..at], &contacts[at + 1..]];
+        let others = [before, after].concat();
         let system = &mut *self.problem.system;
         let moved = (self.crossings.left[contact.crossing] - contact.value).abs();
         if moved > MOVED * contact.uncertainty {

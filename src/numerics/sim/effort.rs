@@ -1,6 +1,6 @@
 //! What makes a simulation work: whose errors limit its steps, and what causes its events.
 
-/// Counts of a simulation, by unknown and by crossing function; empty where nobody asked.
+/// Counts of a simulation, by unknown and by crossing function; empty unless requested.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Effort {
     /// Steps in whose error test an unknown had the largest part (`dassl`).

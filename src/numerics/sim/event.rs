@@ -10,8 +10,8 @@
 //! tried a little beyond and a little before, and halved every third time. A function that changes
 //! its sign twice within one step, or within one part of it where functions vary in time, is noticed
 //! where the parabola through its last three values does: the step is searched at its vertex then.
-//! Behind an event a function that is at zero has no such values: it is looked at nearer and nearer to
-//! the event, until its slope there is clear.
+//! After an event a function that is at zero has no such values: it is evaluated nearer and nearer
+//! to the event, until the sign of its derivative there is clear.
 
 use super::{DaeSystem, Failure, Integrator, Problem};
 
@@ -20,7 +20,7 @@ const WIDTH: f64 = 1e-10;
 /// Times to narrow a bracket; halving alone needs 3 · 34.
 const MAX_TRIALS: usize = 120;
 /// Margins relative to what errors of y as large as the tolerance make of a function. Errors of y
-/// are a thousandth of the tolerance where a step is short, as those behind events are; with 1e-2
+/// are a thousandth of the tolerance where a step is short, as those after events are; with 1e-2
 /// the first impacts of a ball at tolerance 1e-4 come late by more than what tests allow.
 const MARGIN: f64 = 1e-3;
 /// Tolerance of the uncertainty that excuses relations which contradict what they decide, where the
@@ -53,10 +53,10 @@ pub(crate) struct CrossingSearch {
     /// Steps in a row at whose ends a function had another sign within its margin, and has grown.
     lasting: Vec<u32>,
     perturbed: Vec<f64>,
-    /// The functions before `left`, and when; none behind an event.
+    /// The functions before `left`, and when; none after an event.
     earlier: Vec<f64>,
     earlier_time: Option<f64>,
-    /// The functions at the point looked at before, behind an event.
+    /// The functions at the point evaluated before, after an event.
     farther: Vec<f64>,
     /// y at the end of the step, while a vertex is looked at.
     kept: Vec<f64>,
@@ -68,20 +68,20 @@ pub(crate) struct CrossingSearch {
 /// not quite the function.
 const NEAR_ZERO: f64 = 0.05;
 
-/// Points that are looked at behind an event, and how much nearer to it each is than the one before: a
-/// flight may be a small part of a step where the solution is smooth without its surface.
+/// Points that are evaluated after an event, and how much nearer to it each is than the one before:
+/// a flight may be a small part of a step where the solution is smooth without its surface.
 const MOST_POINTS: u32 = 9;
 const NEARER: f64 = 0.25;
-/// Mean slopes from the beginning of a step to two points within it that differ by no more than this
-/// part tell the slope there.
-const SLOPE_CHANGE: f64 = 0.25;
+/// Difference quotients from the beginning of a step to two points within it that differ by no more
+/// than this part approximate the derivative there.
+const QUOTIENT_CHANGE: f64 = 0.25;
 
 /// The vertex of the parabola through three points, if it lies between the last two.
 fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64)> {
-    let (before, slope) = ((left - z0) / (a - t0), (right - left) / (b - a));
-    let curvature = (slope - before) / (b - t0);
-    let t = 0.5 * (a + b - slope / curvature);
-    let z = left + slope * (t - a) + curvature * (t - a) * (t - b);
+    let (first, second) = ((left - z0) / (a - t0), (right - left) / (b - a));
+    let curvature = (second - first) / (b - t0);
+    let t = 0.5 * (a + b - second / curvature);
+    let z = left + second * (t - a) + curvature * (t - a) * (t - b);
     (t > a && t < b && z.is_finite()).then_some((t, z))
 }
 
@@ -193,7 +193,7 @@ impl CrossingSearch {
         Ok(Some(b))
     }
 
-    /// Narrows a bracket of the first change of sign; its later end, behind the change.
+    /// Narrows a bracket of the first change of sign; its later end, after the change.
     fn narrow(
         &mut self,
         problem: &mut Problem,
@@ -249,7 +249,7 @@ impl CrossingSearch {
         self.kept.clear();
         self.kept.extend_from_slice(y);
         if self.earlier_time.is_none()
-            && let Some(found) = self.look_behind_event(problem, integrator, (a, b), y)?
+            && let Some(found) = self.look_after_event(problem, integrator, (a, b), y)?
         {
             return Ok(Some(found));
         }
@@ -267,11 +267,11 @@ impl CrossingSearch {
         Ok(None)
     }
 
-    /// Behind an event: a function that has left zero may be back beyond it. Looks at the middle of
+    /// After an event: a function that has left zero may be back beyond it. Evaluates the middle of
     /// the step, and nearer to its beginning as long as it is not clear in which direction the functions
     /// go from there; `earlier` has the functions in the middle then. A time at which a sign has
     /// changed, with the functions there in `right`.
-    fn look_behind_event(
+    fn look_after_event(
         &mut self,
         problem: &mut Problem,
         integrator: &dyn Integrator,
@@ -292,10 +292,10 @@ impl CrossingSearch {
                 return Ok(Some(a + distance));
             }
             let is_clear = (0..self.signs.len()).all(|at| {
-                let slope = |distance: f64, z: f64| (z - self.left[at]) / distance;
+                let quotient = |distance: f64, z: f64| (z - self.left[at]) / distance;
                 let (far, near) =
-                    (slope(farther, self.farther[at]), slope(distance, self.trial[at]));
-                !self.is_at_zero(at) || (far - near).abs() <= SLOPE_CHANGE * near.abs()
+                    (quotient(farther, self.farther[at]), quotient(distance, self.trial[at]));
+                !self.is_at_zero(at) || (far - near).abs() <= QUOTIENT_CHANGE * near.abs()
             });
             if point == 0 {
                 self.earlier.copy_from_slice(&self.trial);
@@ -311,7 +311,7 @@ impl CrossingSearch {
         Ok(None)
     }
 
-    /// Whether a function is at zero where the search begins behind an event: within its margin, or
+    /// Whether a function is at zero where the search begins after an event: within its margin, or
     /// as near as the event was located. The latter is more than the margin where steps are long and
     /// the tolerance is tight, as for a ball with `radau5` at the tolerance 1e-8, which is below its floor
     /// at both ends of a step that is as long as a flight.
@@ -320,7 +320,7 @@ impl CrossingSearch {
         is_within || self.switched.contains(&at)
     }
 
-    /// Where the first of the functions turns at zero or beyond, as far as parabolas tell.
+    /// The earliest vertex of the parabolas of the functions that lies at zero or beyond.
     fn earliest_vertex(&self, a: f64, b: f64) -> Option<f64> {
         let earlier = self.earlier_time?;
         let vertices = (0..self.signs.len()).filter_map(|at| {

@@ -2,7 +2,7 @@
 //! iteration variables as unknowns of its own, cannot go on with them.
 //!
 //! A fan at rest whose flow rate is given has the speed r with r |r| = 0: the Jacobian is singular
-//! there, and r' is infinite where the flow begins. Whoever solves the loop at each evaluation needs
+//! there, and r' is infinite where the flow begins. Solving the loop at each evaluation needs
 //! neither. From there to the end the integrator sees the states alone, with a full Jacobian by
 //! difference quotients.
 

@@ -13,8 +13,8 @@ const FAR: f64 = 1e4;
 const LOOKS: u32 = 64;
 
 impl Run<'_> {
-    /// Behind a step: relations without events get some where they keep the solution from getting
-    /// on.
+    /// After a step: relations without events get events where they keep the integration from
+    /// advancing.
     pub(crate) fn watch_progress(&mut self) -> Result<(), SimErrorKind> {
         let treats = self.problem.settings.treats_chattering;
         if self.progress.is_over || !treats || self.problem.system.is_constrained() {

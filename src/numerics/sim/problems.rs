@@ -239,7 +239,8 @@ pub(crate) fn oregonator() -> TestProblem {
 pub(crate) const OREGONATOR_END: [f64; 3] =
     [0.1000814870318523e1, 0.1228178521549917e4, 0.1320554942846706e3];
 
-/// A source x = sin t behind 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) − 1).
+/// A source x = sin t in series with 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) −
+/// 1).
 pub fn diode() -> TestProblem {
     TestProblem::new(&[0.0, 0.0], 1, |t, y, _, out| {
         out[0] = elementary::cos(t);

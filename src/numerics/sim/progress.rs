@@ -12,12 +12,12 @@ use super::event::sign;
 /// Of these, those in which one relation switches that are chattering. A relay switches in 14 with
 /// `rodas4`; an oscillation has ten steps or more between two zeros.
 const SWITCHES: u32 = 10;
-/// Of these, those in which the difference of its sides turns back that are chattering: `radau5` at the
-/// tolerance 1e-8 stays on one side of a relay, and turns in every other step. No oscillation is
-/// resolved with three steps between its turns.
+/// This many of them with a reversal of the difference of its sides are chattering: `radau5` at the
+/// tolerance 1e-8 stays on one side of a relay, and reverses in every other step. No oscillation is
+/// resolved with three steps between its extrema.
 const REVERSALS: u32 = 20;
-/// A turn changes the difference by this part of it at least; what rounding changes is less.
-const TURN: f64 = 0.25;
+/// A reversal changes the difference by at least this part of it; rounding changes it by less.
+const REVERSAL: f64 = 0.25;
 
 /// What is seen of a relation between steps.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,7 +32,7 @@ pub struct Look {
 impl Look {
     fn next(&mut self, difference: f64) {
         let change = difference - self.difference;
-        let is_large = change.abs() > TURN * difference.abs().max(self.difference.abs());
+        let is_large = change.abs() > REVERSAL * difference.abs().max(self.difference.abs());
         self.switches += u32::from(sign(difference) != sign(self.difference));
         self.reversals += u32::from(is_large && change * self.change < 0.0);
         (self.difference, self.change) = (difference, change);

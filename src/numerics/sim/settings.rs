@@ -39,9 +39,9 @@ pub struct Settings {
     pub counts_effort: bool,
     /// The time on the clock that the simulation may take.
     pub time_budget: Option<TimeBudget>,
-    /// Looked at before every step: whoever sets it to true ends the simulation.
+    /// Checked before every step: true ends the simulation.
     pub cancel: Option<Arc<AtomicBool>>,
-    /// The time recorded last, seconds, as the bits of an `f64`: for whoever shows progress.
+    /// The time recorded last, seconds, as the bits of an `f64`: for displays of progress.
     pub reached: Option<Arc<AtomicU64>>,
 }
 

@@ -28,12 +28,12 @@ const PARTS_OF_SPAN: f64 = 500.0;
 /// Parts of a period of functions that oscillate in time: parabolas through three values find a pulse
 /// of a thousandth of the period, as sin(ωt) > 0.99999.
 const PARTS_OF_PERIOD: f64 = 32.0;
-/// How far behind the end of a solution of the algebraic equations another one is looked for,
+/// How far past the end of a solution of the algebraic equations another one is searched for,
 /// relative to the simulated interval.
-const BEHIND: [f64; 3] = [1e-10, 1e-9, 1e-8];
-/// So many times farther must the next such place be.
+const LEAPS: [f64; 3] = [1e-10, 1e-9, 1e-8];
+/// The next branch switch must be this many times farther away.
 const FARTHER: f64 = 1e3;
-/// What has changed less, relative to its magnitude, has not jumped.
+/// Smaller changes, relative to the magnitude, are not a branch switch.
 const SMALLEST_JUMP: f64 = 1e-3;
 /// Points of every step that a system with a memory is shown.
 const POINTS_REMEMBERED: u32 = 4;
@@ -84,8 +84,8 @@ impl Nominals {
     pub(crate) fn with_shares(&self, place: usize, k: usize) -> &[f64] {
         let slots = &self.with_shares[usize::from(self.states.get().is_some())];
         slots[k - 1].get_or_init(|| {
-            let (before, behind) = self.plain().split_at(place);
-            [before, &vec![self.share; k], behind].concat()
+            let (before, after) = self.plain().split_at(place);
+            [before, &vec![self.share; k], after].concat()
         })
     }
 }
@@ -399,14 +399,14 @@ impl Run<'_> {
         if let Some(after) = self.solve_again() {
             return Ok(after);
         }
-        if ends { self.jump_behind_end(kind) } else { self.leave_branch(kind) }
+        if ends { self.switch_branch(kind) } else { self.leave_branch(kind) }
     }
 
     /// The integrator leaves errors in algebraic unknowns that may be too large for any further step,
     /// as near the zero of a root: an event here solves for them. `None` if that was not the reason.
     fn solve_again(&mut self) -> Option<After> {
         let span = self.problem.settings.stop - self.problem.settings.start;
-        if self.problem.system.n_algebraic() == 0 || self.t - self.last_solved <= BEHIND[0] * span {
+        if self.problem.system.n_algebraic() == 0 || self.t - self.last_solved <= LEAPS[0] * span {
             return None;
         }
         self.last_solved = self.t;
@@ -424,16 +424,16 @@ impl Run<'_> {
         after
     }
 
-    /// The solution of the algebraic equations ends, and they may have another one just behind: an
-    /// event leads to it.
-    fn jump_behind_end(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
+    /// A turning point: the solution of the algebraic equations ends, and they may have another
+    /// branch just past it, to which an event leads.
+    fn switch_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let span = self.problem.settings.stop - self.problem.settings.start;
-        if self.t - self.last_jump <= FARTHER * BEHIND[0] * span {
+        if self.t - self.last_jump <= FARTHER * LEAPS[0] * span {
             return Err(kind);
         }
         let (begin, before) = (self.t, self.y.to_vec());
         let derivatives = self.derivatives().map_err(SimErrorKind::Evaluation)?;
-        for ahead in BEHIND.map(|behind| begin + behind * span) {
+        for ahead in LEAPS.map(|leap| begin + leap * span) {
             if ahead > self.problem.settings.stop {
                 break;
             }
@@ -452,10 +452,10 @@ impl Run<'_> {
         Err(kind)
     }
 
-    /// A function has no value beyond, as sqrt(x) behind x = 0, within less than the margin of the
-    /// relation x >= 0 that chooses another branch there: an event here, or just behind, changes the
-    /// relation. Or there is no value for the algebraic unknowns between here and just behind, where
-    /// stages of a step would be, as in s + s² = abs(x) with s = sqrt(y) at x = 0.
+    /// A function has no value beyond, as sqrt(x) past x = 0, within less than the margin of the
+    /// relation x >= 0 that chooses another branch there: an event here, or just past it, changes
+    /// the relation. Or there is no value for the algebraic unknowns between here and just past it,
+    /// where stages of a step would be, as in s + s² = abs(x) with s = sqrt(y) at x = 0.
     fn leave_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
@@ -464,11 +464,11 @@ impl Run<'_> {
             return Err(kind);
         }
         let may_leap =
-            self.problem.system.n_algebraic() > 0 && distance > FARTHER * BEHIND[0] * span;
+            self.problem.system.n_algebraic() > 0 && distance > FARTHER * LEAPS[0] * span;
         let (begin, before) = (self.t, self.y.to_vec());
         let signs = self.crossings.signs.clone();
         let derivatives = self.derivatives().unwrap_or_else(|_| vec![0.0; before.len()]);
-        for ahead in [0.0].into_iter().chain(BEHIND.map(|behind| behind * span)) {
+        for ahead in [0.0].into_iter().chain(LEAPS.map(|leap| leap * span)) {
             self.t = begin + ahead;
             if self.t > settings.stop {
                 break;
@@ -639,28 +639,28 @@ impl Run<'_> {
         self.problem.system.remember(t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
-    /// Handles the event at `t`, where y is; records both sides of it. An event that a sign has
-    /// told, but that the variables do not confirm, comes from the error of the interpolation: the
-    /// integrator starts anew from the variables then.
-    fn handle_event(&mut self, t: f64, told_by_sign: bool) -> Result<After, SimErrorKind> {
+    /// Handles the event at `t`, where y is; records both sides of it. An event that a change of
+    /// sign announced, but that the variables do not confirm, comes from the error of the
+    /// interpolation: the integrator restarts from the variables then.
+    fn handle_event(&mut self, t: f64, by_sign_change: bool) -> Result<After, SimErrorKind> {
         self.t = t;
         self.watch_for_chattering()?;
         match self.record() {
-            // Located behind the zero of a root, where the branch before the event has no value.
-            Err(SimErrorKind::Evaluation(Failure::Domain { .. })) if told_by_sign => {}
+            // Located past the zero of a root, where the branch before the event has no value.
+            Err(SimErrorKind::Evaluation(Failure::Domain { .. })) if by_sign_change => {}
             recorded => recorded?,
         }
         let was_constrained = self.problem.system.is_constrained();
         let (surfaces, contacts) = self.end_slide();
-        let crossing = if told_by_sign { self.crossings.last() } else { None };
+        let crossing = if by_sign_change { self.crossings.last() } else { None };
         let span = self.problem.settings.stop - self.problem.settings.start;
         self.problem.system.crossed(crossing, span);
         let mut outcome = self.event_with_contacts(&contacts)?;
-        if told_by_sign {
+        if by_sign_change {
             self.watch.note_jump(self.y);
         }
         if was_constrained && outcome != EventOutcome::Terminate {
-            outcome = self.go_on_behind_event(surfaces, contacts)?;
+            outcome = self.continue_after_event(surfaces, contacts)?;
         }
         while self.next_output.is_some_and(|point| point <= t) {
             self.advance_output();
@@ -671,7 +671,7 @@ impl Run<'_> {
             EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
             EventOutcome::Continue { y_changed: false } => {
                 let confirmed = self.start_crossings()?;
-                if confirmed || !told_by_sign {
+                if confirmed || !by_sign_change {
                     return Ok(After::Resume);
                 }
                 self.integrator.restart(&mut self.problem, self.t, self.y)?;
@@ -692,7 +692,7 @@ impl Run<'_> {
         Ok(outcome)
     }
 
-    /// Lets the system handle an event and records what comes behind it.
+    /// Lets the system handle an event and records the values after it.
     fn event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
         let outcome = self.problem.system.handle_event(t, self.y);
         let outcome = outcome.map_err(SimErrorKind::Evaluation)?;

@@ -27,7 +27,7 @@ pub struct Statistics {
     pub followed: u64,
     /// Intervals in which the solution slid along discontinuities.
     pub slides: u64,
-    /// Accumulations of impacts behind which the solution rests.
+    /// Accumulations of impacts after which the solution rests.
     pub accumulations: u64,
 }
 

@@ -23,7 +23,7 @@ impl StepBudget {
         StepBudget { allowed: max_steps, half, most, since: (start, 0) }
     }
 
-    /// Behind a step to the time t: half a budget more where the second half of the last is being
+    /// After a step to the time t: half a budget more where the second half of the last is being
     /// used and the end, `stop`, is within reach at the pace at hand.
     pub fn extend(&mut self, t: f64, stop: f64, attempts: u64) {
         let (begin, before) = self.since;

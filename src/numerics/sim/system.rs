@@ -22,7 +22,7 @@ pub trait DaeSystem {
     /// Number of algebraic variables v.
     fn n_algebraic(&self) -> usize;
     /// Of the algebraic variables the last so many, each of which follows from states and those before
-    /// it, and is computed from them wherever somebody looks at it: what the integrator holds of them
+    /// it, and is computed from them wherever it is read: what the integrator holds of them
     /// keeps its matrix sparse and needs no accuracy of its own.
     fn n_auxiliary(&self) -> usize {
         0
@@ -39,15 +39,15 @@ pub trait DaeSystem {
     fn pattern(&self) -> &Pattern;
     /// Writes the nonzeros of ∂(f, g)/∂y at (t, y), in the order of the pattern.
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
-    /// What is known of (f, g) where it is affine in y and t between events; `None` where it is not,
-    /// or nobody knows.
+    /// What is known of (f, g) where it is affine in y and t between events; `None` where it is
+    /// not, or this is unknown.
     fn linearity(&self) -> Option<Linearity> {
         None
     }
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
-    /// Number of directions along which derivatives are carried. Where there are any, y holds
-    /// behind its own n values n derivatives for each direction, and observed variables are followed
+    /// Number of directions along which derivatives are carried. Where there are any, the n values
+    /// of y are followed by n derivatives for each direction, and observed variables are followed
     /// by their derivatives, direction by direction.
     fn n_directions(&self) -> usize {
         0
@@ -55,7 +55,7 @@ pub trait DaeSystem {
     /// Writes the magnitude of what each direction changes, positive: a derivative times that is as
     /// large as y.
     fn directions(&self, _out: &mut [f64]) {}
-    /// Writes the derivatives of (f, g) along each direction, those of y (behind y) given.
+    /// Writes the derivatives of (f, g) along each direction, those of y given (they follow y).
     fn sensitivity_rhs(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }
@@ -165,7 +165,7 @@ pub trait DaeSystem {
     fn has_means(&self, _observed: usize) -> bool {
         true
     }
-    /// Is told how the simulation went on at a crossing function, for messages to the user.
+    /// Reports how the simulation continued at a crossing function, for messages to the user.
     fn note_treatment(&mut self, _t: f64, _crossing: usize, _treatment: Treatment) {}
     /// Number of observed variables.
     fn n_observed(&self) -> usize;
@@ -181,7 +181,7 @@ pub enum EventOutcome {
         /// Whether the integrator must restart.
         y_changed: bool,
     },
-    /// Another event follows at the same time, behind which the integrator must restart.
+    /// Another event follows at the same time; the integrator must restart after it.
     Again,
     /// `terminate(…)` was called.
     Terminate,

@@ -88,14 +88,14 @@ impl Session {
         self.write_by(&path, &mut |session| session.world.write(&path, bytes))
     }
 
-    /// Writes behind the end of a file.
+    /// Appends to a file.
     pub(crate) fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
         self.write_by(&path, &mut |session| session.world.append(&path, bytes))
     }
 
     /// Writes results into a file anew, with the directories it lies in. A file with former results
-    /// is replaced, whoever has written it.
+    /// is replaced, no matter which program has written it.
     pub fn write_results(
         &mut self,
         path: &Path,

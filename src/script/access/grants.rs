@@ -65,7 +65,7 @@ impl Session {
     }
 
     /// The folders `models` in a folder and above it may be read, where no link leads elsewhere and
-    /// nobody else has put them there.
+    /// no other user has put them there.
     pub fn grant_models(&mut self, folder: &Path) {
         for folder in folder.ancestors() {
             self.world.grant(Grant::Found(&folder.join("models")));

@@ -113,7 +113,7 @@ pub enum Refusal {
     Reading,
     /// Reading what a link leads to that was found beside or above a file of the user.
     Link,
-    /// Reading what was found there and belongs to somebody else.
+    /// Reading what was found there and belongs to another user.
     Owner,
     /// What the user or the program excludes.
     Denied,

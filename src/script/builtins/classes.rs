@@ -308,9 +308,9 @@ fn answer(session: &mut Session, done: Result<(), Failure>) -> Result<Value, Fai
     }
 }
 
-/// Gives an element of a class, or what stands in its modification, another modification, as it
-/// is written behind the element's name. A binding leaves what stands in parentheses as it is;
-/// `()` takes the binding away.
+/// Gives an element of a class, or what stands in its modification, another modification, as it is
+/// written after the element's name. A binding leaves what stands in parentheses as it is; `()`
+/// takes the binding away.
 fn modified(
     session: &mut Session,
     class: &Name,

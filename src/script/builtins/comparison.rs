@@ -145,7 +145,7 @@ fn grid(table: &ResultTable, intervals: i64) -> Result<Vec<f64>, Fault> {
     }
 }
 
-/// The variables to compare: those wanted, else all of the table.
+/// The variables to compare: those requested, else all of the table.
 fn names(table: &ResultTable, wanted: &[String]) -> Vec<String> {
     match wanted {
         [] => table.series.iter().map(|series| series.name.clone()).collect(),

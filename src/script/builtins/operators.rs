@@ -1,8 +1,8 @@
 //! The operators of the genetic algorithm by name (package `GAPILib.Operators`), for scripts that
 //! put a generation together themselves: an entry of a table, or a function of the script.
 //!
-//! Each takes its random numbers from the generator behind `Ram_Gen_ARENA`, starts it from `Seed`
-//! and returns the seed that goes on.
+//! Each takes its random numbers from the generator that `Ram_Gen_ARENA` uses, starts it from
+//! `Seed` and returns the seed that goes on.
 
 use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_genomes};
 use super::inputs;
@@ -13,8 +13,8 @@ use crate::eval;
 use crate::ga::crossover::Parents;
 use crate::ga::errors::{BAD_OPERATOR, BAD_POPULATION, SIZE_MISMATCH};
 use crate::ga::mutation::{Child, Course};
-use crate::ga::operators::{self, Kind, Size};
-use crate::ga::survival::{Brood, Rated, Survivor, Wanted};
+use crate::ga::operators::{self, OperatorKind, Size};
+use crate::ga::survival::{Brood, Rated, Sizes, Survivor};
 use crate::ga::{Genomes, Mrg32k3a, crossover, mutation, sampling, selection, survival};
 use crate::registry::{BAD_OPTION, Choice};
 use crate::runs::problem::{operators as chosen, own_function};
@@ -46,7 +46,7 @@ struct Operator {
     choice: Choice,
     /// The script's function of that name.
     function: Option<Arc<eval::Function>>,
-    kind: &'static Kind,
+    kind: &'static OperatorKind,
     /// What the function has said when it failed.
     error: Option<Diagnostic>,
 }
@@ -404,10 +404,8 @@ fn survive(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     check_size("Fit", fitness.len(), old.len(), "`Pop` has rows:")?;
     check_size("Fit_Offspring", young.len(), offspring.len(), "`Offspring` has rows:")?;
     check_size("Offspring", offspring.n_genes(), old.n_genes(), "the columns of `Pop` number")?;
-    let wanted = Wanted {
-        population: count(&mut args, "Population")?,
-        elites: count(&mut args, "Elitism")?,
-    };
+    let sizes =
+        Sizes { population: count(&mut args, "Population")?, elites: count(&mut args, "Elitism")? };
     let own = match operator.function {
         None => Some(operators::survival(operator.choice.clone())?),
         Some(_) => None,
@@ -434,11 +432,11 @@ fn survive(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         genes: &genes(&minima, &maxima, old.n_genes())?,
     };
     let survivors = match (own, operator.function.clone()) {
-        (Some(own), _) => own.survivors(&brood, wanted),
+        (Some(own), _) => own.survivors(&brood, sizes),
         (None, Some(function)) => survival::survivors_by(
             &mut |inputs| operator.call(session, &function, 0, inputs),
             &brood,
-            wanted,
+            sizes,
         ),
         (None, None) => Ok(Vec::new()),
     };

@@ -1,4 +1,4 @@
-//! Commands of other tools that are not carried out, each with its reason.
+//! Commands of other tools that are not supported, each with its reason.
 
 use super::{Args, Builtin, Failure, Family};
 use crate::Session;

@@ -1,5 +1,5 @@
 //! The scanning functions of `Modelica.Utilities.Strings`: a value read from a place in a string,
-//! and the position behind it.
+//! and the position after it.
 
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
@@ -24,7 +24,7 @@ pub(super) const FAMILY: Family = Family {
     ],
 };
 
-/// A string with a position, which moves behind what was read.
+/// A string with a position, which moves past what was read.
 struct Scanner {
     characters: Vec<char>,
     at: usize,

@@ -241,7 +241,7 @@ impl Curve {
         part
     }
 
-    /// The value at a time behind a point.
+    /// The value at a time after a point.
     fn at(&self, point: usize, time: f64) -> f64 {
         let next = (point + 1).min(self.time.len() - 1);
         let length = self.time[next] - self.time[point];

@@ -234,7 +234,7 @@ pub fn agreeing(lines: &[Line], printed: &[usize]) -> Vec<bool> {
     agree
 }
 
-/// A comparison as text: three lines of context around what differs; coloured if wanted. Control
+/// A comparison as text: three lines of context around what differs; coloured if requested. Control
 /// characters are shown as symbols.
 pub fn shown(lines: &[Line], colour: bool) -> String {
     const CONTEXT: usize = 3;

@@ -206,7 +206,7 @@ impl Host for Session {
         names
     }
 
-    fn loop_turn(&mut self, iteration: usize, iterations: Option<usize>) {
+    fn loop_iteration(&mut self, iteration: usize, iterations: Option<usize>) {
         self.execution.iterate((iteration, iterations));
     }
 

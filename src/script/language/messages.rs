@@ -1,4 +1,4 @@
-//! The buffer behind `getErrorString()` and `getLastError()`.
+//! The buffer that `getErrorString()` and `getLastError()` read.
 
 use crate::diag::{Diagnostic, Severity};
 use crate::source::SourceMap;

@@ -26,7 +26,7 @@ pub struct Output {
     muted: bool,
     /// Answers of scripts that return them, innermost last.
     collected: Vec<String>,
-    /// Warnings and notes from here on, for whoever keeps what they are about.
+    /// Warnings and notes from here on, for callers that keep what they are about.
     pub(crate) overheard: Option<Vec<Diagnostic>>,
 }
 

@@ -76,7 +76,7 @@ impl fmt::Display for Transcript {
     }
 }
 
-/// A statement behind prompts, and its answer.
+/// A statement after prompts, and its answer.
 pub(super) fn interleaved(f: &mut impl fmt::Write, input: &str, answer: &str) -> fmt::Result {
     for (at, line) in input.lines().enumerate() {
         let prompt = if at == 0 { PROMPT } else { "... " };

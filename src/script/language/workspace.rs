@@ -116,7 +116,7 @@ impl Workspace {
         all
     }
 
-    /// The variables whose names match a pattern, with values and if wanted types, in alphabetic
+    /// The variables whose names match a pattern, with values and if requested types, in alphabetic
     /// order.
     pub(crate) fn listing(&self, pattern: &str, types: bool) -> String {
         let matching = |name: &str| matches(pattern.as_bytes(), name.as_bytes());

@@ -27,7 +27,7 @@ pub struct Lesson {
     pub watch: Option<String>,
     /// Whether the report of the identification is part of the lesson, and what to look at in it.
     pub report: Option<String>,
-    /// Further files of the learner: names and texts.
+    /// Further files of the learner: names and contents.
     pub companions: Vec<(String, String)>,
     /// What must hold for the learner's script.
     pub checks: Vec<Check>,

@@ -34,7 +34,7 @@ const STANDARD_SOURCES: &str = "modelica://Modelica/Resources/C-Sources";
 /// Where a name of a file or folder, a path or a URI, leads.
 type Find<'a> = &'a dyn Fn(&str) -> Option<PathBuf>;
 
-/// The function that is wanted, compiled and loaded.
+/// The requested function, compiled and loaded.
 ///
 /// # Errors
 /// The user has not allowed it, or it cannot be compiled.
@@ -47,11 +47,11 @@ pub(super) fn compiled(
     let is_allowed = |declaration: &&Declaration| {
         compiler.is_some_and(|compiler| compiler.permits(&declaration.class))
     };
-    let mut all = std::iter::once(request.wanted()).chain(&request.declarations);
+    let mut all = std::iter::once(request.requested()).chain(&request.declarations);
     if let Some(one) = all.find(|one| !is_allowed(one)) {
         return Err(refused(one, files, find));
     }
-    let Some(compiler) = compiler else { return Err(refused(request.wanted(), files, find)) };
+    let Some(compiler) = compiler else { return Err(refused(request.requested(), files, find)) };
     let library = compiler.load(&unit(&request.declarations, files, find))?;
     Ok(entry(request, &library))
 }

@@ -34,7 +34,7 @@ pub struct Classes {
     pub(crate) enclosing: Vec<Enclosing>,
     /// Counts what changes what a name can stand for.
     revision: u64,
-    /// Folders whose packages are loaded when somebody names them.
+    /// Folders whose packages are loaded when they are first named.
     directories: Vec<PathBuf>,
     /// Folders of packages that were named themselves.
     named: BTreeMap<Ident, PathBuf>,
@@ -117,7 +117,7 @@ impl Classes {
         self.library.known()
     }
 
-    /// Folders whose packages are loaded when somebody names them.
+    /// Folders whose packages are loaded when they are first named.
     pub(crate) fn directories(&self) -> &[PathBuf] {
         &self.directories
     }

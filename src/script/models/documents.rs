@@ -33,7 +33,7 @@ pub struct CheckedModel {
 
 impl ModelCheck {
     /// Finds out what is wrong with the model down to its causalization: what `gapi check` finds,
-    /// without what is wrong only because the model leaves something to whoever uses it.
+    /// without what is wrong only because the model leaves something to its users.
     pub fn run(self) -> CheckedModel {
         let mut found = self.found();
         let problems = self.library.take_problems();
@@ -214,7 +214,7 @@ impl Session {
         });
         let class = |entry: String| {
             let name = entry.strip_suffix(".mo").unwrap_or(&entry);
-            // The version of a library is behind a blank.
+            // The version of a library follows a blank.
             Ident::new(name.split(' ').next().unwrap_or(name))
         };
         let shipped = crate::packages::list(Path::new(crate::packages::FOLDER)).unwrap_or_default();

@@ -154,7 +154,7 @@ impl FinalState {
     /// The bytes are not of this format.
     pub fn read(file: &str, bytes: &[u8]) -> Result<FinalState, Fault> {
         let content = mat::read(bytes)?;
-        let names = content.matrix("initialName")?.text_rows();
+        let names = content.matrix("initialName")?.row_strings();
         let values = content.matrix("initialValue")?;
         let experiment = content.matrix("experiment")?;
         if values.columns < 5 || values.rows != names.len() || experiment.values.len() < 2 {

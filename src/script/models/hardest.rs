@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub struct Hardest {
     /// Steps in whose error test an unknown had the largest part, by its name.
     pub unknowns: Vec<(Arc<str>, u64)>,
-    /// Events by the relations that caused them: where they are written, and their texts.
+    /// Events by the relations that caused them: where they are written, and their source text.
     pub relations: Vec<(String, u64)>,
     /// Algebraic loops by evaluations of their residuals.
     pub loops: Vec<LoopEffort>,

@@ -1,4 +1,4 @@
-//! What a model leaves to whoever uses it: values of parameters, replaceable classes that are partial,
+//! What a model leaves to its users: values of parameters, replaceable classes that are partial,
 //! what its connectors are connected to, `inner` components around it. A class of a library is not
 //! wrong because it leaves something open.
 
@@ -9,7 +9,7 @@ use crate::syntax::ast::{
     Restriction, VariabilityPrefix,
 };
 
-/// Errors that a value or a class makes vanish which whoever uses the model gives.
+/// Errors that vanish once users of the model give a value or a class.
 const OPEN: &[&str] = &["parameter-without-value", "value-needed", "partial-class"];
 
 /// What follows from these where a declaration could not be made sense of.
@@ -47,7 +47,7 @@ impl LeftOpen {
         self.connectors
     }
 
-    /// Errors and warnings without those that are nobody's fault.
+    /// Errors and warnings without those that are not the model's fault.
     pub fn faults(self, mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
         let slug = |one: &Diagnostic| one.code.slug;
         let is_left = |one: &Diagnostic| self.generic && OPEN.contains(&slug(one));
@@ -65,13 +65,13 @@ impl LeftOpen {
     }
 }
 
-/// Whether whoever uses a class has to say what an element of it is.
+/// Whether users of a class have to specify an element of it.
 fn leaves_open(library: &Library, element: Declared) -> bool {
     match element {
         Declared::Class(class) => library.is_replaceable(class) && is_partial(library, class),
         Declared::Component(owner, name) => {
             let Some((clause, declaration)) = library.component(owner, name) else { return false };
-            let class = || library.class_behind(element);
+            let class = || library.class_of_declared(element);
             is_without_value(clause, declaration)
                 || clause.prefixes.replaceable
                     && class().is_some_and(|one| is_partial(library, one))
@@ -112,7 +112,7 @@ fn is_open(library: &Library, element: Declared) -> bool {
         None if clause.type_prefixes.connection == Some(ConnectionPrefix::Flow) => return true,
         None => {}
     }
-    let Some(class) = library.class_behind(element) else { return false };
+    let Some(class) = library.class_of_declared(element) else { return false };
     let definition = library.definition_of(class);
     let is_output = match &definition.specifier {
         ClassSpecifier::Short(short) => short.prefixes.causality == Some(CausalityPrefix::Output),

@@ -130,7 +130,7 @@ impl Session {
         self.models_folders().iter().filter_map(warning).collect()
     }
 
-    /// The folder `Name 1.2.3`, also with more behind it: `Name 1.2.3+build.4`.
+    /// The folder `Name 1.2.3`, also with more after it: `Name 1.2.3+build.4`.
     fn version_in(&self, folder: &Path, wanted: &str) -> Option<PathBuf> {
         let entries = self.world.list_dir(folder).ok()?;
         let fits = |entry: &&String| {

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The continuous inputs u at the top level are made states that do not change, so that the
-//! columns of x and u are found in the same way. The slope of each is a state too: where something
-//! depends on it, the model is no system of this form and is refused.
+//! columns of x and u are found in the same way. The derivative of each is a state too: where
+//! something depends on it, the model is no system of this form and is refused.
 
 use super::simulation::{self, SimulationOptions, Translated};
 use crate::Session;
@@ -47,7 +47,7 @@ pub(crate) struct Linear {
 /// Simulates the model translated last and linearizes it where the simulation ends.
 ///
 /// # Errors
-/// A simulation that fails, a singular loop, an output that depends on the slope of an input.
+/// A simulation that fails, a singular loop, an output that depends on the derivative of an input.
 pub(crate) fn linearized(
     session: &mut Session,
     options: &SimulationOptions,
@@ -124,12 +124,12 @@ fn with_states_for_inputs(
     Ok(Some(Translated::new(&model.problem, flat, program)))
 }
 
-/// The name of the slope of an input.
+/// The name of the derivative of an input.
 fn slope_name(input: &str) -> String {
     format!("'derivative of {}'", input.replace('\'', "\""))
 }
 
-/// der(u) = slope, der(slope) = 0.
+/// der(u) = rate, der(rate) = 0.
 fn make_state(flat: &mut FlatModel, input: &Variable) {
     let literal = |kind| Attribute { value: Expression::new(kind, Span::NONE), is_final: false };
     let always = literal(ExpressionKind::Integer(crate::lower::StateSelect::Always as i64 + 1));
@@ -186,7 +186,7 @@ fn outputs_of(program: &Program) -> Vec<usize> {
     outputs.map(|(at, _)| at).collect()
 }
 
-/// Rows of the states' slopes, then of the outputs; columns of the states. `None` where the
+/// Rows of the states' derivatives, then of the outputs; columns of the states. `None` where the
 /// algebraic equations are singular.
 fn reduced(
     mut system: crate::runtime::System,
@@ -201,7 +201,7 @@ fn reduced(
     y[..n].copy_from_slice(y0);
     system.handle_event(time, &mut y)?;
     let whole = system.dense_jacobian(time, &y)?;
-    let of_outputs = system.slopes(outputs, time, &y)?;
+    let of_outputs = system.jacobian_of(outputs, time, &y)?;
     let mut rows = DMatrix::zeros(n + p, n + m);
     rows.view_mut((0, 0), (n, n + m)).copy_from(&whole.view((0, 0), (n, n + m)));
     rows.view_mut((n, 0), (p, n + m)).copy_from(&of_outputs);
@@ -255,7 +255,7 @@ impl Places {
         Ok(Places { states, inputs: of_inputs, slopes: of_slopes })
     }
 
-    /// Refuses models in which something but the input depends on its slope.
+    /// Refuses models in which something but the input depends on its derivative.
     fn check(&self, slopes: &DMatrix<f64>, inputs: &[String], problem: &str) -> Result<(), Fault> {
         let n = self.states.len() + self.inputs.len() + self.slopes.len();
         let rows = self.states.iter().copied().chain(n..slopes.nrows());
@@ -307,7 +307,7 @@ impl Places {
     }
 }
 
-/// The slope of an element of an input, `u[2]`.
+/// The derivative of an element of an input, `u[2]`.
 fn slope_element(input: &str) -> String {
     match input.rfind('[').filter(|_| input.ends_with(']')) {
         Some(at) => format!("{}{}", slope_name(&input[..at]), &input[at..]),

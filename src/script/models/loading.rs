@@ -1,4 +1,4 @@
-//! Loading classes: from files, folders and libraries, when somebody names them.
+//! Loading classes: from files, folders and libraries, when they are first named.
 
 use super::classes::Enclosing;
 use super::stored::digest;
@@ -125,7 +125,7 @@ impl Session {
         let names =
             self.ask_library(|library| library.load_lazily(&files, folder, around).map_err(one))?;
         self.classes.note_files(&names, folder);
-        // Its files are read later: nobody knows yet whether they are the same.
+        // Its files are read later: whether they are the same is not known yet.
         let revision = self.classes.revision();
         self.classes.sources.note(&names, &format!("{}\n{revision}", folder.display()));
         self.supply_units(&names).map_err(one)?;

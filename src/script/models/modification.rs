@@ -12,7 +12,7 @@ pub fn merge(arguments: &mut Vec<Argument>, path: &[Ident], value: &Expression) 
 }
 
 /// The modification of the element at a path, which is made where it is missing; `None` for the
-/// empty path and behind a redeclaration.
+/// empty path and after a redeclaration.
 pub(crate) fn modification_at<'a>(
     arguments: &'a mut Vec<Argument>,
     path: &[Ident],

@@ -52,7 +52,7 @@ pub struct SimulationOptions {
     pub stops_at_chattering: bool,
     /// Which variables the results hold, by their names; all where nothing is said.
     pub only: Option<Regex>,
-    /// Whether [`Simulated::hardest`] is wanted.
+    /// Whether [`Simulated::hardest`] is requested.
     pub counts_effort: bool,
     /// Where the time reached is written, as the bits of an `f64`.
     pub reached: Option<Arc<AtomicU64>>,
@@ -239,8 +239,8 @@ pub(crate) fn flat_model_of<'m>(
     Ok(model.flat.get_or_init(|| flat))
 }
 
-/// A flat model with more equations is given back before its program is made, and made again where
-/// somebody asks for it: it takes a third of the memory of a translation.
+/// A flat model with more equations is given back before its program is made, and made again on
+/// demand: it takes a third of the memory of a translation.
 const MOST_KEPT: usize = 10_000;
 
 /// A model, translated whether it has been or not.
@@ -380,7 +380,7 @@ pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<
     })
 }
 
-/// A simulation that somebody waits for may take so many steps as long as it gets on.
+/// An interactive simulation may take so many steps as long as it gets on.
 pub(super) const MOST_STEPS: u64 = 1_000_000_000;
 
 /// Simulates a model with the parameter values that scripts gave to it.
@@ -551,7 +551,7 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
     Ok(Continued { system, states, discrete })
 }
 
-/// Which columns hold a variable that is wanted.
+/// Which columns hold a variable that is recorded.
 fn wanted_columns(model: &Translated, only: &Regex) -> Vec<bool> {
     let mut wanted = Vec::new();
     for variable in model.program.variables() {
@@ -565,7 +565,8 @@ fn wanted_columns(model: &Translated, only: &Regex) -> Vec<bool> {
     wanted
 }
 
-/// The variables of a simulation that are wanted. Aliases have their own values where not all are.
+/// The variables of a simulation that are recorded. Aliases have their own values where not all
+/// are.
 fn result_table(
     model: &Translated,
     system: &System,

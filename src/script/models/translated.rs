@@ -21,7 +21,7 @@ pub struct Translated {
     pub program: Arc<Program>,
     /// The top-level names on which it depends.
     pub(crate) roots: BTreeSet<Ident>,
-    /// The flat model; a model that was kept, or is large, has none until somebody asks.
+    /// The flat model; a model that was kept, or is large, has none until it is requested.
     pub(super) flat: OnceLock<FlatModel>,
 }
 

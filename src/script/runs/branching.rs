@@ -18,9 +18,10 @@ pub(super) struct Branching {
 
 impl Session {
     /// Executes `text` among the variables of the script as soon as `Eval` has simulated the
-    /// generation of this number, from 1: what follows in the generation uses the new values. Texts
-    /// for the same generation are executed in the order of the calls. A change that names nothing in
-    /// the script, or makes a value that the run cannot continue with, ends the run with an error.
+    /// generation of this number, from 1: what follows in the generation uses the new values.
+    /// Commands for the same generation are executed in the order of the calls. A change that names
+    /// nothing in the script, or makes a value that the run cannot continue with, ends the run with
+    /// an error.
     ///
     /// # Errors
     ///

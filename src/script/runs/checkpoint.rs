@@ -5,7 +5,7 @@ use crate::diag::Fault;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Seconds between two writes unless something else is wanted.
+/// Seconds between two writes by default.
 pub(super) const SECONDS: f64 = 2.0;
 
 /// A journal with what is not yet in the file.
@@ -27,8 +27,8 @@ pub(super) struct Checkpoint {
 /// Bytes of a journal that are kept besides the file.
 const KEPT: usize = 64 << 20;
 
-/// How often it is made again where somebody is removing its folder at the same moment. One attempt
-/// was too few while `rm -r` was at work.
+/// How often it is made again where another process removes its folder at the same moment. One
+/// attempt was too few while `rm -r` was at work.
 const ATTEMPTS: usize = 20;
 
 /// Seconds between two times that the file is made safe against a power cut.
@@ -139,7 +139,7 @@ impl Checkpoint {
         }
     }
 
-    /// Writes behind what the file holds, all of it where the file has gone.
+    /// Appends to what the file holds, all of it where the file has gone.
     fn append(&mut self, session: &mut Session, now: f64) -> io::Result<()> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         if !session.world.exists(folder) {

@@ -70,7 +70,7 @@ struct Prepared {
 pub(crate) struct Request {
     /// Where the model is; empty when it is loaded.
     pub(crate) path: String,
-    /// Its name, with a modification if wanted.
+    /// Its name, with a modification if given.
     pub(crate) model: String,
     /// What varies and what is compared.
     pub(crate) question: Question,
@@ -185,7 +185,7 @@ impl Session {
                 evaluator.cancel_by(self.world.interrupt_flag());
                 let simulated = evaluator.evaluate(genomes)?;
                 if evaluator.is_cancelled() {
-                    // The population is simulated again by whoever resumes the run.
+                    // The population is simulated again when the run is resumed.
                     return Err(Fault::new(INTERRUPTED, "interrupted").into());
                 }
                 self.journal(&request, &evaluator.settings_text(), genomes, &simulated);

@@ -1,6 +1,6 @@
-//! A run as it is now: data for whoever draws it while it goes on.
+//! A run as it is now: data for drawing it during the run.
 
-/// How far a long piece of work is: data for whoever draws it.
+/// How far a long piece of work is: data for drawing it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Progress {
     /// What is being done, such as `generation`.

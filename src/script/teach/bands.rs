@@ -90,7 +90,7 @@ pub fn figure(settings: &[Repeated]) -> Figure {
     }
 }
 
-/// The medians alone, for a figure of characters, where areas cannot be told from lines.
+/// The medians alone, for a figure of characters, where areas cannot be distinguished from lines.
 pub fn medians(settings: &[Repeated]) -> Figure {
     let mut figure = figure(settings);
     figure.panels.iter_mut().for_each(|panel| panel.series.retain(|s| s.mark == Mark::Line));

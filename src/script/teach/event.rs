@@ -61,9 +61,9 @@ pub enum Event {
         /// Its text.
         text: String,
     },
-    /// What is identified, told when it changes.
+    /// What is identified, recorded when it changes.
     Subject(Subject),
-    /// What simulations are compared with, told when it changes.
+    /// What simulations are compared with, recorded when it changes.
     Measured {
         /// X.
         x: Vec<f64>,

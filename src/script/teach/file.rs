@@ -8,7 +8,7 @@ use crate::bail;
 use crate::diag::Fault;
 
 /// The first bytes of every trace; the number changes when events of older files would be read as
-/// others. A new kind of event behind the others changes nothing of that.
+/// others. A new kind of event after the others changes nothing of that.
 const MAGIC: &[u8] = b"gapilib trace 3\n";
 /// No event is longer than this; a longer one is a damaged file.
 const LONGEST: usize = 1 << 30;

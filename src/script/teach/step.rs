@@ -38,7 +38,7 @@ pub enum Step {
     },
 }
 
-/// The parts of a generation that a learner may want to skip as a whole.
+/// The parts of a generation that a learner can skip as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
     /// The initial draw.
@@ -75,7 +75,7 @@ impl Step {
         }
     }
 
-    /// The script line behind the step, where one is known.
+    /// The script line of the step, where one is known.
     pub fn place(self, generation: &Generation, next: Option<&Generation>) -> Option<Place> {
         let sorted = generation.sorted.as_ref().map(|sorted| sorted.place);
         let crossed = generation.crossed.as_ref().map(|crossed| crossed.place);

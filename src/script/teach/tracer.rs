@@ -66,7 +66,7 @@ impl Tracer {
         }
     }
 
-    /// The bytes that came since the last call, to be written behind those.
+    /// The bytes that came since the last call, to be appended to those.
     pub(crate) fn take_bytes(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.unwritten)
     }

@@ -74,7 +74,7 @@ impl Walk {
         self.at + 1 == self.steps.len() && self.next_generation().is_none()
     }
 
-    /// The script and the line, from 1, behind the step.
+    /// The script and the line, from 1, of the step.
     pub fn line(&self) -> Option<(&Script, usize)> {
         let place = self.place()?;
         Some((self.trace.scripts.get(place.script as usize)?, place.line as usize))

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Keeps from one process to the next what can be made again, by names that are made of letters and
-/// digits. Whoever implements it answers with nothing where what is there is damaged or was kept by
+/// digits. Implementations answer with nothing where what is there is damaged or was kept by
 /// another version of this program.
 pub trait Store: Send + Sync {
     /// What is kept under a name.
@@ -48,7 +48,7 @@ pub trait Environment {
     fn flag_after(&self, _seconds: f64) -> Option<Arc<AtomicBool>> {
         None
     }
-    /// Why the run has to stop although nobody asked, such as a limit of time.
+    /// Why the run has to stop without a request, such as a limit of time.
     fn stop_reason(&self) -> Option<String> {
         None
     }

@@ -27,7 +27,7 @@ pub type Content<'a> = &'a mut dyn FnMut(&mut dyn io::Write) -> io::Result<()>;
 
 /// The files that a script can read and write. Paths may be relative to [`Files::current_dir`].
 pub trait Files {
-    /// Allows something from here on: whoever starts the run does, never a script.
+    /// Allows something from here on: called by what starts the run, never by a script.
     fn grant(&mut self, grant: Grant<'_>);
     /// What is allowed and excluded, for people: what it means, and the path or whatever it is about.
     fn permissions(&self) -> Vec<(String, String)> {
@@ -48,14 +48,14 @@ pub trait Files {
     }
     /// Writes a file anew, safe against a power cut.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-    /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory, and
-    /// leaves it to the system when it reaches the disk.
+    /// Writes a file anew as `content` writes it: implementations with a disk keep none of it in
+    /// memory, and leave it to the system when it reaches the disk.
     fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
         let mut bytes = Vec::new();
         content(&mut bytes)?;
         self.write(path, &bytes)
     }
-    /// Writes behind the end of a file, which is made if there is none.
+    /// Appends to a file, which is created if there is none.
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
     /// Makes what a file holds safe against a power cut.
     fn sync(&mut self, _path: &Path) -> io::Result<()> {

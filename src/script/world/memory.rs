@@ -57,13 +57,13 @@ pub struct MemoryWorld {
     changes: u64,
     stamps: BTreeMap<PathBuf, u64>,
     streams: Streams,
-    /// How many more times the answer is that nobody asked to stop.
+    /// How many more times the answer is that the run continues.
     patience: Cell<u64>,
     /// What becomes true when the user asks to stop.
     stop: Option<Arc<AtomicBool>>,
     /// What long work has shown that it does, and what it does when the user asks to stop.
     shown: Option<(Shown, String)>,
-    /// How many more times the answer is that nobody asks to pause, and what is typed then.
+    /// How many more times the answer is that no pause is requested, and what is typed then.
     pause: (u64, VecDeque<String>),
     /// What was drawn, where anybody looks.
     views: Option<Views>,
@@ -149,7 +149,7 @@ impl MemoryWorld {
         self
     }
 
-    /// The same where somebody looks at the runs; what he sees goes into `views`.
+    /// The same with a live view of the runs; what it shows goes into `views`.
     #[must_use]
     pub fn watched(mut self, views: &Views) -> MemoryWorld {
         self.views = Some(Arc::clone(views));

@@ -15,8 +15,8 @@ pub trait Screen {
     fn eprint(&mut self, text: &str);
     /// Shows how far a long piece of work is.
     fn progress(&mut self, progress: &Progress);
-    /// Shows in a line what is being done, from any thread; an empty text takes it away. `None` where
-    /// nobody would see it.
+    /// Shows in a line what is being done, from any thread; an empty text takes it away. `None`
+    /// where it would not be seen.
     fn status(&mut self) -> Option<Status> {
         None
     }
@@ -28,7 +28,7 @@ pub trait Screen {
     fn show_view(&mut self, _view: &View) {}
     /// The run has ended: what was drawn goes away.
     fn end_view(&mut self) {}
-    /// Whether the user wants the run to pause; true once for each time.
+    /// Whether the user requests a pause of the run; true once for each time.
     fn wants_pause(&mut self) -> bool {
         false
     }

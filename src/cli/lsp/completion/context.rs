@@ -29,7 +29,7 @@ pub struct Open {
     pub given: Vec<String>,
     /// Commas in them so far.
     pub commas: usize,
-    /// Whether the cursor is behind a `=`.
+    /// Whether the cursor is after a `=`.
     pub(crate) in_value: bool,
 }
 
@@ -51,9 +51,11 @@ pub fn at(text: &str, offset: usize) -> Context {
         at += length;
         let is_open = at == head.len();
         match kind {
-            Kind::Blank => {}
-            Kind::Comment { closed } => context.in_comment = is_open && !closed,
-            Kind::String { closed } if is_open && !closed => context.string = Some(range.start),
+            PieceKind::Blank => {}
+            PieceKind::Comment { closed } => context.in_comment = is_open && !closed,
+            PieceKind::String { closed } if is_open && !closed => {
+                context.string = Some(range.start)
+            }
             _ if matches!(&head[range.clone()], ";") => pieces.clear(),
             _ => pieces.push(Piece { text: &head[range.clone()], range }),
         }
@@ -66,7 +68,7 @@ pub fn at(text: &str, offset: usize) -> Context {
     context
 }
 
-enum Kind {
+enum PieceKind {
     Blank,
     Comment { closed: bool },
     String { closed: bool },
@@ -74,27 +76,27 @@ enum Kind {
 }
 
 /// The piece that a text begins with: its length and kind.
-fn piece(text: &str) -> (usize, Kind) {
+fn piece(text: &str) -> (usize, PieceKind) {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let length_of =
         |belongs: &dyn Fn(char) -> bool| text.find(|c| !belongs(c)).unwrap_or(text.len());
     match text.chars().next() {
-        Some(c) if c.is_whitespace() => (length_of(&char::is_whitespace), Kind::Blank),
+        Some(c) if c.is_whitespace() => (length_of(&char::is_whitespace), PieceKind::Blank),
         Some('/') if text.starts_with("//") => match text.find('\n') {
-            Some(end) => (end, Kind::Comment { closed: true }),
-            None => (text.len(), Kind::Comment { closed: false }),
+            Some(end) => (end, PieceKind::Comment { closed: true }),
+            None => (text.len(), PieceKind::Comment { closed: false }),
         },
         Some('/') if text.starts_with("/*") => match text.find("*/") {
-            Some(end) => (end + 2, Kind::Comment { closed: true }),
-            None => (text.len(), Kind::Comment { closed: false }),
+            Some(end) => (end + 2, PieceKind::Comment { closed: true }),
+            None => (text.len(), PieceKind::Comment { closed: false }),
         },
         Some('"') => {
             let (length, closed) = string(text);
-            (length, Kind::String { closed })
+            (length, PieceKind::String { closed })
         }
-        Some(c) if is_word(c) => (length_of(&is_word), Kind::Other),
-        Some(c) => (c.len_utf8(), Kind::Other),
-        None => (0, Kind::Other),
+        Some(c) if is_word(c) => (length_of(&is_word), PieceKind::Other),
+        Some(c) => (c.len_utf8(), PieceKind::Other),
+        None => (0, PieceKind::Other),
     }
 }
 

@@ -173,7 +173,8 @@ impl Completion<'_> {
         let last = |parts: Vec<Option<Declared>>| parts.last().copied().flatten();
         let meaning = last(self.library.parts_of_reference(self.scope, &name))
             .or_else(|| last(self.library.parts_of_type(self.scope, &name)));
-        let Some(class) = meaning.and_then(|meaning| self.library.class_behind(meaning)) else {
+        let Some(class) = meaning.and_then(|meaning| self.library.class_of_declared(meaning))
+        else {
             return Vec::new();
         };
         let members = self.library.members(class);
@@ -240,12 +241,12 @@ impl Completion<'_> {
         let parts = self.library.parts_of_type(self.scope, &Name::parse(type_name));
         let mut at = parts.last().copied().flatten()?;
         for open in inner {
-            let class = self.library.class_behind(at)?;
+            let class = self.library.class_of_declared(at)?;
             at = self.library.element(class, Ident::new(&open.name))?;
         }
         match at {
             Declared::Predefined(_) => Some(None),
-            other => Some(self.library.class_behind(other)),
+            other => Some(self.library.class_of_declared(other)),
         }
     }
 

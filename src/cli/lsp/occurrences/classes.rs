@@ -1,6 +1,6 @@
 //! The names in the declarations of classes.
 
-use super::{Entity, Walk, identifiers};
+use super::{Entity, OccurrenceSearch, identifiers};
 use crate::flatten::{ClassId, Declared};
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -17,7 +17,7 @@ fn bytes(span: Span) -> Range<usize> {
     span.start as usize..span.end as usize
 }
 
-impl Walk<'_> {
+impl OccurrenceSearch<'_> {
     /// The names of a written name with what its parts mean.
     pub(super) fn name(&mut self, span: Span, parts: &[Option<Declared>]) {
         let written = identifiers(self.text, bytes(span));
@@ -123,7 +123,7 @@ impl Walk<'_> {
 
     fn import(&mut self, import: &Import) {
         let written = identifiers(self.text, bytes(import.span));
-        // Behind the keyword.
+        // After the keyword.
         let mut written = written.into_iter().skip(1);
         let library = self.library;
         let (name, members): (&Name, &[Ident]) = match &import.kind {
@@ -227,7 +227,7 @@ impl Walk<'_> {
                     let parts = self.followed(target, &element.name.node);
                     self.name(element.name.span, &parts);
                     let inner = parts.last().copied().flatten();
-                    let inner = inner.and_then(|inner| self.library.class_behind(inner));
+                    let inner = inner.and_then(|inner| self.library.class_of_declared(inner));
                     element.modification.iter().for_each(|one| self.modification(inner, one));
                 }
                 Argument::Redeclaration(redeclaration) => match &redeclaration.element {

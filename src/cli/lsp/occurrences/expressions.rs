@@ -1,6 +1,6 @@
 //! The names in expressions, equations and statements.
 
-use super::{Entity, Walk, identifiers};
+use super::{Entity, OccurrenceSearch, identifiers};
 use crate::flatten::{ClassId, Declared};
 use crate::functions;
 use crate::name::{Ident, Name};
@@ -11,7 +11,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Visit, walk_equation, walk_expression, walk_reference, walk_statement};
 
-impl Walk<'_> {
+impl OccurrenceSearch<'_> {
     /// Walks a body in which loop variables are in force.
     fn within(&mut self, indices: &[ForIndex], body: impl FnOnce(&mut Self)) {
         let outer = self.loops.len();
@@ -68,7 +68,7 @@ impl Walk<'_> {
             self.add(range, entity, false);
         }
         self.name(span, &parts);
-        parts.last().copied().flatten().and_then(|last| self.library.class_behind(last))
+        parts.last().copied().flatten().and_then(|last| self.library.class_of_declared(last))
     }
 
     fn call(&mut self, function: &ComponentReference, arguments: &Arguments) {
@@ -112,7 +112,7 @@ impl Walk<'_> {
     }
 }
 
-impl Visit for Walk<'_> {
+impl Visit for OccurrenceSearch<'_> {
     fn reference(&mut self, reference: &ComponentReference) {
         walk_reference(self, reference);
         self.written(&reference.name(), reference.span, false);
@@ -122,7 +122,7 @@ impl Visit for Walk<'_> {
         match &expression.kind {
             ExpressionKind::Call { function, arguments } => self.call(function, arguments),
             ExpressionKind::PartialApplication { function, named } => {
-                // Behind the keyword `function`.
+                // After the keyword `function`.
                 let start = expression.span.start + "function".len() as u32;
                 let span = Span { start: start.min(expression.span.end), ..expression.span };
                 let class = self.written(function, span, true);

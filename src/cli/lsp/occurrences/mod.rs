@@ -45,7 +45,7 @@ pub fn of(
     commands: &BTreeSet<&'static str>,
 ) -> Vec<Occurrence> {
     let Some(tree) = &parsed.tree else { return Vec::new() };
-    let mut walk = Walk {
+    let mut walk = OccurrenceSearch {
         library,
         text: &parsed.document.text,
         found: Vec::new(),
@@ -114,7 +114,7 @@ fn assigned(script: &crate::syntax::ast::Script) -> BTreeSet<Ident> {
 }
 
 /// A walk over a document.
-struct Walk<'a> {
+struct OccurrenceSearch<'a> {
     library: &'a Library,
     text: &'a str,
     found: Vec<Occurrence>,
@@ -128,7 +128,7 @@ struct Walk<'a> {
     commands: &'a BTreeSet<&'static str>,
 }
 
-impl Walk<'_> {
+impl OccurrenceSearch<'_> {
     fn document_classes(&mut self, parsed: &Parsed) {
         for (name, class) in parsed.names.iter().zip(parsed.classes()) {
             self.named_class(name, class);

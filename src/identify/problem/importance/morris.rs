@@ -21,7 +21,7 @@ pub const ENTRY: Entry<dyn Analysis> = Entry {
 
 /// Levels of a parameter.
 const LEVELS: usize = 4;
-/// Trajectories unless told otherwise.
+/// Trajectories by default.
 const TRAJECTORIES: usize = 20;
 
 struct Morris;

@@ -29,7 +29,7 @@ pub const ENTRY: Entry<dyn Analysis> = Entry {
     make: |_| Ok(Box::new(Sobol)),
 };
 
-/// Base samples unless told otherwise.
+/// Base samples by default.
 const SAMPLES: usize = 512;
 /// Base samples simulated at once.
 const AT_ONCE: usize = 32;

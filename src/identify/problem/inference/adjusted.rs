@@ -208,7 +208,7 @@ pub(crate) fn adjusted_from(
     Ok(Box::new(Adjusted { inner, shared }))
 }
 
-/// A simulator with priors behind its points.
+/// A simulator with priors after its points.
 struct Adjusted {
     inner: Box<dyn Simulate>,
     shared: Arc<Shared>,

@@ -45,7 +45,7 @@ const NEXT: &str = "next measurement";
 const BOOTSTRAP: &str = "bootstrap";
 const POSTERIOR: &str = "posterior";
 
-/// What a problem wants to know beyond the estimates.
+/// What a problem requests beyond the estimates.
 #[derive(Default)]
 pub struct Inference {
     /// Simulates variables at points that were not measured; without it there are neither bands
@@ -61,7 +61,7 @@ pub struct Inference {
     pub bootstrap: Option<BootstrapSettings>,
     /// The posterior, where it is asked for.
     pub posterior: Option<PosteriorSettings>,
-    /// Priors; those with a width are points behind the measured ones.
+    /// Priors; those with a width are points after the measured ones.
     pub priors: Vec<Prior>,
     /// Constraints, which the simulator checks.
     pub constraints: Vec<Constraint>,
@@ -160,7 +160,7 @@ impl Inferred {
     }
 }
 
-/// What was made of the parts that a problem wants.
+/// The results of the parts that a problem requests.
 struct Made<'a> {
     run: &'a Run,
     /// What cannot be made.
@@ -193,7 +193,7 @@ impl Made<'_> {
 }
 
 impl Solution {
-    /// Says that nothing was inferred that the problem wants, because the run was stopped.
+    /// Says that nothing was inferred of what the problem requests, because the run was stopped.
     #[must_use]
     pub fn without_inference(self, run: &Run) -> Solution {
         Solution { inferred: Inferred::stopped(run.problem.inference.parts()), ..self }
@@ -241,7 +241,7 @@ impl Inference {
         !self.bands && self.priors.is_empty() && !self.more_than_bands()
     }
 
-    /// The names of what is wanted.
+    /// The names of what is requested.
     fn parts(&self) -> Vec<&'static str> {
         let all = [
             (BANDS, self.bands && self.predict.is_some()),

@@ -10,7 +10,7 @@ const BEYOND: f64 = 0.1;
 /// Times at which the range of a variable X is looked for.
 const LOOKS: usize = 400;
 
-/// Up to where curves are wanted.
+/// Up to where curves are requested.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
     /// Over the measured points and a tenth of their width beyond, as far as that is simulated.
@@ -216,7 +216,7 @@ fn dense(
     on_grid(dense, around, wanted, range)
 }
 
-/// The grid over an input, which may take any value: beyond the measured points as far as wanted
+/// The grid over an input, which may take any value: beyond the measured points as far as requested
 /// where the model has a solution, else over these alone.
 fn over_input(
     experiment: &Experiment,

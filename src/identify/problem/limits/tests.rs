@@ -12,8 +12,8 @@ fn line(p: &[f64], x: f64) -> f64 {
     p[0] + p[1] * x
 }
 
-/// A straight line a + b x with a + b at most 2.5, where the data want 2.7: the minimum along the
-/// limit is that of the one slope b of y - 2.5 over x - 1.
+/// A straight line a + b x with a + b at most 2.5, where the unconstrained minimum has 2.7: the
+/// minimum along the limit is that of the one slope b of y - 2.5 over x - 1.
 #[test]
 fn a_line_at_the_limit_of_its_parameters_is_the_textbook_slope() {
     let mut own = problem("genetic", line, &[2.0, 0.7], &NOISE);

@@ -257,7 +257,7 @@ impl Quadratic {
         if kept.iter().enumerate().any(is_open) {
             return None;
         }
-        // The slopes of the free ones are zero.
+        // The gradient components of the free ones are zero.
         let slopes = DVector::from_iterator(kept.len(), kept.iter().map(|&l| self.slopes[l]));
         let signs = kept.iter().skip(1).map(|&l| self.inward[l].unwrap_or(0.0)).collect();
         Some(Reduced { gram, slopes, signs })
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn a_pressed_end_holds_on_both_sides() {
         let columns = columns(0.5);
-        // The slope s = Jᵀr presses the second parameter downwards, out of its range.
+        // The gradient s = Jᵀr presses the second parameter downwards, out of its range.
         let residuals = [0.0, -20.0, 0.0];
         let found =
             AtBounds::of(&columns, &[], Some(&residuals), &[None, Some(1.0)], [1.0, 4.0]).unwrap();

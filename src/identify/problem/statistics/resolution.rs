@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decimals_and_significant_digits_are_told_apart() {
+    fn decimals_and_significant_digits_are_distinguished() {
         for (values, expected) in [
             (&[12.53, 3.2, 0.01, 7.0][..], [0.01, 0.01, 0.01, 0.01]),
             (&[5.0, 2.86, 0.0992, 0.00567], [0.01, 0.01, 1e-4, 1e-5]),

@@ -15,7 +15,7 @@ use crate::causalize::{Assignment, Block};
 use crate::codegen::code::Outputs;
 use crate::codegen::sequence::{expressions, observing};
 use crate::flatten::BaseType;
-use crate::lower::{Kind, Reinit};
+use crate::lower::{Reinit, VariableKind};
 use crate::symbolic::{Expr, Pool, VarId};
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
@@ -53,9 +53,9 @@ pub struct SensitivityCode {
     pub(crate) roundings: OfTimes,
     /// Derivatives of the switches whose times change at events.
     pub(crate) rescheduled: Tape,
-    /// Derivatives of the initial values, behind the initial system.
+    /// Derivatives of the initial values, after the initial system.
     pub(crate) initial: Tape,
-    /// Derivatives of all that an event sets, behind its equations.
+    /// Derivatives of all that an event sets, after its equations.
     pub(crate) event: Tape,
     /// For every `reinit` the derivatives of its value.
     pub(crate) reinits: Vec<Vec<Register>>,
@@ -88,7 +88,7 @@ impl SensitivityCode {
         refuse(program, parameters)?;
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = expressions(program, &mut pool, observed);
-        // Those behind the registers of a system that observes these variables.
+        // Those after the registers of a system that observes these variables.
         let mut registers = observing(program, &pool, &outputs).0;
         Compiler::new(program, pool, &mut registers, parameters).compile(&outputs).map(Arc::new)
     }
@@ -183,14 +183,17 @@ impl<'a> Compiler<'a> {
         let unknowns = program.unknowns.iter().map(|v| keep(*v)).collect();
         let is_kept = |v: &VarId| {
             let variable = dae.variable(*v);
-            let kind = matches!(variable.kind, Kind::Solved | Kind::Discrete | Kind::Previous(_));
+            let kind = matches!(
+                variable.kind,
+                VariableKind::Solved | VariableKind::Discrete | VariableKind::Previous(_)
+            );
             kind && variable.base == BaseType::Real
                 && program.sorted.aliases[v.0 as usize].is_none()
         };
         let all = (0..dae.variables.len() as u32).map(VarId);
         let kept = all.filter(is_kept).map(&mut keep).collect();
         let time = keep(VarId(0));
-        // New variables are numbered behind all registers there are now.
+        // New variables are numbered after all existing registers.
         let next = registers.len() as u32;
         let of_parameters = Vec::new();
         Compiler { program, pool, registers, parameters, of_parameters, unknowns, kept, time, next }
@@ -238,11 +241,11 @@ impl<'a> Compiler<'a> {
     }
 
     /// Where derivatives start from.
-    fn seeds(&mut self, wanted: &[Seed]) -> Seeds {
+    fn seeds(&mut self, kinds: &[Seed]) -> Seeds {
         let n = self.program.sorted.states.len();
         let mut seeds = Seeds::new();
-        for seed in wanted {
-            let kept = match seed {
+        for kind in kinds {
+            let kept = match kind {
                 Seed::Parameters => {
                     seeds.extend(self.of_parameters.iter().cloned());
                     continue;
@@ -406,7 +409,8 @@ impl<'a> Compiler<'a> {
     }
 
     /// Derivatives of what blocks solve for, written to the registers that keep them: of unknowns
-    /// and of discrete variables; and for every `reinit` those of its value, if these are wanted.
+    /// and of discrete variables; and for every `reinit` those of its value, if these are
+    /// requested.
     fn stored(
         &mut self,
         blocks: &[Block],
@@ -446,7 +450,8 @@ impl<'a> Compiler<'a> {
         let sorted = &self.program.sorted;
         let of = |state: VarId| {
             let mut all = (0u32..).map(VarId).zip(&sorted.dae.variables);
-            all.find(|(_, variable)| variable.kind == Kind::Derivative(state)).map(|(v, _)| v)
+            all.find(|(_, variable)| variable.kind == VariableKind::Derivative(state))
+                .map(|(v, _)| v)
         };
         let derivatives: Vec<VarId> = sorted.states.iter().filter_map(|s| of(*s)).collect();
         derivatives.into_iter().map(|v| resolved(&mut self.pool, sorted, v)).collect()
@@ -457,7 +462,7 @@ impl<'a> Compiler<'a> {
         compile_outputs(&self.pool, self.registers, &[], &outputs)
     }
 
-    /// The column behind those of the parameters is the derivative along the solution.
+    /// The column after those of the parameters is the derivative along the solution.
     fn crossings(&mut self) -> Outputs {
         let sorted = &self.program.sorted;
         let mut compared = Vec::new();
@@ -504,8 +509,8 @@ impl<'a> Compiler<'a> {
         self.differentiated(&needed, observed, true)
     }
 
-    /// Derivatives of outputs of a sequence, column by column, the unknowns given; behind the
-    /// outputs themselves if these are wanted.
+    /// Derivatives of outputs of a sequence, column by column, the unknowns given; after the
+    /// outputs themselves if these are requested.
     fn differentiated(
         &mut self,
         sequence: &[Assignment],

@@ -1,6 +1,6 @@
 //! From a function's tree to operations; `None` wherever the general way has to be taken.
 
-use super::{Bounds, Component, Instruction, Kind, MAX_SLOTS, Operation, ScalarFunction};
+use super::{Bounds, Component, Instruction, MAX_SLOTS, Operation, ScalarFunction, SlotType};
 use crate::eval::scalar::{MAX_DEPTH, Scalar};
 use crate::eval::{Function, FunctionBody, FunctionComponent, Host, ValueType};
 use crate::functions::{self, Operator};
@@ -16,7 +16,7 @@ pub(super) fn compile(function: &Function, host: &mut dyn Host) -> Option<Scalar
     let mut compiler =
         Compiler { host, visible: Vec::new(), inputs: function.inputs.len(), kinds: Vec::new() };
     let components = all().map(|c| compiler.component(c)).collect::<Option<Vec<_>>>()?;
-    let body = compiler.statements(statements, Place { depth: MAX_DEPTH, in_loop: false })?;
+    let body = compiler.statements(statements, Nesting { depth: MAX_DEPTH, in_loop: false })?;
     Some(ScalarFunction {
         inputs: function.inputs.len(),
         outputs: function.outputs.len(),
@@ -32,12 +32,12 @@ struct Compiler<'h> {
     /// How many of the first slots are inputs, which cannot be assigned.
     inputs: usize,
     /// Types of the slots; `None` for the variable of a loop.
-    kinds: Vec<Option<Kind>>,
+    kinds: Vec<Option<SlotType>>,
 }
 
 /// Where a statement stands.
 #[derive(Clone, Copy)]
-struct Place {
+struct Nesting {
     /// How many statements it may contain inside each other.
     depth: usize,
     in_loop: bool,
@@ -49,9 +49,9 @@ impl Compiler<'_> {
             return None;
         }
         let kind = match component.value_type {
-            ValueType::Real => Kind::Real,
-            ValueType::Integer => Kind::Integer,
-            ValueType::Boolean => Kind::Boolean,
+            ValueType::Real => SlotType::Real,
+            ValueType::Integer => SlotType::Integer,
+            ValueType::Boolean => SlotType::Boolean,
             _ => return None,
         };
         let binding = match &component.binding {
@@ -63,7 +63,7 @@ impl Compiler<'_> {
     }
 
     /// A new slot, visible under this name.
-    fn slot(&mut self, name: Ident, kind: Option<Kind>) -> Option<usize> {
+    fn slot(&mut self, name: Ident, kind: Option<SlotType>) -> Option<usize> {
         let slot = self.kinds.len();
         self.kinds.push(kind);
         self.visible.push((name, slot));
@@ -75,12 +75,12 @@ impl Compiler<'_> {
         self.visible.iter().rev().find(|(known, _)| *known == name).map(|(_, slot)| *slot)
     }
 
-    fn statements(&mut self, statements: &[Statement], place: Place) -> Option<Vec<Instruction>> {
-        let inner = Place { depth: place.depth.checked_sub(1)?, ..place };
+    fn statements(&mut self, statements: &[Statement], place: Nesting) -> Option<Vec<Instruction>> {
+        let inner = Nesting { depth: place.depth.checked_sub(1)?, ..place };
         statements.iter().map(|statement| self.statement(statement, inner)).collect()
     }
 
-    fn statement(&mut self, statement: &Statement, place: Place) -> Option<Instruction> {
+    fn statement(&mut self, statement: &Statement, place: Nesting) -> Option<Instruction> {
         match &statement.kind {
             StatementKind::Assign { target, value } => {
                 let slot = self.find(target).filter(|slot| *slot >= self.inputs)?;
@@ -98,7 +98,7 @@ impl Compiler<'_> {
             StatementKind::For { indices, body } => self.for_statement(indices, body, place),
             StatementKind::While { condition, body } => Some(Instruction::While {
                 condition: self.expression(condition, MAX_DEPTH)?,
-                body: self.statements(body, Place { in_loop: true, ..place })?,
+                body: self.statements(body, Nesting { in_loop: true, ..place })?,
             }),
             StatementKind::Call(call) => self.assertion(call),
             StatementKind::Break => place.in_loop.then_some(Instruction::Break),
@@ -112,7 +112,7 @@ impl Compiler<'_> {
         &mut self,
         indices: &[ForIndex],
         body: &[Statement],
-        place: Place,
+        place: Nesting,
     ) -> Option<Instruction> {
         let [ForIndex { name, range: Some(range) }] = indices else { return None };
         let ExpressionKind::Range { start, step, stop } = &range.kind else { return None };
@@ -123,7 +123,7 @@ impl Compiler<'_> {
         let start = self.expression(start, MAX_DEPTH)?;
         let stop = self.expression(stop, MAX_DEPTH)?;
         let slot = self.slot(name.node, None)?;
-        let body = self.statements(body, Place { in_loop: true, ..place });
+        let body = self.statements(body, Nesting { in_loop: true, ..place });
         self.visible.pop();
         Some(Instruction::For { slot, bounds: Box::new(Bounds { start, step, stop }), body: body? })
     }

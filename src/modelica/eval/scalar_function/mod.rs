@@ -50,27 +50,27 @@ struct ScalarFunction {
 }
 
 struct Component {
-    kind: Kind,
+    kind: SlotType,
     /// Default of an input, initial value of any other.
     binding: Option<Operation>,
 }
 
 /// The declared type of a slot.
 #[derive(Clone, Copy)]
-enum Kind {
+enum SlotType {
     Real,
     Integer,
     Boolean,
 }
 
-impl Kind {
+impl SlotType {
     /// The value as a slot of this type holds it; `None` if it does not take it.
     fn convert(self, value: Scalar) -> Option<Scalar> {
         match (self, value) {
-            (Kind::Real, Scalar::Integer(value)) => Some(Scalar::Real(value as f64)),
-            (Kind::Real, Scalar::Real(_))
-            | (Kind::Integer, Scalar::Integer(_))
-            | (Kind::Boolean, Scalar::Boolean(_)) => Some(value),
+            (SlotType::Real, Scalar::Integer(value)) => Some(Scalar::Real(value as f64)),
+            (SlotType::Real, Scalar::Real(_))
+            | (SlotType::Integer, Scalar::Integer(_))
+            | (SlotType::Boolean, Scalar::Boolean(_)) => Some(value),
             _ => None,
         }
     }
@@ -89,7 +89,7 @@ enum Operation {
 
 /// A statement.
 enum Instruction {
-    Assign { slot: usize, kind: Kind, value: Operation },
+    Assign { slot: usize, kind: SlotType, value: Operation },
     If { branches: Vec<(Operation, Vec<Instruction>)>, otherwise: Vec<Instruction> },
     For { slot: usize, bounds: Box<Bounds>, body: Vec<Instruction> },
     While { condition: Operation, body: Vec<Instruction> },

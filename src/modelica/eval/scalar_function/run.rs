@@ -110,7 +110,7 @@ impl Run<'_> {
             Instruction::For { slot, bounds, body } => return self.for_loop(*slot, bounds, body),
             Instruction::While { condition, body } => {
                 while self.condition(condition)? {
-                    match self.turn(body)? {
+                    match self.iteration(body)? {
                         Flow::Next => {}
                         Flow::Break => return Some(Flow::Next),
                         Flow::Return => return Some(Flow::Return),
@@ -136,7 +136,7 @@ impl Run<'_> {
         let range = Range::new(&start, step.as_ref(), &stop).ok()?;
         for at in 0..range.count() {
             self.slots[slot] = Some(Scalar::of(&range.get(at))?);
-            match self.turn(body)? {
+            match self.iteration(body)? {
                 Flow::Next => {}
                 Flow::Break => return Some(Flow::Next),
                 Flow::Return => return Some(Flow::Return),
@@ -145,8 +145,8 @@ impl Run<'_> {
         Some(Flow::Next)
     }
 
-    /// A turn of a loop, unless the user wants to stop.
-    fn turn(&mut self, body: &[Instruction]) -> Option<Flow> {
+    /// An iteration of a loop, unless the user stops it.
+    fn iteration(&mut self, body: &[Instruction]) -> Option<Flow> {
         match self.host.interrupted() {
             None => self.instructions(body),
             Some(_) => None,

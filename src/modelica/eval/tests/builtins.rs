@@ -52,7 +52,7 @@ fn every_function_of_the_table_is_callable() {
 }
 
 #[test]
-fn text_of_numbers() {
+fn numbers_as_strings() {
     assert_eq!(eval("String(3.14159265)"), "\"3.14159\"");
     assert_eq!(eval("String(1.5, significantDigits=3)"), "\"1.5\"");
     assert_eq!(eval("String(5, minimumLength=6)"), "\"5     \"");

@@ -23,7 +23,7 @@ pub(super) struct TestHost {
     builtins: IndexMap<String, Arc<Function>>,
     records: IndexMap<String, Arc<IndexMap<Ident, FunctionComponent>>>,
     enumerations: IndexMap<String, Arc<EnumerationDefinition>>,
-    pub(super) turns: Vec<(usize, Option<usize>)>,
+    pub(super) iterations: Vec<(usize, Option<usize>)>,
     pub(super) assigned: Vec<(String, Value)>,
     pub(super) builtin_calls: Vec<Vec<Value>>,
     pub(super) warnings: Vec<Diagnostic>,
@@ -242,8 +242,8 @@ impl Host for TestHost {
         self.functions.keys().cloned().collect()
     }
 
-    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
-        self.turns.push((turn, turns));
+    fn loop_iteration(&mut self, iteration: usize, iterations: Option<usize>) {
+        self.iterations.push((iteration, iterations));
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

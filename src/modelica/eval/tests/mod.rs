@@ -40,7 +40,7 @@ fn value_of(text: &str) -> Result<Value, Diagnostic> {
     evaluate(&expression, &mut Scope::script(), &mut TestHost::default())
 }
 
-/// Runs a script of statements and function definitions, and shows one expression behind it.
+/// Runs a script of statements and function definitions, and shows one expression after it.
 fn run(script: &str, shown: &str) -> String {
     match try_run(script, shown) {
         Ok(value) => show(&value, Style::OpenModelica),

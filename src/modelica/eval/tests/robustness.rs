@@ -102,8 +102,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn evaluation_never_panics(texts in proptest::collection::vec(expressions(), 8)) {
-        for text in texts {
+    fn evaluation_never_panics(strings in proptest::collection::vec(expressions(), 8)) {
+        for text in strings {
             if let Ok(expression) = parse_expression(SourceId::NONE, &text) {
                 let _ = evaluate(&expression, &mut Scope::script(), &mut TestHost::default());
             }

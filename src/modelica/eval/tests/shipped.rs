@@ -10,11 +10,11 @@ use crate::value::show::{Style, show};
 
 fn with_shipped(script: &str, shown: &str) -> String {
     let mut host = TestHost::default();
-    let texts = [
+    let strings = [
         include_str!("../../../../models/GAPILib/Basics/Cross.mo"),
         include_str!("../../../../models/GAPILib/Basics/Ram_Gen_ARENA.mo"),
     ];
-    for text in texts {
+    for text in strings {
         let definition = parse_stored_definition(SourceId::NONE, text).expect("reads");
         definition.classes.iter().for_each(|class| host.define(class));
     }
@@ -27,7 +27,7 @@ fn with_shipped(script: &str, shown: &str) -> String {
 }
 
 #[test]
-fn cross_exchanges_the_genes_behind_the_point() {
+fn cross_exchanges_the_genes_after_the_point() {
     let script = "old := [1, 2, 3, 4; 5, 6, 7, 8; 9, 10, 11, 12]; new := Cross(2, 1, old);";
     let expected = "{{1.0, 2.0, 3.0, 4.0}, {1.0, 2.0, 7.0, 8.0}, {5.0, 6.0, 3.0, 4.0}}";
     assert_eq!(with_shipped(script, "new"), expected);

@@ -63,12 +63,12 @@ fn a_loop_variable_hides_and_cannot_be_assigned() {
 }
 
 #[test]
-fn the_host_gets_dotted_targets_and_turns_of_outermost_loops() {
+fn the_host_gets_dotted_targets_and_iterations_of_outermost_loops() {
     let mut host = TestHost::default();
     let mut scope = Scope::script();
     let script = "for i in 1:2 loop for j in 1:5 loop x := j; end for; end for; M.p := 3;";
     run_in(script, &mut scope, &mut host).expect("runs");
-    assert_eq!(host.turns, [(0, Some(2)), (1, Some(2))]);
+    assert_eq!(host.iterations, [(0, Some(2)), (1, Some(2))]);
     assert_eq!(host.assigned, [("M.p".to_owned(), Value::Integer(3))]);
     assert_eq!(scope.get(Ident::new("x")), Some(&Value::Integer(5)));
     assert!(!scope.contains(Ident::new("i")));

@@ -57,7 +57,7 @@ fn free_schedule(_: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// `(schedule, column, time)`: column 1 is the one behind the time.
+/// `(schedule, column, time)`: column 1 is the one after the time.
 fn schedule_value(call: &mut Call<'_>) -> Result<(), Fault> {
     let (column, time) = (call.whole(1), call.number(2));
     let value = call.object::<Schedule>(0)?.value(column, time);

@@ -68,9 +68,9 @@ impl Schedule {
     pub fn value(&self, column: i64, time: f64) -> Option<f64> {
         let column = self.columns.get(usize::try_from(column - 1).ok()?)?;
         let time = (time - self.offset).rem_euclid(WEEK);
-        let behind = column.partition_point(|(change, _)| *change <= time);
+        let after = column.partition_point(|(change, _)| *change <= time);
         // Before the first change the last one of the week before holds.
-        let change = behind.checked_sub(1).unwrap_or(column.len() - 1);
+        let change = after.checked_sub(1).unwrap_or(column.len() - 1);
         Some(column[change].1)
     }
 }

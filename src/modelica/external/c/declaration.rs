@@ -57,7 +57,7 @@ pub struct Declaration {
     pub result: Option<Scalar>,
     /// The Modelica function that frees the object which this one makes (MLS §12.9.7).
     pub destructor: Option<String>,
-    /// The class of each argument that is an external object, and behind them that of the result.
+    /// The class of each argument that is an external object, followed by that of the result.
     pub objects: Vec<Option<String>>,
     /// What calls do besides giving results.
     pub effect: Effect,
@@ -99,7 +99,7 @@ impl Declaration {
         sources
     }
 
-    /// The names behind `#include` in its annotation.
+    /// The names after `#include` in its annotation.
     pub fn included(&self) -> impl Iterator<Item = &str> {
         let lines = self.include.as_deref().unwrap_or_default().lines();
         lines.filter_map(|line| {

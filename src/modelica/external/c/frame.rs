@@ -17,7 +17,7 @@ pub enum Cell {
     /// A `size_t`.
     Size(usize),
     /// Strings; where none was written, it stays.
-    Texts(Vec<CString>),
+    Strings(Vec<CString>),
     /// The address of an object.
     Object(usize),
 }
@@ -41,7 +41,7 @@ impl Frame {
         match declaration.result {
             Some(Scalar::Real) => cells.push(Cell::Reals(vec![0.0])),
             Some(Scalar::Whole) => cells.push(Cell::Wholes(vec![0])),
-            Some(Scalar::Text) => cells.push(Cell::Texts(vec![CString::default()])),
+            Some(Scalar::Text) => cells.push(Cell::Strings(vec![CString::default()])),
             Some(Scalar::Object) => cells.push(Cell::Object(0)),
             None => {}
         }
@@ -82,8 +82,8 @@ fn cell(
             match scalar {
                 Scalar::Real => Cell::Reals(numbers().to_vec()),
                 Scalar::Whole => Cell::Wholes(wholes(numbers(), is_output, call)?),
-                Scalar::Text if is_output => Cell::Texts(vec![CString::default()]),
-                Scalar::Text => Cell::Texts(texts(slot, call)?),
+                Scalar::Text if is_output => Cell::Strings(vec![CString::default()]),
+                Scalar::Text => Cell::Strings(strings(slot, call)?),
                 Scalar::Object => Cell::Object(object(declaration, at, call)?.address()),
             }
         }
@@ -99,12 +99,12 @@ fn object<'c>(
     let object: &CObject = call.object(at)?;
     let name = |class: &Option<String>| class.clone().unwrap_or_default();
     match declaration.objects.get(at) {
-        Some(wanted) if *wanted == object.class => Ok(object),
-        wanted => Err(call.fault(format!(
+        Some(expected) if *expected == object.class => Ok(object),
+        expected => Err(call.fault(format!(
             "argument {} is an object of the class `{}`, not of `{}`",
             at + 1,
             name(&object.class),
-            wanted.map(name).unwrap_or_default()
+            expected.map(name).unwrap_or_default()
         ))),
     }
 }
@@ -125,7 +125,7 @@ fn wholes(numbers: &[f64], is_output: bool, call: &Call<'_>) -> Result<Vec<i32>,
     numbers.iter().map(convert).collect()
 }
 
-fn texts(slot: &Slot, call: &Call<'_>) -> Result<Vec<CString>, Fault> {
+fn strings(slot: &Slot, call: &Call<'_>) -> Result<Vec<CString>, Fault> {
     let strings = &call.strings[slot.first as usize..][..slot.len()];
     let convert = |text: &std::sync::Arc<str>| {
         CString::new(text.as_bytes()).map_err(|_| call.fault("a String contains a zero byte"))
@@ -143,17 +143,17 @@ fn write(cell: Cell, slot: &Slot, call: &mut Call<'_>) -> Result<(), Fault> {
             }
         }
         // Arrays of Strings are only read.
-        Cell::Texts(texts) if slot.dims.is_empty() => {
-            let text = texts.into_iter().next().unwrap_or_default().into_string();
+        Cell::Strings(strings) if slot.dims.is_empty() => {
+            let text = strings.into_iter().next().unwrap_or_default().into_string();
             let text = text.map_err(|_| call.fault("the String returned is not valid UTF-8"))?;
             call.written.push((slot.first, text.into()));
         }
-        Cell::Texts(_) | Cell::Size(_) | Cell::Object(_) => {}
+        Cell::Strings(_) | Cell::Size(_) | Cell::Object(_) => {}
     }
     Ok(())
 }
 
-/// An object that C has made; freed by its destructor when nobody holds it any more.
+/// An object that C has made; freed by its destructor when the last reference is dropped.
 pub(crate) struct CObject {
     pub(super) library: Arc<dyn CLibrary>,
     pub(super) address: usize,
@@ -173,7 +173,7 @@ impl Drop for CObject {
     fn drop(&mut self) {
         if let Some(destructor) = self.destructor {
             let cells = vec![Cell::Object(self.address)];
-            // Nobody is left to tell that a destructor failed.
+            // There is no caller to report a failed destructor to.
             let _ = self.library.invoke(destructor, &mut Frame { cells, ..Frame::default() });
         }
     }

@@ -47,21 +47,21 @@ impl CFunction {
     }
 }
 
-/// The entry of the function that is wanted of a loaded unit. Entries live as long as the program:
+/// The entry of the requested function in a loaded unit. Entries live as long as the program:
 /// there is one for each function of each unit.
 pub fn entry(request: &Request, library: &Arc<dyn CLibrary>) -> &'static Entry {
     type Known = Mutex<FxHashMap<(String, usize), &'static Entry>>;
     static KNOWN: OnceLock<Known> = OnceLock::new();
     let known = KNOWN.get_or_init(Known::default);
     let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-    let key = (library.key().to_owned(), request.wanted);
+    let key = (library.key().to_owned(), request.requested);
     known.entry(key).or_insert_with(|| {
-        let declaration = request.wanted().clone();
+        let declaration = request.requested().clone();
         let freed_by = declaration.destructor.as_ref();
         let position = |class: &String| request.declarations.iter().position(|d| d.class == *class);
         let function = CFunction {
             library: library.clone(),
-            number: request.wanted,
+            number: request.requested,
             destructor: freed_by.and_then(position),
             declaration: declaration.clone(),
         };

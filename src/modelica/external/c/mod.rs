@@ -1,4 +1,5 @@
-//! External functions in C that a library brings along (MLS §12.9), compiled by whoever may do so.
+//! External functions in C that a library brings along (MLS §12.9), compiled by the host where that
+//! is allowed.
 //!
 //! ```text
 //! Declaration ─wrapper▶ Unit (C) ─CCompiler▶ CLibrary ─CFunction▶ an Entry like those in Rust
@@ -62,23 +63,23 @@ pub trait CLibrary: Send + Sync {
     fn invoke(&self, function: usize, frame: &mut Frame) -> Result<(), String>;
 }
 
-/// Functions that are wanted of one library.
+/// Functions that are requested of one library.
 #[derive(Debug, Clone)]
 pub struct Request {
     /// All that are compiled together, sorted by name.
     pub declarations: Vec<Declaration>,
     /// The one that is called.
-    pub wanted: usize,
+    pub requested: usize,
 }
 
 impl Request {
-    /// Of all functions at hand those that share variables with the one that is wanted, directly or
+    /// Of all functions at hand those that share variables with the requested one, directly or
     /// through others. What does not belong to it cannot keep it from being compiled.
-    pub fn new(wanted: Declaration, mut others: Vec<Declaration>) -> Request {
-        let mut sources = wanted.sources();
-        others.retain(|other| other.class != wanted.class);
-        let class = wanted.class.clone();
-        let mut declarations = vec![wanted];
+    pub fn new(requested: Declaration, mut others: Vec<Declaration>) -> Request {
+        let mut sources = requested.sources();
+        others.retain(|other| other.class != requested.class);
+        let class = requested.class.clone();
+        let mut declarations = vec![requested];
         loop {
             let shares = |other: &Declaration| !other.sources().is_disjoint(&sources);
             let (near, far): (Vec<_>, Vec<_>) = others.into_iter().partition(shares);
@@ -91,12 +92,12 @@ impl Request {
         }
         declarations.sort_by(|a, b| a.class.cmp(&b.class));
         declarations.dedup_by(|a, b| a.class == b.class);
-        let wanted = declarations.iter().position(|one| one.class == class).unwrap_or(0);
-        Request { declarations, wanted }
+        let requested = declarations.iter().position(|one| one.class == class).unwrap_or(0);
+        Request { declarations, requested }
     }
 
     /// The function that is called.
-    pub fn wanted(&self) -> &Declaration {
-        &self.declarations[self.wanted]
+    pub fn requested(&self) -> &Declaration {
+        &self.declarations[self.requested]
     }
 }

@@ -48,7 +48,7 @@ fn c_type(scalar: Scalar) -> &'static str {
     }
 }
 
-/// Without `Include` nobody else declares the function (MLS §12.9.4).
+/// Without `Include` the function has no other declaration (MLS §12.9.4).
 fn prototype(text: &mut String, declaration: &Declaration) {
     let types = declaration.arguments.iter().map(|argument| match argument {
         Argument::Value(scalar) => c_type(*scalar).to_owned(),
@@ -74,9 +74,9 @@ fn wrapper(text: &mut String, number: usize, declaration: &Declaration) {
         }
     });
     let arguments = arguments.collect::<Vec<_>>().join(", ");
-    let behind = declaration.arguments.len();
+    let after = declaration.arguments.len();
     let result = match declaration.result {
-        Some(scalar) => format!("*({} *)at[{behind}] = ", c_type(scalar)),
+        Some(scalar) => format!("*({} *)at[{after}] = ", c_type(scalar)),
         None => String::new(),
     };
     let _ = write!(

@@ -48,23 +48,23 @@ impl Extrapolation {
 
 /// Where a number stands among abscissae.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Place {
+pub enum Interval {
     /// In the interval of this number, at this abscissa (which differs from the number asked for
     /// in periodic tables).
     Inside(usize, f64),
     /// Before the first point.
     Before(f64),
-    /// Behind the last point.
-    Behind(f64),
+    /// After the last point.
+    After(f64),
 }
 
 /// Places `u` among abscissae that do not decrease; `None` where extrapolation is refused. An
 /// abscissa belongs to the interval that it begins; the last one to the last interval.
-pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64, near: &Near) -> Option<Place> {
+pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64, near: &Near) -> Option<Interval> {
     let (Some(first), Some(last)) = (x.first().copied(), x.last().copied()) else { return None };
     let inside = |u: f64| {
         let interval = near.last_up_to(x, u);
-        Place::Inside(interval.min(x.len().saturating_sub(2)), u)
+        Interval::Inside(interval.min(x.len().saturating_sub(2)), u)
     };
     if (first..=last).contains(&u) {
         return Some(inside(u));
@@ -76,8 +76,8 @@ pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64, near: &Near) -> Op
             Some(inside(within.clamp(first, last)))
         }
         Extrapolation::Refused => None,
-        _ if u < first => Some(Place::Before(u)),
-        _ => Some(Place::Behind(u)),
+        _ if u < first => Some(Interval::Before(u)),
+        _ => Some(Interval::After(u)),
     }
 }
 
@@ -110,41 +110,41 @@ impl Near {
 pub struct Curve {
     y: Vec<f64>,
     smoothness: Smoothness,
-    slopes: Vec<f64>,
+    derivatives: Vec<f64>,
 }
 
 impl Curve {
     /// Through points whose abscissae do not decrease; for splines they increase strictly.
     pub fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
-        let slopes = match smoothness {
-            Smoothness::Spline(spline) if x.len() > 1 => spline.slopes(x, &y),
+        let derivatives = match smoothness {
+            Smoothness::Spline(spline) if x.len() > 1 => spline.derivatives(x, &y),
             _ => Vec::new(),
         };
-        Curve { y, smoothness, slopes }
+        Curve { y, smoothness, derivatives }
     }
 
     /// Value, first and second derivative.
-    pub fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Place) -> [f64; 3] {
+    pub fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Interval) -> [f64; 3] {
         let n = x.len();
         if n == 1 {
             return [self.y[0], 0.0, 0.0];
         }
         let (interval, end, u) = match place {
-            Place::Inside(interval, u) => return self.inside(x, interval, u),
-            Place::Before(u) => (0, 0, u),
-            Place::Behind(u) => (n - 2, n - 1, u),
+            Interval::Inside(interval, u) => return self.inside(x, interval, u),
+            Interval::Before(u) => (0, 0, u),
+            Interval::After(u) => (n - 2, n - 1, u),
         };
         if extrapolation == Extrapolation::Hold {
             return [self.y[end], 0.0, 0.0];
         }
         // Steps go on as a line through the last two points.
-        let slope = match self.smoothness {
+        let derivative = match self.smoothness {
             Smoothness::Constant if x[interval] < x[interval + 1] => {
                 (self.y[interval + 1] - self.y[interval]) / (x[interval + 1] - x[interval])
             }
             _ => self.inside(x, interval, x[end])[1],
         };
-        [self.y[end] + slope * (u - x[end]), slope, 0.0]
+        [self.y[end] + derivative * (u - x[end]), derivative, 0.0]
     }
 
     /// The segment of an interval, continued where `u` is not in it.
@@ -158,12 +158,12 @@ impl Curve {
             Smoothness::Constant => [y0, 0.0, 0.0],
             _ if h == 0.0 => [y1, 0.0, 0.0],
             Smoothness::Linear => {
-                let slope = (y1 - y0) / h;
-                let value = if u == x[i + 1] { y1 } else { y0 + slope * s };
-                [value, slope, 0.0]
+                let derivative = (y1 - y0) / h;
+                let value = if u == x[i + 1] { y1 } else { y0 + derivative * s };
+                [value, derivative, 0.0]
             }
             Smoothness::Spline(_) => {
-                let (d0, d1) = (self.slopes[i], self.slopes[i + 1]);
+                let (d0, d1) = (self.derivatives[i], self.derivatives[i + 1]);
                 let m = (y1 - y0) / h;
                 let (c2, c3) = ((3.0 * m - 2.0 * d0 - d1) / h, (d0 + d1 - 2.0 * m) / (h * h));
                 [

@@ -1,6 +1,6 @@
 //! `CombiTable1D`: several functions of one variable.
 
-use super::curve::{Curve, Extrapolation, Near, Place, Smoothness, place};
+use super::curve::{Curve, Extrapolation, Interval, Near, Smoothness, place};
 use super::source::{Matrix, Source};
 use crate::diag::Fault;
 use crate::elementary;
@@ -17,7 +17,7 @@ pub(crate) struct Table1D {
 }
 
 impl Table1D {
-    /// From a matrix and arguments of the call: the columns wanted, smoothness, extrapolation.
+    /// From a matrix and arguments of the call: the requested columns, smoothness, extrapolation.
     /// Abscissae may repeat if `jumps`, but not for splines.
     pub fn new(
         call: &Call<'_>,
@@ -60,7 +60,7 @@ impl Table1D {
             .ok_or_else(|| call.fault(format!("there is no column {column}")))
     }
 
-    pub fn place(&self, call: &Call<'_>, u: f64) -> Result<Place, Fault> {
+    pub fn place(&self, call: &Call<'_>, u: f64) -> Result<Interval, Fault> {
         if u.is_nan() {
             return Err(call.fault("the abscissa is not a number"));
         }
@@ -124,14 +124,14 @@ pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `f′(u) u′`
 pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, slope, _] = evaluated(call)?;
-    call.give(slope * call.number(3))
+    let [_, derivative, _] = evaluated(call)?;
+    call.give(derivative * call.number(3))
 }
 
 /// `f″(u) u′² + f′(u) u″`
 pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, slope, curvature] = evaluated(call)?;
-    call.give(curvature * elementary::powi(call.number(3), 2) + slope * call.number(4))
+    let [_, derivative, curvature] = evaluated(call)?;
+    call.give(curvature * elementary::powi(call.number(3), 2) + derivative * call.number(4))
 }
 
 /// The first abscissa.

@@ -1,15 +1,15 @@
-//! Slopes of cubic Hermite splines through points with strictly increasing abscissae.
+//! Derivatives of cubic Hermite splines through points with strictly increasing abscissae.
 //!
 //! References: [Akima 1970](gapilib_base::bibliography#akima-1970),
 //! [Fritsch & Butland 1984](gapilib_base::bibliography#fritsch-butland-1984),
 //! [Steffen 1990](gapilib_base::bibliography#steffen-1990).
 
-/// How slopes are chosen.
+/// How the derivatives at the points are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Spline {
     /// Akima's weights.
     Akima,
-    /// Akima's weights with the mean slopes added, so that flat parts do not overshoot.
+    /// Akima's weights with the means of the secants added, so that flat parts do not overshoot.
     ModifiedAkima,
     /// The weighted harmonic mean of Fritsch and Butland; keeps monotonicity.
     FritschButland,
@@ -18,8 +18,8 @@ pub(crate) enum Spline {
 }
 
 impl Spline {
-    /// The slope at every point; at least two points.
-    pub fn slopes(self, x: &[f64], y: &[f64]) -> Vec<f64> {
+    /// The derivative at every point; at least two points.
+    pub fn derivatives(self, x: &[f64], y: &[f64]) -> Vec<f64> {
         let h: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();
         let m: Vec<f64> = y.windows(2).zip(&h).map(|(y, h)| (y[1] - y[0]) / h).collect();
         if m.len() == 1 {
@@ -50,13 +50,13 @@ pub fn extended(m: &[f64]) -> Vec<f64> {
     all
 }
 
-/// The shares in the slope at a point of the secants before and behind it; `m` are the two secants
-/// on either side.
+/// The shares of the secants before and after a point in the derivative there; `m` are the two
+/// secants on either side.
 pub fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
-    let (before, behind) = (weight(m[2], m[3]), weight(m[0], m[1]));
-    match before + behind {
+    let (before, after) = (weight(m[2], m[3]), weight(m[0], m[1]));
+    match before + after {
         0.0 => [0.5, 0.5],
-        sum => [before / sum, behind / sum],
+        sum => [before / sum, after / sum],
     }
 }
 
@@ -67,21 +67,21 @@ pub fn difference(a: f64, b: f64) -> f64 {
 
 /// w₋ m₋ + w₊ m₊ with shares by the neighbours' secants.
 fn akima(m: &[f64], weight: fn(f64, f64) -> f64) -> Vec<f64> {
-    let slope = |m: &[f64]| {
-        let [before, behind] = shares(m, weight);
-        before * m[1] + behind * m[2]
+    let derivative = |m: &[f64]| {
+        let [before, after] = shares(m, weight);
+        before * m[1] + after * m[2]
     };
-    extended(m).windows(4).map(slope).collect()
+    extended(m).windows(4).map(derivative).collect()
 }
 
-/// Slopes between two intervals; at the ends those of the first and of the last interval, as in
-/// the standard library.
+/// Derivatives between two intervals; at the ends those of the first and of the last interval, as
+/// in the standard library.
 fn inner_and_ends(h: &[f64], m: &[f64], inner: fn([f64; 2], [f64; 2]) -> f64) -> Vec<f64> {
     let n = m.len();
-    let mut slopes = vec![m[0]];
-    slopes.extend((1..n).map(|i| inner([h[i - 1], h[i]], [m[i - 1], m[i]])));
-    slopes.push(m[n - 1]);
-    slopes
+    let mut derivatives = vec![m[0]];
+    derivatives.extend((1..n).map(|i| inner([h[i - 1], h[i]], [m[i - 1], m[i]])));
+    derivatives.push(m[n - 1]);
+    derivatives
 }
 
 fn fritsch_butland(h: [f64; 2], m: [f64; 2]) -> f64 {

@@ -1,21 +1,22 @@
 //! A smooth function of two variables through the points of a grid: on every cell a polynomial of
-//! third degree in each variable, with Akima's slopes ([Akima 1974](gapilib_base::bibliography#akima-1974)).
+//! third degree in each variable, with Akima's derivatives ([Akima
+//! 1974](gapilib_base::bibliography#akima-1974)).
 
 use super::spline::{Spline, difference, extended, shares};
 
-/// Value, both slopes and the mixed derivative at every point of the grid, row-major.
+/// Value, both first derivatives and the mixed derivative at every point of the grid, row-major.
 #[derive(Debug)]
 pub struct Surface {
     nodes: Vec<[f64; 4]>,
 }
 
-/// Where an abscissa lies in an interval of its axis: weights of the values and of the slopes at
-/// both ends for the value, the first and the second derivative.
+/// Where an abscissa lies in an interval of its axis: weights of the values and of the derivatives
+/// at both ends for the value, the first and the second derivative.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Basis {
     low: usize,
     high: usize,
-    /// By order of the derivative: low value, low slope, high value, high slope.
+    /// By order of the derivative: low value, low derivative, high value, high derivative.
     weights: [[f64; 4]; 3],
 }
 
@@ -60,7 +61,12 @@ impl Surface {
                     true => twist(0, 0) + twist(0, 1) + twist(1, 0) + twist(1, 1),
                     false => 0.0,
                 };
-                nodes.push([z[i * columns + j], by_x[j].slopes[i], by_y[i].slopes[j], zxy]);
+                nodes.push([
+                    z[i * columns + j],
+                    by_x[j].derivatives[i],
+                    by_y[i].derivatives[j],
+                    zxy,
+                ]);
             }
         }
         Surface { nodes }
@@ -80,19 +86,19 @@ impl Surface {
     }
 }
 
-/// A line of the grid: slopes at its points, and the shares of the secants in them.
+/// A line of the grid: derivatives at its points, and the shares of the secants in them.
 struct Line {
-    slopes: Vec<f64>,
+    derivatives: Vec<f64>,
     shares: Vec<[f64; 2]>,
 }
 
 impl Line {
     fn new(x: &[f64], z: &[f64]) -> Line {
         if x.len() == 1 {
-            return Line { slopes: vec![0.0], shares: vec![[0.5, 0.5]] };
+            return Line { derivatives: vec![0.0], shares: vec![[0.5, 0.5]] };
         }
         let shares = extended(&secants(x, z)).windows(4).map(|m| shares(m, difference)).collect();
-        Line { slopes: Spline::Akima.slopes(x, z), shares }
+        Line { derivatives: Spline::Akima.derivatives(x, z), shares }
     }
 }
 

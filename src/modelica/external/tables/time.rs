@@ -1,6 +1,6 @@
 //! `CombiTimeTable`: a table over time with its events.
 //!
-//! At an event the value before is wanted until the event has been handled: while `time` has
+//! At an event the value before it holds until the event has been handled: while `time` has
 //! reached the next event, the segment that ends there goes on.
 
 use super::curve::{Extrapolation, Smoothness};
@@ -113,14 +113,14 @@ pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `f′(t) t′`
 pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, slope, _] = evaluated(call)?;
-    call.give(slope * call.number(5))
+    let [_, derivative, _] = evaluated(call)?;
+    call.give(derivative * call.number(5))
 }
 
 /// `f″(t) t′² + f′(t) t″`
 pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, slope, curvature] = evaluated(call)?;
-    call.give(curvature * elementary::powi(call.number(5), 2) + slope * call.number(6))
+    let [_, derivative, curvature] = evaluated(call)?;
+    call.give(curvature * elementary::powi(call.number(5), 2) + derivative * call.number(6))
 }
 
 /// The first abscissa.

@@ -3,7 +3,7 @@
 //! The first column holds the abscissae of the first variable, the first row those of the second.
 //! Piecewise constant, bilinear, or smooth by Akima's bivariate interpolation.
 
-use super::curve::{Extrapolation, Near, Place, Smoothness, place};
+use super::curve::{Extrapolation, Interval, Near, Smoothness, place};
 use super::one::ordered;
 use super::source::Source;
 use super::spline::Spline;
@@ -95,18 +95,18 @@ impl Table2D {
             call.fault(format!("{u} is outside the table range {} to {}", x[0], x[n - 1]))
         })?;
         let (interval, end) = match place {
-            Place::Inside(interval, u) => {
+            Interval::Inside(interval, u) => {
                 return Ok(Position { interval, u, beyond: 0.0, held: false });
             }
-            Place::Before(_) => (0, x[0]),
-            Place::Behind(_) => (n.saturating_sub(2), x[n - 1]),
+            Interval::Before(_) => (0, x[0]),
+            Interval::After(_) => (n.saturating_sub(2), x[n - 1]),
         };
         let held = n == 1 || self.extrapolation == Extrapolation::Hold;
         let beyond = if held { 0.0 } else { u - end };
         Ok(Position { interval, u: end, beyond, held })
     }
 
-    /// Value, both slopes, the mixed derivative, both second derivatives.
+    /// Value, both first derivatives, the mixed derivative, both second derivatives.
     fn at(&self, a: Position, b: Position) -> [f64; 6] {
         match &self.shape {
             Shape::Smooth(surface) => self.smooth(surface, a, b),
@@ -125,9 +125,9 @@ impl Table2D {
         let d = |i: usize, j: usize| surface.derivative(self.y.len(), &p, &q, i, j);
         let (s, t) = (a.beyond, b.beyond);
         let mixed = d(1, 1);
-        let free = |held: bool, slope: f64| if held { 0.0 } else { slope };
-        let curved = |position: Position, slope: f64| match position.beyond == 0.0 {
-            true => free(position.held, slope),
+        let free = |held: bool, value: f64| if held { 0.0 } else { value };
+        let curved = |position: Position, value: f64| match position.beyond == 0.0 {
+            true => free(position.held, value),
             false => 0.0,
         };
         [
@@ -148,9 +148,9 @@ impl Table2D {
         let (near, far) = (along(z00, z10, a.share), along(z01, z11, a.share));
         [
             along(near, far, b.share),
-            along(z10 - z00, z11 - z01, b.share) * a.slope,
-            (far - near) * b.slope,
-            (z11 - z01 - z10 + z00) * a.slope * b.slope,
+            along(z10 - z00, z11 - z01, b.share) * a.share_rate,
+            (far - near) * b.share_rate,
+            (z11 - z01 - z10 + z00) * a.share_rate * b.share_rate,
             0.0,
             0.0,
         ]
@@ -166,26 +166,26 @@ fn step(x: &[f64], position: Position) -> usize {
     if position.u >= x[x.len() - 1] { x.len() - 1 } else { position.interval }
 }
 
-/// One variable's interval, its share of it (beyond 0 and 1 where extrapolated) and the slope of
-/// the share.
+/// One variable's interval, its share of it (beyond 0 and 1 where extrapolated) and the derivative
+/// of the share.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
     low: usize,
     high: usize,
     share: f64,
-    slope: f64,
+    share_rate: f64,
 }
 
 impl Axis {
     fn new(x: &[f64], position: Position) -> Axis {
         if x.len() == 1 {
-            return Axis { low: 0, high: 0, share: 0.0, slope: 0.0 };
+            return Axis { low: 0, high: 0, share: 0.0, share_rate: 0.0 };
         }
         let low = position.interval;
-        let slope = 1.0 / (x[low + 1] - x[low]);
-        let share = (position.u + position.beyond - x[low]) * slope;
-        let slope = if position.held { 0.0 } else { slope };
-        Axis { low, high: low + 1, share, slope }
+        let share_rate = 1.0 / (x[low + 1] - x[low]);
+        let share = (position.u + position.beyond - x[low]) * share_rate;
+        let share_rate = if position.held { 0.0 } else { share_rate };
+        Axis { low, high: low + 1, share, share_rate }
     }
 }
 

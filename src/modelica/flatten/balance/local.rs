@@ -66,7 +66,7 @@ struct Counts {
 
 /// Where in a class a variable stands.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct Ownership {
     owner: NodeId,
     public: bool,
     in_connector: bool,
@@ -110,7 +110,7 @@ impl Instantiation<'_> {
         let mut counts = IndexMap::new();
         let mut owners = FxHashMap::default();
         counts.insert(self.classes.tree.root, Counts::default());
-        let place = Place { owner: self.classes.tree.root, public: true, in_connector: false };
+        let place = Ownership { owner: self.classes.tree.root, public: true, in_connector: false };
         self.classes.count_variables(
             self.classes.tree.root,
             place,
@@ -211,7 +211,7 @@ impl Classes<'_> {
     fn count_variables(
         &mut self,
         node: NodeId,
-        place: Place,
+        place: Ownership,
         model: &FlatModel,
         counts: &mut IndexMap<NodeId, Counts>,
         owners: &mut FxHashMap<NodeId, NodeId>,
@@ -226,7 +226,7 @@ impl Classes<'_> {
                 _ => continue,
             };
             for one in nodes {
-                let mut inner = Place { public: place.public && !hidden, ..place };
+                let mut inner = Ownership { public: place.public && !hidden, ..place };
                 if self.is_open_overdetermined(one, inner) {
                     self.mark_unclear(place.owner, counts);
                 }
@@ -244,7 +244,7 @@ impl Classes<'_> {
                 if is_model && !inner.in_connector {
                     let holder = Some(place.owner);
                     counts.insert(one, Counts { holder, ..Counts::default() });
-                    inner = Place { owner: one, public: true, in_connector: false };
+                    inner = Ownership { owner: one, public: true, in_connector: false };
                 } else if self.is_expandable(one) {
                     self.mark_unclear(place.owner, counts);
                 }
@@ -255,7 +255,7 @@ impl Classes<'_> {
 
     /// Whether the outside decides which equations an overdetermined type in a connector of the model
     /// gets. In components the connections show it.
-    fn is_open_overdetermined(&mut self, node: NodeId, place: Place) -> bool {
+    fn is_open_overdetermined(&mut self, node: NodeId, place: Ownership) -> bool {
         let is_open = place.in_connector && place.public && place.owner == self.tree.root;
         is_open && self.is_overdetermined(node).unwrap_or(false)
     }
@@ -272,7 +272,7 @@ impl Classes<'_> {
     fn count_variable(
         &self,
         node: NodeId,
-        place: Place,
+        place: Ownership,
         model: &FlatModel,
         counts: &mut IndexMap<NodeId, Counts>,
     ) {
@@ -297,7 +297,7 @@ impl Classes<'_> {
         }
         let Some(count) = counts.get_mut(&place.owner) else { return };
         count.unknowns += n;
-        // The outside determines flows and inputs; a flow that nobody sees outside is zero.
+        // The outside determines flows and inputs; a flow that is not visible outside is zero.
         if is_flow || is_open_input {
             count.equations += n;
         }
@@ -449,8 +449,8 @@ impl Tree {
     }
 }
 
-/// The instances with `outer output` components, and those that hold the variables behind these:
-/// in a state machine several equations determine one variable in turn (MLS §17.3.5).
+/// The instances with `outer output` components, and those that hold the variables to which these
+/// refer: in a state machine several equations determine one variable in turn (MLS §17.3.5).
 fn determined_from_inside(model: &FlatModel) -> BTreeSet<&str> {
     let mut paths = BTreeSet::new();
     for part in model.parts.iter().filter(|part| !part.outputs.is_empty()) {

@@ -6,7 +6,7 @@ use super::{imports, names};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{ILLEGAL_ACCESS, ILLEGAL_IMPORT};
-use crate::flatten::library::Question;
+use crate::flatten::library::BaseProperty;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
@@ -111,5 +111,5 @@ fn is_package_like(class: Scope<'_>) -> bool {
         });
         !only_constants || class.sections().iter().any(super::restrictions::is_behaviour)
     };
-    class.first(Question::NoPackage, has_more).is_none()
+    class.first(BaseProperty::NoPackage, has_more).is_none()
 }

@@ -36,7 +36,7 @@ struct Around {
 /// Checks the own sections of a class.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
-    let mut walk = Walk { class, loops: Vec::new(), errors };
+    let mut walk = BehaviourCheck { class, loops: Vec::new(), errors };
     if !is_function {
         class.components().for_each(|component| walk.discrete_with_value(&component));
     }
@@ -70,14 +70,14 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     }
 }
 
-struct Walk<'a, 'e> {
+struct BehaviourCheck<'a, 'e> {
     class: Scope<'a>,
     /// The loop variables around.
     loops: Vec<Ident>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
-impl Walk<'_, '_> {
+impl BehaviourCheck<'_, '_> {
     fn wrong(&mut self, span: Span, message: &str, help: &str) {
         self.errors.push(fault!(MISPLACED, "{message}"; help: "{help}").at(span));
     }

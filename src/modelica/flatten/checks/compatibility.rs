@@ -36,10 +36,10 @@ fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, compared: &mut Compare
         let same = candidate.predefined() == Some(kind);
         return (!same).then(|| Lack(format!("`{}` has a different type", candidate.name())));
     }
-    for wanted in expected.lineage().flat_map(Scope::components) {
-        if wanted.visibility == Visibility::Public {
-            let found = candidate.component(wanted.name());
-            if let Some(lack) = component_lack(candidate, found, &wanted, compared) {
+    for required in expected.lineage().flat_map(Scope::components) {
+        if required.visibility == Visibility::Public {
+            let found = candidate.component(required.name());
+            if let Some(lack) = component_lack(candidate, found, &required, compared) {
                 return Some(lack);
             }
         }
@@ -50,17 +50,17 @@ fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, compared: &mut Compare
 fn component_lack(
     candidate: Scope<'_>,
     found: Option<Component<'_>>,
-    wanted: &Component<'_>,
+    expected: &Component<'_>,
     compared: &mut Compared,
 ) -> Option<Lack> {
-    let name = wanted.name();
+    let name = expected.name();
     let Some(found) = found.filter(|found| found.visibility == Visibility::Public) else {
         return Some(Lack(format!("`{}` has no public component `{name}`", candidate.name())));
     };
-    match (found.meaning()?, wanted.meaning()?) {
+    match (found.meaning()?, expected.meaning()?) {
         (Type::Predefined(a), Type::Predefined(b)) => (a != b).then(|| other_type(candidate, name)),
         (Type::Class(a), Type::Class(b)) => {
-            lack_within(found.owner.of(a), wanted.owner.of(b), compared)
+            lack_within(found.owner.of(a), expected.owner.of(b), compared)
         }
         (Type::Class(class), Type::Predefined(kind))
         | (Type::Predefined(kind), Type::Class(class)) => {

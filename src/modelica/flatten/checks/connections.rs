@@ -15,7 +15,7 @@ use crate::syntax::visit::{Visit, walk_equation};
 
 /// Checks the `connect` equations that a class itself writes.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
-    let mut walk = Walk { class, errors };
+    let mut walk = ConnectCheck { class, errors };
     for section in class.sections() {
         if let Section::Equations { equations, .. } = section {
             equations.iter().for_each(|equation| walk.equation(equation));
@@ -23,12 +23,12 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     }
 }
 
-struct Walk<'a, 'e> {
+struct ConnectCheck<'a, 'e> {
     class: Scope<'a>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
-impl Visit for Walk<'_, '_> {
+impl Visit for ConnectCheck<'_, '_> {
     fn equation(&mut self, equation: &Equation) {
         let EquationKind::Connect { left, right } = &equation.kind else {
             return walk_equation(self, equation);
@@ -40,7 +40,7 @@ impl Visit for Walk<'_, '_> {
     }
 }
 
-impl Walk<'_, '_> {
+impl ConnectCheck<'_, '_> {
     /// A reference to a variable, a record or a model.
     fn no_connector(&self, reference: &ComponentReference) -> Option<Diagnostic> {
         let path = self.class.path(reference)?;
@@ -81,7 +81,7 @@ impl Walk<'_, '_> {
     }
 
     /// A connector of a component of a component. Libraries use them, and what is meant is clear:
-    /// only those that are to conform in all are told.
+    /// it is reported only in strict conformance checks.
     fn too_deep(&self, reference: &ComponentReference) -> Option<Diagnostic> {
         if !self.class.library.is_strict() {
             return None;

@@ -5,7 +5,7 @@ use super::scope::Scope;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{DUPLICATE_ELEMENT, ILLEGAL_EXTENDS, RESERVED_NAME};
-use crate::flatten::library::Question;
+use crate::flatten::library::BaseProperty;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -182,7 +182,7 @@ fn base_that_stands_alone(
 
 /// What kind of class it is that cannot be extended together with anything else.
 fn alone(base: Scope<'_>) -> Option<&'static str> {
-    let array_or_prefix = base.first(Question::Alone, |class| special(class).is_some());
+    let array_or_prefix = base.first(BaseProperty::Alone, |class| special(class).is_some());
     let is_type = || base.predefined().is_some() || base.is_enumeration();
     array_or_prefix.and_then(special).or_else(|| is_type().then_some("a predefined type"))
 }
@@ -205,5 +205,5 @@ fn is_empty(class: Scope<'_>) -> bool {
         let behaves = class.sections().iter().any(super::restrictions::is_behaviour);
         class.components().next().is_some() || behaves
     };
-    class.first(Question::Content, has_content).is_none()
+    class.first(BaseProperty::Content, has_content).is_none()
 }

@@ -111,7 +111,7 @@ fn inherited(class: Scope<'_>, name: Ident, depth: usize) -> Option<Inherited<'_
     })
 }
 
-/// An element behind the modification of a base class, written in a class: a redeclaration decides
+/// An element after the modification of a base class, written in a class: a redeclaration decides
 /// anew whether it is replaceable, and may constrain it further.
 fn modified<'a>(
     writer: Scope<'a>,

@@ -23,7 +23,7 @@ pub struct Written {
 /// All names that a class itself writes, those of loop variables left out. What short classes
 /// write is looked up in the class around them and not listed.
 pub fn of(class: Scope<'_>) -> Vec<Written> {
-    let mut walk = Walk::default();
+    let mut walk = WrittenNames::default();
     if !matches!(class.definition().specifier, ClassSpecifier::Long(_)) {
         return Vec::new();
     }
@@ -59,12 +59,12 @@ pub fn is_component(class: Scope<'_>, name: Ident) -> bool {
 }
 
 #[derive(Default)]
-struct Walk {
+struct WrittenNames {
     written: Vec<Written>,
     loops: Vec<Ident>,
 }
 
-impl Walk {
+impl WrittenNames {
     fn element(&mut self, element: &Element) {
         match element {
             Element::Import(_) => {}
@@ -153,7 +153,7 @@ impl Walk {
     }
 }
 
-impl Visit for Walk {
+impl Visit for WrittenNames {
     fn reference(&mut self, reference: &ComponentReference) {
         walk_reference(self, reference);
         if reference.global || !self.loops.contains(&reference.parts[0].name) {

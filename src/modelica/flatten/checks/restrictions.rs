@@ -204,7 +204,7 @@ fn only_public_elements(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnosti
 
 fn no_behaviour(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {
     for section in class.sections() {
-        // Editors leave sections behind in which there is nothing.
+        // Editors leave empty sections.
         let (kind, span) = match section {
             Section::Equations { equations, span, .. } if !equations.is_empty() => {
                 ("equations", *span)

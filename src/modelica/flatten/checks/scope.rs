@@ -2,7 +2,7 @@
 
 use super::lineage::Lineage;
 use crate::flatten::declared::classes::Type;
-use crate::flatten::library::{ClassId, Library, Question};
+use crate::flatten::library::{BaseProperty, ClassId, Library};
 use crate::flatten::lookup::types::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
@@ -109,7 +109,7 @@ impl<'a> Scope<'a> {
     /// The first of its lineage that answers a question; each is asked once.
     pub fn first(
         self,
-        question: Question,
+        question: BaseProperty,
         answers: impl Fn(Scope<'a>) -> bool,
     ) -> Option<Scope<'a>> {
         let lineage = Lineage::of(self.library, self.class);
@@ -171,7 +171,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The class behind a row of short classes, and the prefixes that they add.
+    /// The class at the end of a chain of short classes, and the prefixes that they add.
     pub(crate) fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
         let mut class = self;
         let mut prefixes = Vec::new();
@@ -196,7 +196,7 @@ impl<'a> Scope<'a> {
     /// The predefined type that it is made of, through short classes and extends clauses.
     pub fn predefined(self) -> Option<Predefined> {
         let is_one = |class: Scope<'a>| class.own_predefined().is_some();
-        self.first(Question::Predefined, is_one)?.own_predefined()
+        self.first(BaseProperty::Predefined, is_one)?.own_predefined()
     }
 
     fn own_predefined(self) -> Option<Predefined> {
@@ -215,7 +215,7 @@ impl<'a> Scope<'a> {
 
     /// The enumeration that it is, by itself or through others.
     pub fn enumeration(self) -> Option<Scope<'a>> {
-        self.first(Question::Enumeration, |class| {
+        self.first(BaseProperty::Enumeration, |class| {
             matches!(class.definition().specifier, ClassSpecifier::Enumeration(_))
         })
     }

@@ -23,7 +23,7 @@ use std::cell::RefCell;
 
 /// The type of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum CheckedType {
     /// Real or Integer.
     Number,
     Boolean,
@@ -43,7 +43,7 @@ pub fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 
 fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
     let operations = RefCell::default();
-    let mut walk = Walk { class, with_values, loops: Vec::new(), operations, errors };
+    let mut walk = TypeCheck { class, with_values, loops: Vec::new(), operations, errors };
     for component in class.components() {
         walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
@@ -62,7 +62,7 @@ fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
     }
 }
 
-struct Walk<'a, 'e> {
+struct TypeCheck<'a, 'e> {
     class: Scope<'a>,
     /// Whether bindings, equations and assignments are checked.
     with_values: bool,
@@ -70,22 +70,22 @@ struct Walk<'a, 'e> {
     loops: Vec<Ident>,
     /// The types of the operations of the class, by where these are in memory: each term of a long sum
     /// asks for that of all terms before it.
-    operations: RefCell<FxHashMap<*const Expression, Option<Kind>>>,
+    operations: RefCell<FxHashMap<*const Expression, Option<CheckedType>>>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
-impl Walk<'_, '_> {
-    fn mismatch(&mut self, expression: &Expression, expected: &str, found: Kind) {
+impl TypeCheck<'_, '_> {
+    fn mismatch(&mut self, expression: &Expression, expected: &str, found: CheckedType) {
         let message = format!("{expected}, but this is {}", self.name(found));
         self.errors.push(fault!(TYPE_MISMATCH, "{message}").at(expression.span));
     }
 
-    fn name(&self, kind: Kind) -> String {
+    fn name(&self, kind: CheckedType) -> String {
         match kind {
-            Kind::Number => "a number".to_owned(),
-            Kind::Boolean => "a Boolean".to_owned(),
-            Kind::String => "a String".to_owned(),
-            Kind::Enumeration(class) => {
+            CheckedType::Number => "a number".to_owned(),
+            CheckedType::Boolean => "a Boolean".to_owned(),
+            CheckedType::String => "a String".to_owned(),
+            CheckedType::Enumeration(class) => {
                 format!("of the enumeration `{}`", self.class.of(class).name())
             }
         }
@@ -100,7 +100,7 @@ impl Walk<'_, '_> {
         };
         let (Some(declared), Some(found)) = (kind_of(component), self.kind(value)) else { return };
         let has_enumeration =
-            [declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)));
+            [declared, found].iter().any(|kind| matches!(kind, CheckedType::Enumeration(_)));
         if (has_enumeration || self.with_values) && !self.same(declared, found) {
             let name = component.name();
             self.mismatch(value, &format!("`{name}` is {}", self.name(declared)), found);
@@ -112,7 +112,7 @@ impl Walk<'_, '_> {
         let kinds = (self.kind_of_reference(target), self.kind(value));
         if let (Some(declared), Some(found)) = kinds
             && self.with_values
-            && ![declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)))
+            && ![declared, found].iter().any(|kind| matches!(kind, CheckedType::Enumeration(_)))
             && declared != found
         {
             let message = format!("`{}` is {}", target.name(), self.name(declared));
@@ -143,7 +143,9 @@ impl Walk<'_, '_> {
     }
 
     fn numeric(&mut self, operand: &Expression, needed: &str) {
-        if let Some(kind @ (Kind::Boolean | Kind::Enumeration(_))) = self.kind(operand) {
+        if let Some(kind @ (CheckedType::Boolean | CheckedType::Enumeration(_))) =
+            self.kind(operand)
+        {
             self.mismatch(operand, needed, kind);
         }
     }
@@ -152,7 +154,7 @@ impl Walk<'_, '_> {
     fn term(&mut self, operand: &Expression) {
         let before = self.errors.len();
         self.numeric(operand, "arithmetic needs numbers");
-        if let Some(Kind::Enumeration(_)) = self.kind(operand) {
+        if let Some(CheckedType::Enumeration(_)) = self.kind(operand) {
             for one in self.errors.split_off(before) {
                 self.errors.push(one.warning());
             }
@@ -172,7 +174,7 @@ impl Walk<'_, '_> {
     }
 
     fn condition(&mut self, condition: &Expression) {
-        if let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean) {
+        if let Some(kind) = self.kind(condition).filter(|kind| *kind != CheckedType::Boolean) {
             self.mismatch(condition, "a condition must be Boolean", kind);
         }
         self.expression(condition);
@@ -184,7 +186,7 @@ impl Walk<'_, '_> {
             && function.parts.len() == 1
             && function.parts[0].name.as_str() == "assert";
         if let (true, Some(condition)) = (is_assert, arguments.positional.first())
-            && let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean)
+            && let Some(kind) = self.kind(condition).filter(|kind| *kind != CheckedType::Boolean)
         {
             self.mismatch(condition, "the condition of `assert` must be Boolean", kind);
         }
@@ -201,9 +203,9 @@ impl Walk<'_, '_> {
 
     /// Whether two types are one: enumerations are distinguished by their literals and the order of
     /// these, not by their names (MLS §6.7).
-    fn same(&self, a: Kind, b: Kind) -> bool {
+    fn same(&self, a: CheckedType, b: CheckedType) -> bool {
         match (a, b) {
-            (Kind::Enumeration(a), Kind::Enumeration(b)) if a != b => {
+            (CheckedType::Enumeration(a), CheckedType::Enumeration(b)) if a != b => {
                 let (a, b) = (self.literals(a), self.literals(b));
                 a.is_some() && a == b
             }
@@ -221,13 +223,15 @@ impl Walk<'_, '_> {
     }
 
     /// The type of an expression, where the class tells.
-    fn kind(&self, expression: &Expression) -> Option<Kind> {
+    fn kind(&self, expression: &Expression) -> Option<CheckedType> {
         match &expression.kind {
-            ExpressionKind::Real(_) | ExpressionKind::Integer(_) => Some(Kind::Number),
-            ExpressionKind::Boolean(_) => Some(Kind::Boolean),
-            ExpressionKind::String(_) => Some(Kind::String),
+            ExpressionKind::Real(_) | ExpressionKind::Integer(_) => Some(CheckedType::Number),
+            ExpressionKind::Boolean(_) => Some(CheckedType::Boolean),
+            ExpressionKind::String(_) => Some(CheckedType::String),
             ExpressionKind::Reference(reference) => self.kind_of_reference(reference),
-            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(Kind::Boolean),
+            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => {
+                Some(CheckedType::Boolean)
+            }
             ExpressionKind::Binary { .. } => {
                 let known = self.operations.borrow().get(&std::ptr::from_ref(expression)).copied();
                 known.unwrap_or_else(|| self.kind_of_chain(expression))
@@ -237,7 +241,7 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn kind_of_chain(&self, expression: &Expression) -> Option<Kind> {
+    fn kind_of_chain(&self, expression: &Expression) -> Option<CheckedType> {
         let (first, operations) = expression.chain();
         operations.into_iter().fold(self.kind(first), |left, one| {
             let right = self.kind(one.right);
@@ -248,15 +252,15 @@ impl Walk<'_, '_> {
         })
     }
 
-    fn kind_of_call(&self, function: &ComponentReference) -> Option<Kind> {
+    fn kind_of_call(&self, function: &ComponentReference) -> Option<CheckedType> {
         let [name] = function.parts.as_slice() else { return None };
         let is_declared = self.class.class_named(&name.name.into()).is_some();
         let value_type = functions::find(name.name.as_str())?.value_type;
         (value_type == TypeRule::Boolean && !is_declared && !function.global)
-            .then_some(Kind::Boolean)
+            .then_some(CheckedType::Boolean)
     }
 
-    fn kind_of_reference(&self, reference: &ComponentReference) -> Option<Kind> {
+    fn kind_of_reference(&self, reference: &ComponentReference) -> Option<CheckedType> {
         if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
             return None;
         }
@@ -275,7 +279,7 @@ impl Walk<'_, '_> {
     }
 
     /// The enumeration of a literal `E.a`.
-    fn literal(&self, reference: &ComponentReference) -> Option<Kind> {
+    fn literal(&self, reference: &ComponentReference) -> Option<CheckedType> {
         let parts: Vec<Ident> = reference.parts.iter().map(|part| part.name).collect();
         let (last, path) = parts.split_last()?;
         let name = Name { global: reference.global, parts: path.to_vec() };
@@ -284,11 +288,11 @@ impl Walk<'_, '_> {
             return None;
         };
         let is_literal = literals.literals.iter().flatten().any(|one| one.name.node == *last);
-        is_literal.then_some(Kind::Enumeration(enumeration.class))
+        is_literal.then_some(CheckedType::Enumeration(enumeration.class))
     }
 }
 
-impl Visit for Walk<'_, '_> {
+impl Visit for TypeCheck<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
             ExpressionKind::Binary { .. } => {
@@ -302,7 +306,9 @@ impl Visit for Walk<'_, '_> {
             }
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
-                    if let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean) {
+                    if let Some(kind) =
+                        self.kind(condition).filter(|kind| *kind != CheckedType::Boolean)
+                    {
                         self.mismatch(condition, "a condition must be Boolean", kind);
                     }
                 }
@@ -352,7 +358,7 @@ impl Visit for Walk<'_, '_> {
 }
 
 /// The type that a component is declared of, if a scalar one; none if it can be redeclared.
-fn kind_of(component: &Component<'_>) -> Option<Kind> {
+fn kind_of(component: &Component<'_>) -> Option<CheckedType> {
     let prefixes = component.clause.prefixes;
     if prefixes.replaceable || prefixes.outer {
         return None;
@@ -368,10 +374,10 @@ fn kind_of(component: &Component<'_>) -> Option<Kind> {
         }
     };
     match (predefined, class) {
-        (Some(Predefined::Real | Predefined::Integer), _) => Some(Kind::Number),
-        (Some(Predefined::Boolean), _) => Some(Kind::Boolean),
-        (Some(Predefined::String), _) => Some(Kind::String),
-        (None, Some(enumeration)) => Some(Kind::Enumeration(enumeration.class)),
+        (Some(Predefined::Real | Predefined::Integer), _) => Some(CheckedType::Number),
+        (Some(Predefined::Boolean), _) => Some(CheckedType::Boolean),
+        (Some(Predefined::String), _) => Some(CheckedType::String),
+        (None, Some(enumeration)) => Some(CheckedType::Enumeration(enumeration.class)),
         _ => None,
     }
 }
@@ -385,13 +391,15 @@ fn is_logical(operator: BinaryOperator) -> bool {
     matches!(operator, BinaryOperator::And | BinaryOperator::Or)
 }
 
-fn kind_of_operation(operator: BinaryOperator, both: [Kind; 2]) -> Option<Kind> {
+fn kind_of_operation(operator: BinaryOperator, both: [CheckedType; 2]) -> Option<CheckedType> {
     match operator {
-        _ if is_relation(operator) || is_logical(operator) => Some(Kind::Boolean),
+        _ if is_relation(operator) || is_logical(operator) => Some(CheckedType::Boolean),
         BinaryOperator::Add
         | BinaryOperator::Subtract
         | BinaryOperator::Multiply
-        | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
+        | BinaryOperator::Divide => {
+            (both == [CheckedType::Number; 2]).then_some(CheckedType::Number)
+        }
         _ => None,
     }
 }

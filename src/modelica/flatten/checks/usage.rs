@@ -22,7 +22,7 @@ use crate::syntax::visit::{
 /// Checks the expressions that a class itself writes.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
-    let mut walk = Walk { class, is_function, conditional: false, errors };
+    let mut walk = UsageCheck { class, is_function, conditional: false, errors };
     for component in class.components() {
         walk.conditional = component.declaration.condition.is_some();
         component.declaration.modification.iter().for_each(|one| walk.modification(one));
@@ -42,7 +42,7 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     }
 }
 
-struct Walk<'a, 'e> {
+struct UsageCheck<'a, 'e> {
     class: Scope<'a>,
     is_function: bool,
     /// Whether a conditional component may be named: in modifiers of another one.
@@ -50,7 +50,7 @@ struct Walk<'a, 'e> {
     errors: &'e mut Vec<Diagnostic>,
 }
 
-impl<'a> Walk<'a, '_> {
+impl<'a> UsageCheck<'a, '_> {
     fn modification(&mut self, modification: &Modification) {
         walk_modification(self, modification);
     }
@@ -171,7 +171,7 @@ impl<'a> Walk<'a, '_> {
     }
 }
 
-impl Visit for Walk<'_, '_> {
+impl Visit for UsageCheck<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         if let ExpressionKind::Call { function, arguments } = &expression.kind
             && let [name] = function.parts.as_slice()

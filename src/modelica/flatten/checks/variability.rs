@@ -10,18 +10,18 @@ use crate::syntax::visit::{Visit, walk_expression};
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
 pub fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
-    let mut walk = Walk { class, loops, varies: false };
+    let mut walk = VariabilityCheck { class, loops, varies: false };
     walk.expression(expression);
     !walk.varies
 }
 
-struct Walk<'a> {
+struct VariabilityCheck<'a> {
     class: Scope<'a>,
     loops: &'a [Ident],
     varies: bool,
 }
 
-impl Visit for Walk<'_> {
+impl Visit for VariabilityCheck<'_> {
     fn expression(&mut self, expression: &Expression) {
         if let ExpressionKind::Call { function, .. } = &expression.kind {
             let name = match function.parts.as_slice() {

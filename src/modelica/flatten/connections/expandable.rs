@@ -43,13 +43,17 @@ impl Instantiation<'_> {
         let mut links: Vec<(NodeId, NodeId)> = Vec::new();
         let mut is_linked = vec![false; connects.len()];
         for _ in 0..MAX_ROUNDS {
-            let mut wanted: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
+            let mut required: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
             for (connect, is_linked) in connects.iter().zip(&mut is_linked) {
                 let one = self.undeclared(&connect.left, connect)?;
                 let other = self.undeclared(&connect.right, connect)?;
                 match (one, other) {
-                    (Some(new), None) => self.want(new, &connect.right, connect, &mut wanted)?,
-                    (None, Some(new)) => self.want(new, &connect.left, connect, &mut wanted)?,
+                    (Some(new), None) => {
+                        self.require(new, &connect.right, connect, &mut required)?
+                    }
+                    (None, Some(new)) => {
+                        self.require(new, &connect.left, connect, &mut required)?
+                    }
                     // A component added by an earlier round may be expandable itself.
                     (None, None) if !*is_linked => {
                         self.link(connect, &mut links)?;
@@ -58,8 +62,8 @@ impl Instantiation<'_> {
                     _ => {}
                 }
             }
-            let mut changed = !wanted.is_empty();
-            for ((node, _), declaration) in wanted {
+            let mut changed = !required.is_empty();
+            for ((node, _), declaration) in required {
                 self.add_member(node, declaration);
             }
             for (one, other) in &links {
@@ -105,12 +109,12 @@ impl Instantiation<'_> {
     }
 
     /// Notes the component that a connection adds: of the type of what it is connected with.
-    fn want(
+    fn require(
         &mut self,
         new: Undeclared,
         partner: &ComponentReference,
         connect: &Connect,
-        wanted: &mut IndexMap<(NodeId, Ident), Declaration>,
+        required: &mut IndexMap<(NodeId, Ident), Declaration>,
     ) -> Result<(), Diagnostic> {
         let Ok(Some(ends)) = self.ends(partner, connect.context, &connect.local) else {
             return Ok(());
@@ -129,7 +133,7 @@ impl Instantiation<'_> {
         }
         sizes.extend(&ends.dims);
         let key = (new.connector, new.part.name);
-        if let Some(known) = wanted.get(&key) {
+        if let Some(known) = required.get(&key) {
             for (size, (subscript, _)) in sizes.iter_mut().zip(&known.dims) {
                 if let Subscript::Index(Expression { kind: ExpressionKind::Integer(n), .. }) =
                     subscript
@@ -153,7 +157,7 @@ impl Instantiation<'_> {
             span,
             ..(*model).clone()
         };
-        wanted.insert(key, declaration);
+        required.insert(key, declaration);
         Ok(())
     }
 

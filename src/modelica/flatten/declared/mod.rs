@@ -146,11 +146,11 @@ impl Library {
 
     /// The element of a name of a class, or of the class of a component.
     pub fn element_of(&self, of: Declared, name: Ident) -> Option<Declared> {
-        self.element(self.class_behind(of)?, name)
+        self.element(self.class_of_declared(of)?, name)
     }
 
     /// The class itself, or that of a component.
-    pub fn class_behind(&self, declared: Declared) -> Option<ClassId> {
+    pub fn class_of_declared(&self, declared: Declared) -> Option<ClassId> {
         match declared {
             Declared::Class(class) => Some(class),
             Declared::Component(owner, name) => match self.type_of(owner, name)? {

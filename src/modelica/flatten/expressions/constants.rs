@@ -452,7 +452,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
         Value::Array(array) => array.elements.type_name(),
         scalar => scalar.type_name(),
     };
-    let wanted = match base {
+    let expected = match base {
         BaseType::Real => "Real",
         BaseType::Integer => "Integer",
         BaseType::Boolean => "Boolean",
@@ -460,10 +460,10 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
         BaseType::Enumeration(_) | BaseType::ExternalObject(_) | BaseType::Clock => return Ok(()),
     };
     let empty = matches!(value, Value::Array(array) if array.elements.is_empty());
-    if found == wanted || empty {
+    if found == expected || empty {
         return Ok(());
     }
-    Err(fault!(TYPE_MISMATCH, "the value is {found}, expected {wanted}"))
+    Err(fault!(TYPE_MISMATCH, "the value is {found}, expected {expected}"))
 }
 
 /// Answers calls of functions while constants are evaluated; variables are values already.

@@ -296,16 +296,18 @@ impl Types<'_> {
             return false;
         }
         match (&input.value_type, found) {
-            (ValueType::Record(wanted, _), Some(ValueType::Record(found, _))) => *wanted == found,
+            (ValueType::Record(expected, _), Some(ValueType::Record(found, _))) => {
+                *expected == found
+            }
             (ValueType::Record(..), _) | (_, Some(ValueType::Record(..))) => false,
             (ValueType::Real, Some(ValueType::Real | ValueType::Integer)) => true,
             // A literal of an enumeration is its ordinal here.
             (ValueType::Enumeration(_), Some(ValueType::Integer)) => {
                 matches!(argument.kind, ExpressionKind::Integer(_))
             }
-            (wanted, Some(found)) => *wanted == found,
+            (expected, Some(found)) => *expected == found,
             // What the text does not tell is a number in practice.
-            (wanted, None) => matches!(wanted, ValueType::Real | ValueType::Integer),
+            (expected, None) => matches!(expected, ValueType::Real | ValueType::Integer),
         }
     }
 
@@ -355,7 +357,7 @@ impl Types<'_> {
 }
 
 /// The dimensions of a value of records: how many array constructors stand around the elements.
-/// Those of a function's own variables are not told by their names.
+/// Those of a function's own variables cannot be found by their names.
 fn constructor_rank(e: &Expression) -> Option<usize> {
     match &e.kind {
         ExpressionKind::Array(elements) => Some(1 + constructor_rank(elements.first()?)?),

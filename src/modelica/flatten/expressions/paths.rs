@@ -371,9 +371,9 @@ impl Instantiation<'_> {
                 None => None,
             };
             let is_last = at + 1 == count;
-            let wanted = if is_last { usize::MAX } else { rank.unwrap_or(0) };
+            let count = if is_last { usize::MAX } else { rank.unwrap_or(0) };
             if part.subscripts.is_empty() {
-                part.subscripts = given.by_ref().take(wanted).collect();
+                part.subscripts = given.by_ref().take(count).collect();
                 continue;
             }
             // A dimension that stays: `a[:].b` has the elements `a[i].b`.
@@ -413,7 +413,7 @@ impl Tree {
 }
 
 impl Classes<'_> {
-    /// Refuses a protected component behind a dot, and subscripts of other types than those of the
+    /// Refuses a protected component after a dot, and subscripts of other types than those of the
     /// dimensions.
     fn check_access(
         &mut self,

@@ -115,12 +115,12 @@ impl Instantiation<'_> {
     }
 
     /// The sizes that an argument has beyond those of its input, if it has more.
-    fn extra_dims(&mut self, argument: &Expression, wanted: usize) -> Option<Vec<usize>> {
-        if self.types().rank_of(argument).is_some_and(|rank| rank <= wanted) {
+    fn extra_dims(&mut self, argument: &Expression, expected: usize) -> Option<Vec<usize>> {
+        if self.types().rank_of(argument).is_some_and(|rank| rank <= expected) {
             return None;
         }
         let dims = self.shape_of(argument)?;
-        (dims.len() > wanted).then(|| dims[..dims.len() - wanted].to_vec())
+        (dims.len() > expected).then(|| dims[..dims.len() - expected].to_vec())
     }
 }
 

@@ -184,7 +184,7 @@ impl Instantiation<'_> {
         if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
             return Ok(None);
         }
-        // Nobody calls it by name, but it must be there when the object is freed.
+        // It is not called by name, but must be there when the object is freed.
         if let Some(Type::Class(id)) =
             self.classes.lookup(class, &Name::from(Ident::new("destructor")))?
         {
@@ -216,7 +216,7 @@ impl Instantiation<'_> {
         kept
     }
 
-    /// Writes the full name of the function behind `=`, alone or called; whether there is one.
+    /// Writes the full name of the function after `=`, alone or called; whether there is one.
     fn name_function(&mut self, element: &mut ElementModification, context: ScopeId) -> bool {
         let Some(modification) = &mut element.modification else { return true };
         let Some(Binding::Expression(e)) = &mut modification.binding else { return true };
@@ -747,7 +747,7 @@ impl Instantiation<'_> {
 }
 
 impl Classes<'_> {
-    /// Whether a class declares another one behind `protected`.
+    /// Whether a class declares another one after `protected`.
     fn is_protected_class(&self, scope: ScopeId, name: Ident) -> bool {
         let class = self.text(scope).id.map(|id| self.library.class(id));
         class.is_some_and(|class| {

@@ -6,17 +6,17 @@ use crate::syntax::visit::{Visit, walk_reference};
 
 /// Whether an expression refers to one of these components.
 pub(super) fn names_any(e: &Expression, names: &[Ident]) -> bool {
-    let mut search = Search { names, found: false };
+    let mut search = NameSearch { names, found: false };
     search.expression(e);
     search.found
 }
 
-struct Search<'a> {
+struct NameSearch<'a> {
     names: &'a [Ident],
     found: bool,
 }
 
-impl Visit for Search<'_> {
+impl Visit for NameSearch<'_> {
     fn reference(&mut self, reference: &ComponentReference) {
         walk_reference(self, reference);
         let first = reference.parts.first().map(|part| part.name);

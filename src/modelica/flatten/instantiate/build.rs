@@ -1,5 +1,5 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
-//! that gives a size may be declared behind the array that it sizes.
+//! that gives a size may be declared after the array that it sizes.
 
 use super::instance::{Declaration, MemberState};
 use super::own_sizes::with_own_sizes;

@@ -103,7 +103,7 @@ impl Classes<'_> {
         .at(span)
     }
 
-    /// How many components behind one in the same instance, which are not built yet, are declared as
+    /// How many components after one in the same instance, which are not built yet, are declared as
     /// it is, and how many of its class at all.
     fn alike(&mut self, level: &Level, declaration: &Declaration) -> [usize; 2] {
         let members =
@@ -130,7 +130,7 @@ impl Classes<'_> {
         count
     }
 
-    /// Where the class of a component is written, behind short classes.
+    /// Where the class of a component is written, short classes followed.
     fn class_span(&mut self, declaration: &Declaration) -> Option<Span> {
         match self.expand(declaration).ok()?.shape {
             Shape::Class(class) => Some(self.text(class).definition.span),

@@ -1,5 +1,5 @@
 //! The state of one instantiation: the classes with the instance tree, functions and values. Each is
-//! built as the others need it: a parameter that gives a size may be declared behind the array that
+//! built as the others need it: a parameter that gives a size may be declared after the array that
 //! it sizes.
 
 use super::growth::Growth;

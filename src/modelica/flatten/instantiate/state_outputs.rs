@@ -14,7 +14,8 @@ use crate::syntax::ast::{
 use std::sync::Arc;
 
 impl Instantiation<'_> {
-    /// The variables behind the `outer output` components of an instance, by their flat names.
+    /// The variables to which the `outer output` components of an instance refer, by their flat
+    /// names.
     pub(crate) fn outer_outputs(&mut self, node: NodeId) -> Result<Vec<Arc<str>>, Diagnostic> {
         let mut found = Vec::new();
         for name in self.classes.tree.component_names(node) {

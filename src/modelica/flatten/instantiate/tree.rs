@@ -201,7 +201,7 @@ impl Tree {
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
         let top_level = self.nodes[node.0].path.is_empty();
-        // Nobody outside can give a protected input its value: it is determined inside.
+        // A protected input cannot get its value from outside: it is determined inside.
         let is_inner_input =
             inherited.protected && inherited.causality == Some(CausalityPrefix::Input);
         let name: Arc<str> = self.path_of(node, declared.name).into();

@@ -18,14 +18,14 @@ pub(super) struct BaseCache {
     /// several bases.
     forks: FxHashMap<ClassId, ClassId>,
     /// The first class among a class and its bases that answers a question.
-    answers: FxHashMap<(ClassId, Question), Option<ClassId>>,
+    answers: FxHashMap<(ClassId, BaseProperty), Option<ClassId>>,
     /// Rows of classes with one base each.
     pub(super) chains: Chains,
 }
 
 /// What is asked about a class and its bases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(in crate::flatten) enum Question {
+pub(in crate::flatten) enum BaseProperty {
     /// Which is short for, or extends, a predefined type?
     Predefined,
     /// Which is an enumeration?
@@ -95,7 +95,7 @@ impl Library {
     /// before the first one with several bases.
     pub(in crate::flatten) fn first_answer(
         &self,
-        question: Question,
+        question: BaseProperty,
         lineage: impl Iterator<Item = (ClassId, bool)>,
         answers: impl Fn(ClassId) -> bool,
     ) -> Option<ClassId> {

@@ -262,7 +262,7 @@ impl<'a> Converter<'a> {
         clause
     }
 
-    /// The path of a component behind its first name, in classes of the user and then in the first
+    /// The path of a component after its first name, in classes of the user and then in the first
     /// one of a library.
     fn path(&mut self, parts: &mut Vec<ReferencePart>, first: Meaning, span: Span) {
         let mut meaning = first;

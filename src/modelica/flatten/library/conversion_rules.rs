@@ -94,10 +94,10 @@ impl Rules {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
             return Err(no_rule(call.span));
         };
-        let given = texts_of(arguments, call.span)?;
-        let texts: Vec<&[Arc<str>]> = given.iter().map(Vec::as_slice).collect();
+        let given = string_arguments(arguments, call.span)?;
+        let strings: Vec<&[Arc<str>]> = given.iter().map(Vec::as_slice).collect();
         let name = function.name().to_string();
-        match (name.as_str(), texts.as_slice()) {
+        match (name.as_str(), strings.as_slice()) {
             ("convertClear", []) => *self = Rules::default(),
             ("convertClass", [old, new]) => {
                 for [old, new] in rows([*old, *new], call.span)? {
@@ -214,9 +214,9 @@ impl Rules {
 
     /// Why an element of a class cannot be converted.
     pub(super) fn message_of_element(&self, class: &Name, element: Ident) -> Option<&Arc<str>> {
-        let wanted = Name::from(element);
+        let name = Name::from(element);
         let messages = self.messages.get(class)?;
-        messages.iter().find(|(one, _)| one.as_ref() == Some(&wanted)).map(|(_, message)| message)
+        messages.iter().find(|(one, _)| one.as_ref() == Some(&name)).map(|(_, message)| message)
     }
 }
 
@@ -276,7 +276,7 @@ impl Conversion {
         found
     }
 
-    /// Why an element of a class, behind the names of a path, cannot be converted.
+    /// Why an element of the class at the end of a path cannot be converted.
     pub(super) fn message_of_element(&self, class: &Name, path: &[Ident]) -> Option<&Arc<str>> {
         let mut first = *path.first()?;
         self.along(class).find_map(|(rules, class)| {
@@ -316,17 +316,17 @@ fn last_name(text: &str) -> String {
     }
 }
 
-/// The arguments of a rule as lists of texts; `simplify` changes nothing that a simulation sees.
-fn texts_of(arguments: &Arguments, span: Span) -> Result<Vec<Vec<Arc<str>>>, Diagnostic> {
+/// The arguments of a rule as lists of strings; `simplify` changes nothing that a simulation sees.
+fn string_arguments(arguments: &Arguments, span: Span) -> Result<Vec<Vec<Arc<str>>>, Diagnostic> {
     let is_text = |e: &&Expression| !matches!(e.kind, ExpressionKind::Boolean(_));
     let given = arguments.positional.iter().filter(is_text);
-    given.map(|e| texts(e).ok_or_else(|| no_rule(span))).collect()
+    given.map(|e| strings(e).ok_or_else(|| no_rule(span))).collect()
 }
 
-fn texts(e: &Expression) -> Option<Vec<Arc<str>>> {
+fn strings(e: &Expression) -> Option<Vec<Arc<str>>> {
     match &e.kind {
         ExpressionKind::String(text) => Some(vec![text.clone()]),
-        ExpressionKind::Array(elements) => elements.iter().map(|one| texts(one)?.pop()).collect(),
+        ExpressionKind::Array(elements) => elements.iter().map(|one| strings(one)?.pop()).collect(),
         ExpressionKind::Call { function, .. } => {
             function.as_ident().is_some_and(|name| name == "fill").then(Vec::new)
         }

@@ -11,13 +11,13 @@ use rustc_hash::FxHashMap;
 /// The places of components and nested classes by their names; of two of one name the first.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ElementIndex {
-    components: FxHashMap<Ident, Place>,
-    classes: FxHashMap<Ident, Place>,
+    components: FxHashMap<Ident, ElementPosition>,
+    classes: FxHashMap<Ident, ElementPosition>,
 }
 
 /// Which section, which element in it, and which component of a clause.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct ElementPosition {
     section: usize,
     element: usize,
     component: usize,
@@ -29,18 +29,18 @@ impl ElementIndex {
         for (section, part) in sections.iter().enumerate() {
             let Section::Elements { elements, .. } = part else { continue };
             for (element, declared) in elements.iter().enumerate() {
-                index.add(declared, Place { section, element, component: 0 });
+                index.add(declared, ElementPosition { section, element, component: 0 });
             }
         }
         index
     }
 
-    fn add(&mut self, declared: &Element, place: Place) {
+    fn add(&mut self, declared: &Element, place: ElementPosition) {
         match declared {
             Element::Component(clause) => {
                 for (component, declaration) in clause.components.iter().enumerate() {
                     let name = declaration.name.node;
-                    self.components.entry(name).or_insert(Place { component, ..place });
+                    self.components.entry(name).or_insert(ElementPosition { component, ..place });
                 }
             }
             Element::Class(nested) => {
@@ -84,7 +84,7 @@ impl Class {
         Some((visibility, nested))
     }
 
-    fn element_at(&self, place: Place) -> Option<(Visibility, &Element)> {
+    fn element_at(&self, place: ElementPosition) -> Option<(Visibility, &Element)> {
         match self.sections().get(place.section)? {
             Section::Elements { visibility, elements } => {
                 Some((visibility.unwrap_or(Visibility::Public), elements.get(place.element)?))

@@ -10,7 +10,7 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Who has the files of a library. Texts are decoded and numbered by whoever implements it.
+/// Access to the files of a library. Implementations decode and number the source texts.
 pub trait LibraryFiles: Debug + Send + Sync {
     /// The text of a file, and its number.
     ///

@@ -144,7 +144,7 @@ impl Library {
         package: &Name,
         entry: &Entry,
         file: &StoredDefinition,
-        wanted: Option<Ident>,
+        given: Option<Ident>,
     ) {
         let library = package.first();
         let span = file.classes.first().map_or(file.span, |class| class.name.span);
@@ -155,7 +155,7 @@ impl Library {
             }
             Some(_) => {}
         }
-        let name = wanted.unwrap_or_else(|| Ident::new(&entry.stem));
+        let name = given.unwrap_or_else(|| Ident::new(&entry.stem));
         self.meet_name(library, entry, file, name);
     }
 

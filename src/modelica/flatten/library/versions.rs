@@ -147,7 +147,9 @@ fn needs_no_conversion(annotation: Option<&Annotation>, version: &str) -> bool {
 fn steps_from<'a>(annotation: Option<&'a Annotation>, version: &str) -> Vec<&'a [Argument]> {
     let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
     let arguments = from.filter_map(|one| one.modification.as_ref()).map(|m| &*m.arguments);
-    arguments.filter(|one| texts(one, "version").iter().any(|known| &**known == version)).collect()
+    arguments
+        .filter(|one| strings(one, "version").iter().any(|known| &**known == version))
+        .collect()
 }
 
 /// The next later version that a library names in its conversions, for one that it does not name.
@@ -163,7 +165,7 @@ fn next_named(
     let none = none.filter_map(|one| string(bound(one)?));
     let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
     let from = from.filter_map(|one| one.modification.as_ref());
-    let named = from.flat_map(|one| texts(&one.arguments, "version")).chain(none);
+    let named = from.flat_map(|one| strings(&one.arguments, "version")).chain(none);
     let own = own.map(Arc::from);
     let asked = numbers(version);
     let later = named.chain(own).filter(|one| !asked.is_empty() && numbers(one) > asked);
@@ -221,7 +223,7 @@ fn is_named(element: &ElementModification, name: &str) -> bool {
     element.name.node.is_simple() && element.name.node.last().is_some_and(|last| last == name)
 }
 
-/// What stands in parentheses behind a name of an annotation.
+/// The arguments in parentheses after a name of an annotation.
 fn inside<'a>(
     annotation: Option<&'a Annotation>,
     name: &'a str,
@@ -234,8 +236,8 @@ fn inside<'a>(
     })
 }
 
-/// The texts that an argument is bound to: one, or an array of them.
-fn texts(arguments: &[Argument], name: &str) -> Vec<Arc<str>> {
+/// The strings that an argument is bound to: one, or an array of them.
+fn strings(arguments: &[Argument], name: &str) -> Vec<Arc<str>> {
     let bound = value(arguments, name);
     match bound.map(|value| &value.kind) {
         Some(ExpressionKind::Array(values)) => values.iter().filter_map(string).collect(),
@@ -264,5 +266,5 @@ fn string(e: &Expression) -> Option<Arc<str>> {
 }
 
 fn text(arguments: &[Argument], name: &str) -> Option<Arc<str>> {
-    texts(arguments, name).into_iter().next()
+    strings(arguments, name).into_iter().next()
 }

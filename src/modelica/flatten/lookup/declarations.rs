@@ -106,7 +106,7 @@ impl Classes<'_> {
         for component in &clause.components {
             let name = component.name.node;
             if !found.contains(name) {
-                // The extends clause may stand behind the redeclaration.
+                // The extends clause may follow the redeclaration.
                 let mut inherited = false;
                 for base in self.bases(id)?.iter() {
                     inherited |= self.elements(*base)?.contains(name);
@@ -264,8 +264,9 @@ impl Declaration {
     }
 
     /// Whether two declarations with one value have other attributes, such as `m(min = 1) = 3` and
-    /// `m = 3`. The specification wants them identical; libraries have such (FrequencySweepVoltageSource
-    /// of the standard library 4.0.0), and the one that is found first counts.
+    /// `m = 3`. The specification requires them to be identical; libraries have such
+    /// (FrequencySweepVoltageSource of the standard library 4.0.0), and the one that is found first
+    /// counts.
     fn differs_in_attributes(&self, other: &Declaration) -> bool {
         self.modifier.has_same_binding(&other.modifier) && self.is_same_but_for_modifier(other)
     }
@@ -343,7 +344,7 @@ fn redeclared(
     Ok(())
 }
 
-/// The Boolean value of an annotation behind a declaration or a short class, such as `Evaluate`
+/// The Boolean value of an annotation of a declaration or a short class, such as `Evaluate`
 /// (MLS §18.3).
 pub fn annotated(comment: &Comment, name: &str) -> Option<bool> {
     let value = |argument: &ast::Argument| {

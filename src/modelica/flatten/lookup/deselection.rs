@@ -120,8 +120,10 @@ impl Classes<'_> {
         left: &ComponentReference,
         right: &ComponentReference,
     ) -> Result<bool, Diagnostic> {
-        let mut search =
-            Search { wanted: Deselection::Connection(left.clone(), right.clone()), found: false };
+        let mut search = ElementSearch {
+            target: Deselection::Connection(left.clone(), right.clone()),
+            found: false,
+        };
         for context in self.elements(base)?.lineage() {
             for section in self.text(context).sections() {
                 if let Section::Equations { initial: false, equations, .. } = section {
@@ -134,16 +136,16 @@ impl Classes<'_> {
 }
 
 /// Looks for a connection.
-struct Search {
-    wanted: Deselection,
+struct ElementSearch {
+    target: Deselection,
     found: bool,
 }
 
-impl Visit for Search {
+impl Visit for ElementSearch {
     fn equation(&mut self, equation: &Equation) {
         match &equation.kind {
             EquationKind::Connect { left, right } => {
-                self.found |= matches(&self.wanted, left, right);
+                self.found |= matches(&self.target, left, right);
             }
             _ => walk_equation(self, equation),
         }

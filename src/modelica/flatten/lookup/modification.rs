@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// All that modifies one element, merged.
 #[derive(Debug, Clone, Default)]
 pub struct Modifier {
-    /// The value behind `=`, with the scope that it was written in.
+    /// The value after `=`, with the scope that it was written in.
     pub binding: Option<Bound>,
     /// Modifiers of the element's own elements or attributes.
     pub elements: IndexMap<Ident, Modifier>,

@@ -163,7 +163,7 @@ impl Classes<'_> {
         Ok(None)
     }
 
-    fn text_of(&self, class: ClassId) -> Text {
+    fn name_text(&self, class: ClassId) -> Text {
         let found = self.library.class(class);
         Text {
             name: found.name().clone(),
@@ -181,7 +181,7 @@ impl Classes<'_> {
     ) -> Result<Rc<Nested>, Diagnostic> {
         let prefixes = self.library.class(child).prefixes();
         let outer = self.scope(scope).modifier.elements.get(&name).cloned().unwrap_or_default();
-        let mut text = self.text_of(child);
+        let mut text = self.name_text(child);
         if self.library.class(child).is_class_extends() {
             text.extended = self.inherited_class(scope, name)?;
         }
@@ -261,7 +261,7 @@ impl Classes<'_> {
                 extended: None,
             },
             Replacement::Element(class) => {
-                let mut text = self.text_of(*class);
+                let mut text = self.name_text(*class);
                 if self.library.class(*class).is_class_extends() {
                     let below = Nested { modifier: Modifier::default(), ..original };
                     text.extended = Some(match &redeclaration.over {
@@ -298,7 +298,7 @@ impl Classes<'_> {
         }
         let Some(id) = self.library.root(name) else { return Ok(None) };
         let nested = Rc::new(Nested {
-            text: self.text_of(id),
+            text: self.name_text(id),
             parent: ScopeId::TOP,
             modifier: Modifier::default(),
             defaults: Modifier::default(),

@@ -27,7 +27,8 @@ pub fn compared(operator: BinaryOperator) -> Option<&'static str> {
 }
 
 impl Units {
-    /// That of a variable. `time` has none: ramps are written `slope*time` with the unit of the value.
+    /// That of a variable. `time` has none: ramps are written `rate*time` with the unit of the
+    /// value.
     pub(crate) fn of_reference(&self, reference: &ComponentReference) -> Option<Dimension> {
         self.known.get(&*path(reference)).copied()
     }

@@ -27,15 +27,15 @@ const MAX_WARNINGS: usize = 100;
 /// What does not fit, each place once.
 fn check(model: &FlatModel) -> Vec<Diagnostic> {
     let mut walk =
-        Walk { units: Units::of(model), reported: FxHashSet::default(), found: Vec::new() };
+        UnitCheck { units: Units::of(model), reported: FxHashSet::default(), found: Vec::new() };
     if walk.units.known.is_empty() {
         return Vec::new();
     }
     for variable in model.variables.values() {
         if let Some(binding) = &variable.binding {
             walk.expression(binding);
-            let wanted = walk.units.known.get(&variable.name).copied();
-            walk.compare(wanted, walk.units.of_expression(binding), binding.span, &variable.name);
+            let declared = walk.units.known.get(&variable.name).copied();
+            walk.compare(declared, walk.units.of_expression(binding), binding.span, &variable.name);
         }
     }
     for equation in model.equations.iter().chain(&model.initial_equations) {
@@ -58,12 +58,12 @@ impl Classes<'_> {
         let library_of: FxHashMap<SourceId, Ident> =
             classes.filter_map(|text| Some((text.span().source, text.name.first()?))).collect();
         let mut reported = FxHashSet::default();
-        let mut is_told = |warning: &Diagnostic| {
+        let mut is_reported = |warning: &Diagnostic| {
             let source = warning.labels.first().map(|label| label.span.source);
             let library = source.and_then(|source| library_of.get(&source).copied());
             library.is_none_or(|one| !self.library.is_old(one) || reported.insert(one))
         };
-        found.into_iter().filter(|one| is_told(one)).collect()
+        found.into_iter().filter(|one| is_reported(one)).collect()
     }
 }
 
@@ -86,13 +86,13 @@ impl Units {
     }
 }
 
-struct Walk {
+struct UnitCheck {
     units: Units,
     reported: FxHashSet<Span>,
     found: Vec<Diagnostic>,
 }
 
-impl Walk {
+impl UnitCheck {
     /// Tells, once a place, that a variable and its value differ.
     fn compare(
         &mut self,
@@ -111,7 +111,7 @@ impl Walk {
         }
     }
 
-    /// As [`Walk::compare`], of two expressions.
+    /// As [`UnitCheck::compare`], of two expressions.
     fn compare_sides(&mut self, both: [Option<Dimension>; 2], span: Span, sides: &str) {
         if let [Some(one), Some(other)] = both
             && one != other
@@ -130,7 +130,7 @@ impl Walk {
     }
 }
 
-impl Visit for Walk {
+impl Visit for UnitCheck {
     fn expression(&mut self, e: &Expression) {
         walk_expression(self, e);
         if let ExpressionKind::Binary { .. } = &e.kind {
@@ -156,9 +156,9 @@ impl Visit for Walk {
     fn statement(&mut self, statement: &Statement) {
         walk_statement(self, statement);
         if let StatementKind::Assign { target, value } = &statement.kind {
-            let wanted = self.units.of_reference(target);
+            let declared = self.units.of_reference(target);
             let value = self.units.of_expression(value);
-            self.compare(wanted, value, statement.span, &path(target));
+            self.compare(declared, value, statement.span, &path(target));
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::{Bipartite, Matching, match_equations};
 use crate::lower::builder::Builder;
-use crate::lower::dae::{Dae, Kind};
+use crate::lower::dae::{Dae, VariableKind};
 use crate::lower::equation::{Assertion, Equation};
 use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
 use crate::source::Span;
@@ -163,14 +163,16 @@ impl Builder<'_> {
     fn become_discrete(&mut self, partitions: &Partitions) {
         for (at, variable) in self.dae.variables.iter_mut().enumerate() {
             let is_clocked = partitions.of(VarId(at as u32)).is_some();
-            if is_clocked && matches!(variable.kind, Kind::Unknown | Kind::Derivative(_)) {
-                variable.kind = Kind::Discrete;
+            if is_clocked
+                && matches!(variable.kind, VariableKind::Unknown | VariableKind::Derivative(_))
+            {
+                variable.kind = VariableKind::Discrete;
                 variable.variability = Variability::Discrete;
             }
         }
     }
 
-    /// Relations and roundings of clocked variables: nobody reads them any more.
+    /// Relations and roundings of clocked variables: they are no longer read.
     fn drop_clocked_relations(&mut self, partitions: &Partitions) {
         let incidence = self.incidence();
         let clocked = |dae: &Dae, roots: &[Expr]| {
@@ -187,7 +189,7 @@ impl Builder<'_> {
         self.dae.events.roundings = kept;
         unused.extend(dropped.iter().map(|rounding| rounding.variable));
         for variable in unused {
-            self.dae.variables[variable.0 as usize].kind = Kind::Signal;
+            self.dae.variables[variable.0 as usize].kind = VariableKind::Signal;
         }
     }
 

@@ -8,7 +8,7 @@ use crate::flatten::{BaseType, Variability};
 use crate::functions::{Builtin, Clocked};
 use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
-use crate::lower::dae::Kind;
+use crate::lower::dae::VariableKind;
 use crate::lower::equation::Equation;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::lower::expressions::{Array, ClockedCall, Lowered};
@@ -115,7 +115,7 @@ impl Builder<'_> {
                     .map(|(name, field)| Ok((name, self.each_scalar(entry, field, make, span)?)));
                 fields.collect::<Result<_, Diagnostic>>().map(Lowered::Record)
             }
-            Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
+            Lowered::Text(_) | Lowered::Strings(_) | Lowered::Numbered(_) => {
                 Err(fault!(NOT_SUPPORTED, "`{}` of a String", entry.name).at(span))
             }
         }
@@ -167,13 +167,13 @@ impl Builder<'_> {
     /// A variable for the value of an operator.
     fn occurrence(&mut self, like: Option<VarId>, operator: Operator, span: Span) -> Expr {
         let name = format!("$clocked[{}]", self.clocks.occurrences.len() + 1);
-        let mut variable = scalar_of_nothing(&name, Kind::Signal, span);
+        let mut variable = scalar_of_nothing(&name, VariableKind::Signal, span);
         variable.variability = Variability::Discrete;
         if let Some(like) = like {
             let like = self.dae.variable(like);
             variable.base = like.base.clone();
-            if like.kind == Kind::Clock {
-                variable.kind = Kind::Clock;
+            if like.kind == VariableKind::Clock {
+                variable.kind = VariableKind::Clock;
             }
         }
         let variable = self.declare_scalar(variable);
@@ -185,7 +185,7 @@ impl Builder<'_> {
         let made = self.occurrence(None, operator, span);
         if let Some(variable) = self.dae.pool.as_variable(made) {
             let variable = &mut self.dae.variables[variable.0 as usize];
-            (variable.kind, variable.base) = (Kind::Clock, BaseType::Clock);
+            (variable.kind, variable.base) = (VariableKind::Clock, BaseType::Clock);
         }
         made
     }
@@ -361,7 +361,7 @@ impl Builder<'_> {
     /// The variable of a clock expression.
     pub(super) fn clock_of(&mut self, e: Expr, span: Span) -> Result<VarId, Diagnostic> {
         match self.dae.pool.node(e).clone() {
-            Node::Variable(v) if self.dae.variable(v).kind == Kind::Clock => Ok(v),
+            Node::Variable(v) if self.dae.variable(v).kind == VariableKind::Clock => Ok(v),
             Node::If(condition, a, b) => match self.settled(condition)? {
                 Some(0.0) => self.clock_of(b, span),
                 Some(_) => self.clock_of(a, span),
@@ -376,7 +376,7 @@ impl Builder<'_> {
 
     pub(super) fn is_clock_expression(&self, e: Expr) -> bool {
         match self.dae.pool.node(e) {
-            Node::Variable(v) => self.dae.variable(*v).kind == Kind::Clock,
+            Node::Variable(v) => self.dae.variable(*v).kind == VariableKind::Clock,
             Node::If(_, a, _) => self.is_clock_expression(*a),
             _ => false,
         }
@@ -405,17 +405,22 @@ impl Builder<'_> {
 
     /// The variable that an expression is, or a new one that is equal to it.
     fn variable_for(&mut self, e: Expr, name: &str, span: Span) -> VarId {
-        let is_variable =
-            |kind| matches!(kind, Kind::Unknown | Kind::Discrete | Kind::Derivative(_));
+        let is_variable = |kind| {
+            matches!(
+                kind,
+                VariableKind::Unknown | VariableKind::Discrete | VariableKind::Derivative(_)
+            )
+        };
         if let Some(variable) = self.dae.pool.as_variable(e)
             && is_variable(self.dae.variable(variable).kind)
         {
             return variable;
         }
         let number = self.dae.variables.len();
-        let mut variable = scalar_of_nothing(&format!("{name}[{number}]"), Kind::Unknown, span);
+        let mut variable =
+            scalar_of_nothing(&format!("{name}[{number}]"), VariableKind::Unknown, span);
         if !is_real(&self.dae, e) && !self.varies(e) {
-            variable.kind = Kind::Discrete;
+            variable.kind = VariableKind::Discrete;
             variable.base = if self.is_boolean(e) { BaseType::Boolean } else { BaseType::Integer };
         }
         let variable = self.declare_scalar(variable);

@@ -5,7 +5,7 @@ use super::{Base, Occurrence, Operator};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::builder::Builder;
-use crate::lower::dae::{Dae, Kind};
+use crate::lower::dae::{Dae, VariableKind};
 use crate::lower::equation::Equation;
 use crate::lower::errors::CLOCK_CONFLICT;
 use crate::source::Span;
@@ -81,7 +81,7 @@ impl Builder<'_> {
 }
 
 impl Incidence {
-    /// The variables that decide the clock of an expression, those behind frozen values included.
+    /// The variables that decide the clock of an expression, those of frozen values included.
     pub(super) fn of(&self, dae: &Dae, roots: &[Expr]) -> Vec<VarId> {
         let (mut open, mut seen) = (roots.to_vec(), FxHashSet::default());
         let mut found = Vec::new();
@@ -91,13 +91,15 @@ impl Incidence {
                     return;
                 }
                 match dae.variable(v).kind {
-                    Kind::Frozen => {
+                    VariableKind::Frozen => {
                         open.extend(self.frozen.get(&v).into_iter().flatten().flatten())
                     }
-                    Kind::Previous(of) => found.push(of),
-                    Kind::Unknown | Kind::Discrete | Kind::Clock => found.push(v),
-                    Kind::Signal if self.operators.contains(&v) => found.push(v),
-                    Kind::Derivative(of) => found.extend([v, of]),
+                    VariableKind::Previous(of) => found.push(of),
+                    VariableKind::Unknown | VariableKind::Discrete | VariableKind::Clock => {
+                        found.push(v)
+                    }
+                    VariableKind::Signal if self.operators.contains(&v) => found.push(v),
+                    VariableKind::Derivative(of) => found.extend([v, of]),
                     _ => {}
                 }
             });

@@ -7,7 +7,7 @@ use super::ticks::Ticks;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::builder::Builder;
-use crate::lower::dae::Kind;
+use crate::lower::dae::VariableKind;
 use crate::lower::equation::Equation;
 use crate::lower::errors::{CLOCK_CONFLICT, NOT_SUPPORTED};
 use crate::source::Span;
@@ -74,7 +74,7 @@ impl Builder<'_> {
         ticks: &mut Ticks,
     ) -> Result<Vec<ClockedEquation>, Diagnostic> {
         let states = self.dae.variables.iter().zip(0..).filter_map(|(variable, at)| {
-            let Kind::Derivative(of) = variable.kind else { return None };
+            let VariableKind::Derivative(of) = variable.kind else { return None };
             Some((VarId(at), of, partitions.of(of)?))
         });
         let states: Vec<(VarId, VarId, usize)> = states.collect();
@@ -187,7 +187,7 @@ impl Builder<'_> {
         let (x, rate) = (self.previous_variable(state), self.previous_variable(derivative));
         let pool = &mut self.dae.pool;
         let (x, before, now) = (pool.variable(x), pool.variable(rate), pool.variable(derivative));
-        let slope = match method {
+        let mean_rate = match method {
             Method::ExplicitEuler => before,
             Method::ImplicitEuler => now,
             Method::ImplicitTrapezoid => {
@@ -196,7 +196,7 @@ impl Builder<'_> {
                 pool.mul(half, both)
             }
         };
-        let difference = pool.mul(h, slope);
+        let difference = pool.mul(h, mean_rate);
         pool.add(x, difference)
     }
 }

@@ -8,7 +8,7 @@ use crate::flatten::{BaseType, Variability};
 use crate::functions::StateOperator;
 use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
-use crate::lower::dae::Kind;
+use crate::lower::dae::VariableKind;
 use crate::lower::equation::{Equation, Instance};
 use crate::lower::errors::{INVALID_STATE_MACHINE, NOT_SUPPORTED};
 use crate::lower::expressions::{ClockedCall, Lowered, Lowering};
@@ -55,7 +55,7 @@ impl Builder<'_> {
 
     /// A discrete variable of the system.
     fn discrete(&mut self, name: &str, base: BaseType, span: Span) -> VarId {
-        let mut variable = scalar_of_nothing(name, Kind::Discrete, span);
+        let mut variable = scalar_of_nothing(name, VariableKind::Discrete, span);
         (variable.base, variable.variability) = (base, Variability::Discrete);
         variable.start = Some(self.dae.pool.constant(0.0));
         self.declare_scalar(variable)
@@ -71,7 +71,7 @@ impl Builder<'_> {
     pub(super) fn state_of_variable(&self, variable: VarId) -> Option<usize> {
         let variable = self.dae.variable(variable);
         let of = match variable.kind {
-            Kind::Derivative(of) => self.dae.variable(of),
+            VariableKind::Derivative(of) => self.dae.variable(of),
             _ => variable,
         };
         self.clocks.machines.around(of.name.rsplit_once('.')?.0)

@@ -8,7 +8,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::lower::builder::Builder;
-use crate::lower::dae::Kind;
+use crate::lower::dae::VariableKind;
 use crate::lower::errors::{CLOCK_CONFLICT, INVALID_STATE_MACHINE, NOT_SUPPORTED};
 use crate::symbolic::{Expr, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -38,8 +38,10 @@ impl Builder<'_> {
             return found;
         }
         for (at, variable) in self.dae.variables.iter().enumerate() {
-            let is_solved_for =
-                matches!(variable.kind, Kind::Unknown | Kind::Discrete | Kind::Derivative(_));
+            let is_solved_for = matches!(
+                variable.kind,
+                VariableKind::Unknown | VariableKind::Discrete | VariableKind::Derivative(_)
+            );
             let variable = VarId(at as u32);
             if is_solved_for && let Some(state) = self.state_of_variable(variable) {
                 found[state].push(variable);
@@ -87,8 +89,9 @@ impl Builder<'_> {
 
     /// All clocked unknowns.
     pub(super) fn columns(&self, partitions: &Partitions) -> Result<Columns, Diagnostic> {
-        let is_clocked =
-            |v: VarId| partitions.of(v).is_some() && self.dae.variable(v).kind == Kind::Discrete;
+        let is_clocked = |v: VarId| {
+            partitions.of(v).is_some() && self.dae.variable(v).kind == VariableKind::Discrete
+        };
         let mut list = Vec::new();
         let mut merged: FxHashSet<VarId> = FxHashSet::default();
         let mut owners: FxHashMap<VarId, Vec<usize>> = FxHashMap::default();
@@ -179,7 +182,7 @@ impl Builder<'_> {
             return Ok(());
         }
         for (at, variable) in self.dae.variables.iter().enumerate() {
-            let is_derivative = matches!(variable.kind, Kind::Derivative(_));
+            let is_derivative = matches!(variable.kind, VariableKind::Derivative(_));
             if is_derivative && self.state_of_variable(VarId(at as u32)).is_some() {
                 return Err(fault!(NOT_SUPPORTED,
                     "`{}` in a state of a state machine: continuous equations are not discretized \

@@ -7,7 +7,7 @@ use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
 use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
-use crate::lower::dae::Kind;
+use crate::lower::dae::VariableKind;
 use crate::lower::equation::Equation;
 use crate::lower::expressions::Target;
 use crate::source::Span;
@@ -70,7 +70,8 @@ impl Builder<'_> {
     /// A discrete variable of the system, with its value at events.
     pub(super) fn at_events(&mut self, name: &str, base: BaseType, span: Span) -> (VarId, Expr) {
         let number = self.dae.variables.len();
-        let mut variable = scalar_of_nothing(&format!("{name}[{number}]"), Kind::Discrete, span);
+        let mut variable =
+            scalar_of_nothing(&format!("{name}[{number}]"), VariableKind::Discrete, span);
         variable.base = base;
         variable.variability = Variability::Discrete;
         let id = self.declare_scalar(variable);

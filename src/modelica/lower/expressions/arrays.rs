@@ -129,7 +129,7 @@ impl<T: Target> Lowering<'_, T> {
                 Some(known) if known >= 1.0 && known <= size as f64 && known.fract() == 0.0 => {
                     positions.push(known as usize - 1);
                 }
-                // In a function the statement may never be carried out.
+                // In a function the statement may never be executed.
                 Some(_) if self.target.chooses() && !keeps => return Ok(Choice::Computed(*value)),
                 Some(known) => {
                     return Err(fault!(ARRAY_MISMATCH, "subscript {known} is outside 1:{size}")

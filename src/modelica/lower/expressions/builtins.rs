@@ -1,7 +1,7 @@
 //! Calls of the functions and operators of the language, each by its entry in
 //! [`functions`](crate::functions).
 
-use super::records::{arrays, field, of_texts, text_arrays};
+use super::records::{arrays, field, string_arrays, string_value};
 use super::{Array, Binary, ClockedCall, Lowered, Lowering, Target, Unary, placed, size_fault};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::eval::ValueType;
@@ -12,7 +12,7 @@ use crate::functions::{
 };
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::lower::shape::UNKNOWN_TEXT;
-use crate::lower::text_array::Texts;
+use crate::lower::string_array::StringArray;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{self, FunctionId};
@@ -114,7 +114,7 @@ impl<T: Target> Lowering<'_, T> {
             (Operator::Size, _) => self.size(arguments, span).map(Lowered::Array),
             (Operator::NumberOfDimensions, [array]) => {
                 let rank = match self.lower(array)? {
-                    Lowered::Texts(texts) => texts.dims.len(),
+                    Lowered::Strings(strings) => strings.dims.len(),
                     Lowered::Text(_) => 0,
                     _ => self.array(array)?.dims.len(),
                 };
@@ -207,33 +207,33 @@ impl<T: Target> Lowering<'_, T> {
             }
             return Ok(Lowered::Record(fields));
         }
-        if let Some(texts) = text_arrays(values) {
-            return self.arranged_texts(&texts, make);
+        if let Some(strings) = string_arrays(values) {
+            return self.arranged_strings(&strings, make);
         }
         let arrays = arrays(values.to_vec(), span)?;
         make(self, arrays).map(Lowered::Array)
     }
 
-    /// Texts in the places that a plan gives to the numbers that stand for them.
-    fn arranged_texts(
+    /// Strings at the positions that a plan gives to the numbers that stand for them.
+    fn arranged_strings(
         &mut self,
-        values: &[Texts],
+        values: &[StringArray],
         make: &mut Make<'_, Self, T::Scalar>,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let mut table = Vec::new();
         let mut arrays = Vec::with_capacity(values.len());
         for value in values {
             let first = table.len();
-            table.extend(value.texts.iter().cloned());
+            table.extend(value.strings.iter().cloned());
             let elements = (first..table.len()).map(|at| self.target.constant(at as f64)).collect();
             arrays.push(Array { dims: value.dims.clone(), elements });
         }
         let Array { dims, elements } = make(self, arrays)?;
         let text = |number| self.target.as_constant(number).and_then(|at| table.get(at as usize));
-        let texts = elements
+        let strings = elements
             .into_iter()
             .map(|number| text(number).cloned().unwrap_or_else(|| UNKNOWN_TEXT.into()));
-        Ok(of_texts(Texts { dims, texts: texts.collect() }))
+        Ok(string_value(StringArray { dims, strings: strings.collect() }))
     }
 
     /// The array of a plan; `numbers` are the arguments that it depends on, `arrays` the others.
@@ -372,7 +372,7 @@ impl<T: Target> Lowering<'_, T> {
         match arguments {
             [a] => {
                 let dims = match self.lower(a)? {
-                    Lowered::Texts(texts) => texts.dims,
+                    Lowered::Strings(strings) => strings.dims,
                     _ => self.array(a)?.dims,
                 };
                 let sizes = dims.iter().map(|n| self.target.constant(*n as f64)).collect();
@@ -401,7 +401,7 @@ impl<T: Target> Lowering<'_, T> {
         }
         match value {
             Lowered::Array(array) => Ok(array.dims.clone()),
-            Lowered::Texts(texts) => Ok(texts.dims.clone()),
+            Lowered::Strings(strings) => Ok(strings.dims.clone()),
             _ => self.array(e).map(|array| array.dims),
         }
     }

@@ -43,8 +43,8 @@ impl<T: Target> Lowering<'_, T> {
         arguments: &Arguments,
         span: Span,
     ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
-        let outputs = self.call_with_known_texts(user, arguments, span);
-        let has_texts = || {
+        let outputs = self.call_with_known_strings(user, arguments, span);
+        let has_strings = || {
             let mut all = user.inputs.iter().chain(&user.outputs);
             all.any(|component| component.value_type == ValueType::String)
         };
@@ -52,16 +52,18 @@ impl<T: Target> Lowering<'_, T> {
             Err(error)
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
                     && !self.composes
-                    && has_texts()
+                    && has_strings()
                     && !self.target.gives_up() =>
             {
                 let made = self.composing(|own| match own.composes {
-                    true => own.call_with_known_texts(user, arguments, span).ok(),
+                    true => own.call_with_known_strings(user, arguments, span).ok(),
                     false => None,
                 });
                 let settled = made.or_else(|| {
-                    self.settling_texts(|own| own.call_with_known_texts(user, arguments, span))?
-                        .ok()
+                    self.with_string_parameters(|own| {
+                        own.call_with_known_strings(user, arguments, span)
+                    })?
+                    .ok()
                 });
                 settled.map_or(outputs, Ok)
             }
@@ -88,7 +90,7 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    fn call_with_known_texts(
+    fn call_with_known_strings(
         &mut self,
         user: &std::sync::Arc<Function>,
         arguments: &Arguments,
@@ -105,10 +107,10 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(outputs) = self.vectorized_call(user, &values, span)? {
             return Ok(outputs);
         }
-        if let Some(outputs) = self.text_call(user, &values, span)? {
+        if let Some(outputs) = self.string_call(user, &values, span)? {
             return Ok(outputs);
         }
-        self.target.wants_texts(self.composes);
+        self.target.needs_string_outputs(self.composes);
         match self.target.call(user, values.clone(), span) {
             Err(error)
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
@@ -144,7 +146,7 @@ impl<T: Target> Lowering<'_, T> {
         })
     }
 
-    /// The outputs of a function that the interpreter carries out whenever it is called; Strings among
+    /// The outputs of a function that the interpreter executes whenever it is called; Strings among
     /// its arguments that are not known now are made then.
     fn interpreted_call(
         &mut self,

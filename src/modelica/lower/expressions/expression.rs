@@ -156,10 +156,10 @@ impl<T: Target> Lowering<'_, T> {
             if part.subscripts.is_empty() || position + 1 == reference.parts.len() {
                 continue;
             }
-            let mut texts = Vec::new();
+            let mut strings = Vec::new();
             for subscript in &part.subscripts {
                 match subscript {
-                    Subscript::Index(index) => texts.push(self.known_size(index)?.to_string()),
+                    Subscript::Index(index) => strings.push(self.known_size(index)?.to_string()),
                     Subscript::All(span) => {
                         return Err(
                             fault!(NOT_SUPPORTED, "a slice of an array of components").at(*span)
@@ -167,7 +167,7 @@ impl<T: Target> Lowering<'_, T> {
                     }
                 }
             }
-            path.push_str(&format!("[{}]", texts.join(",")));
+            path.push_str(&format!("[{}]", strings.join(",")));
         }
         Ok(path)
     }
@@ -260,7 +260,7 @@ impl<T: Target> Lowering<'_, T> {
             }
         }
         let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
-        Ok(self.choice_of_texts(condition, numbers))
+        Ok(self.string_choice(condition, numbers))
     }
 
     /// The numbers of a range (MLS §10.4.3).

@@ -6,7 +6,7 @@ use crate::source::Span;
 use crate::syntax::ast::Expression;
 
 impl<T: Target> Lowering<'_, T> {
-    /// Both arguments, joined element by element as the target wishes.
+    /// Both arguments, joined element by element as the target requires.
     pub(super) fn homotopy(
         &mut self,
         actual: &Expression,

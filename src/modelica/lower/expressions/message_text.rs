@@ -1,6 +1,6 @@
-//! Texts of messages.
+//! The wording of messages.
 
-use super::{Lowered, Lowering, Target, TextPart};
+use super::{Lowered, Lowering, StringPart, Target};
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind};
 
@@ -37,7 +37,7 @@ fn terms(e: &Expression) -> impl Iterator<Item = &Expression> {
 pub(crate) fn message_parts<T: Target>(
     lowering: &mut Lowering<'_, T>,
     e: Option<&Expression>,
-) -> Vec<TextPart<T::Scalar>> {
+) -> Vec<StringPart<T::Scalar>> {
     let mut parts = Vec::new();
     if let Some(e) = e {
         collect(lowering, e, &mut parts);
@@ -48,7 +48,7 @@ pub(crate) fn message_parts<T: Target>(
 fn collect<T: Target>(
     lowering: &mut Lowering<'_, T>,
     e: &Expression,
-    parts: &mut Vec<TextPart<T::Scalar>>,
+    parts: &mut Vec<StringPart<T::Scalar>>,
 ) {
     if let ExpressionKind::Binary { operator: BinaryOperator::Add, .. } = &e.kind {
         terms(e).for_each(|term| collect(lowering, term, parts));
@@ -59,20 +59,20 @@ fn collect<T: Target>(
         true => varying_part(lowering, e),
         false => None,
     };
-    parts.push(part.unwrap_or_else(|| TextPart::Text(text.into())));
+    parts.push(part.unwrap_or_else(|| StringPart::Text(text.into())));
 }
 
 /// A part that is known during the simulation only. Calls are not made for the sake of a message.
 fn varying_part<T: Target>(
     lowering: &mut Lowering<'_, T>,
     e: &Expression,
-) -> Option<TextPart<T::Scalar>> {
+) -> Option<StringPart<T::Scalar>> {
     let text = match &e.kind {
         ExpressionKind::Call { function, arguments } => {
             let is_string = function.as_ident().is_some_and(|name| name == "String");
             return if is_string { lowering.number_part(arguments).ok()? } else { None };
         }
-        ExpressionKind::If { .. } if lowering.target.composes() => lowering.text_at_run_time(e),
+        ExpressionKind::If { .. } if lowering.target.composes() => lowering.run_time_string(e),
         ExpressionKind::Reference(_) | ExpressionKind::Subscripted { .. } => {
             match lowering.target.composes() {
                 true => lowering.composing(|own| own.lower(e)),
@@ -82,8 +82,8 @@ fn varying_part<T: Target>(
         _ => return None,
     };
     match text {
-        Ok(Lowered::Numbered(number)) => Some(TextPart::Numbered(number)),
-        Ok(Lowered::Text(text)) => Some(TextPart::Text(text)),
+        Ok(Lowered::Numbered(number)) => Some(StringPart::Numbered(number)),
+        Ok(Lowered::Text(text)) => Some(StringPart::Text(text)),
         _ => None,
     }
 }

@@ -12,12 +12,12 @@ mod message_text;
 mod operators;
 mod placed;
 mod records;
+mod string_parts;
 mod strings;
-mod text_parts;
 mod varying_strings;
 mod vectorized;
 
-pub(crate) use super::text_part::TextPart;
+pub(crate) use super::string_part::StringPart;
 pub(crate) use arrays::Choice;
 pub(crate) use message_text::{message_parts, message_text, nth};
 pub(crate) use records::field_of;
@@ -25,7 +25,7 @@ pub(crate) use records::field_of;
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::loops::Loops;
 use super::shape::{Shape, UNKNOWN_TEXT};
-use super::text_array::Texts;
+use super::string_array::StringArray;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
 use crate::fault;
@@ -101,8 +101,8 @@ pub(crate) trait Target {
         position: Self::Scalar,
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic>;
-    /// The value of what sizes or texts depend on, which cannot change from here on; `None` if it
-    /// is not known.
+    /// The value of an expression on which sizes or Strings depend, which cannot change from here
+    /// on; `None` if it is not known.
     fn settle(&mut self, value: Self::Scalar) -> Option<f64> {
         let _ = value;
         None
@@ -112,8 +112,8 @@ pub(crate) trait Target {
         let _ = e;
         false
     }
-    /// The number that stands for a text where texts change at events; `None` where none do.
-    fn text_number(&mut self, text: &Arc<str>) -> Option<Self::Scalar> {
+    /// The number that stands for a String where Strings change at events; `None` where none do.
+    fn string_number(&mut self, text: &Arc<str>) -> Option<Self::Scalar> {
         let _ = text;
         None
     }
@@ -124,15 +124,15 @@ pub(crate) trait Target {
     /// The number of a text that is made of parts when what is translated runs.
     fn compose(
         &mut self,
-        parts: &[TextPart<Self::Scalar>],
+        parts: &[StringPart<Self::Scalar>],
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic> {
         let _ = parts;
         Err(varying_strings::computed(span))
     }
     /// Whether the outputs of the next call are needed where they are Strings made at run time.
-    fn wants_texts(&mut self, wanted: bool) {
-        let _ = wanted;
+    fn needs_string_outputs(&mut self, needed: bool) {
+        let _ = needed;
     }
     /// What a String parameter, or a String that is bound, is made of: a scalar.
     fn string_binding(&self, path: &str) -> Option<Expression> {
@@ -141,9 +141,9 @@ pub(crate) trait Target {
     }
     /// A text is needed that is not known, and that [`Target::composes`] would give.
     fn misses_text(&mut self) {}
-    /// Whether parameters that texts depend on are evaluated, to be switched; `None` where they cannot
-    /// be.
-    fn settles_texts(&mut self) -> Option<&mut bool> {
+    /// Whether parameters on which Strings depend are evaluated, to be switched; `None` where they
+    /// cannot be.
+    fn evaluates_string_parameters(&mut self) -> Option<&mut bool> {
         None
     }
     /// Whether the right operand of `and` and `or` is computed only where it decides.
@@ -204,7 +204,7 @@ pub(crate) trait Target {
     fn functions(&self) -> Vec<Arc<crate::eval::Function>>;
     /// The files that the model may use.
     fn resources(&self) -> Resources;
-    /// Whether the call that is being carried out will be given up: what it needs is not computed.
+    /// Whether the evaluation of the current call will be abandoned: what it needs is not computed.
     fn gives_up(&self) -> bool {
         false
     }
@@ -347,8 +347,8 @@ pub(crate) enum Lowered<S> {
     Record(Vec<(Ident, Lowered<S>)>),
     /// A text known when compiling, but for the parts of messages that are not.
     Text(Arc<str>),
-    /// An array of such texts.
-    Texts(Texts),
+    /// An array of such Strings.
+    Strings(StringArray),
     /// The number of a text that changes at events.
     Numbered(S),
 }
@@ -386,7 +386,7 @@ impl<S: Copy> Lowered<S> {
                 Some(Shape::Record(fields.iter().map(shape).collect::<Option<_>>()?))
             }
             Lowered::Text(text) => Some(Shape::Text(text.clone())),
-            Lowered::Texts(texts) => Some(Shape::Texts(texts.clone())),
+            Lowered::Strings(strings) => Some(Shape::Strings(strings.clone())),
             Lowered::Numbered(_) => Some(Shape::Numbered),
         }
     }
@@ -398,7 +398,7 @@ impl<S: Copy> Lowered<S> {
             Lowered::Record(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(span))
             }
-            Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
+            Lowered::Text(_) | Lowered::Strings(_) | Lowered::Numbered(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(span))
             }
         }
@@ -420,7 +420,7 @@ impl<S: Copy> Lowered<S> {
                 Lowered::Record(fields.iter().map(|(n, f)| (*n, f.map(replace))).collect())
             }
             Lowered::Text(text) => Lowered::Text(text.clone()),
-            Lowered::Texts(texts) => Lowered::Texts(texts.clone()),
+            Lowered::Strings(strings) => Lowered::Strings(strings.clone()),
             Lowered::Numbered(number) => Lowered::Numbered(replace(*number)),
         }
     }
@@ -431,7 +431,7 @@ impl<S: Copy> Lowered<S> {
             Lowered::Array(array) => out.extend(&array.elements),
             Lowered::Record(fields) => fields.iter().for_each(|(_, f)| f.append_scalars(out)),
             Lowered::Numbered(number) => out.push(*number),
-            Lowered::Text(_) | Lowered::Texts(_) => {}
+            Lowered::Text(_) | Lowered::Strings(_) => {}
         }
     }
 
@@ -446,7 +446,7 @@ impl<S: Copy> Lowered<S> {
                 fields.iter().map(|(n, s)| (*n, Lowered::from_scalars(s, scalars))).collect(),
             ),
             Shape::Text(text) => Lowered::Text(text.clone()),
-            Shape::Texts(texts) => Lowered::Texts(texts.clone()),
+            Shape::Strings(strings) => Lowered::Strings(strings.clone()),
             // There is a scalar for every part of a shape.
             Shape::Numbered => match scalars.next() {
                 Some(number) => Lowered::Numbered(number),
@@ -456,7 +456,7 @@ impl<S: Copy> Lowered<S> {
     }
 }
 
-/// Turns expressions into the scalars of a target.
+/// Lowers expressions to the scalars of a target.
 pub(crate) struct Lowering<'a, T: Target> {
     /// Where the scalars go.
     pub(crate) target: &'a mut T,
@@ -537,8 +537,8 @@ pub(crate) fn sizes(dims: &[usize]) -> String {
     if dims.is_empty() {
         return "scalar".into();
     }
-    let texts: Vec<String> = dims.iter().map(usize::to_string).collect();
-    format!("[{}]", texts.join(", "))
+    let strings: Vec<String> = dims.iter().map(usize::to_string).collect();
+    format!("[{}]", strings.join(", "))
 }
 
 /// The fault of two sizes that differ.

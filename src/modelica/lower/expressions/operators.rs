@@ -40,10 +40,10 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let a = match lowered {
-            Lowered::Text(a) => return self.texts(operator, (a, left), right, span),
-            Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
+            Lowered::Text(a) => return self.strings(operator, (a, left), right, span),
+            Lowered::Numbered(a) => return self.varying_strings(operator, a, right, span),
             Lowered::Array(a) => a,
-            Lowered::Record(_) | Lowered::Texts(_) => self.array(left)?,
+            Lowered::Record(_) | Lowered::Strings(_) => self.array(left)?,
         };
         if matches!(operator, BinaryOperator::And | BinaryOperator::Or) && a.dims.is_empty() {
             return match self.target.short_circuits() {
@@ -135,8 +135,8 @@ impl<T: Target> Lowering<'_, T> {
         self.same_size(operation, Array::scalar(a), b, span).map(Lowered::Array)
     }
 
-    /// Two texts joined, which may be unknown in parts, or a relation of two that are known.
-    fn texts(
+    /// Two Strings joined, which may be unknown in parts, or a relation of two that are known.
+    fn strings(
         &mut self,
         operator: BinaryOperator,
         (a, left): (Arc<str>, &Expression),
@@ -151,11 +151,11 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Numbered(_) if operator == BinaryOperator::Add => UNKNOWN_TEXT.into(),
             Lowered::Numbered(b) => {
                 let a = match a.contains(UNKNOWN_TEXT) {
-                    true => self.text_at_run_time(left)?,
+                    true => self.run_time_string(left)?,
                     false => Lowered::Text(a),
                 };
                 let a = self.number_of_text(a, span)?;
-                return self.compare_texts(operator, a, b, span);
+                return self.compare_strings(operator, a, b, span);
             }
             _ => return Err(fault!(ARRAY_MISMATCH, "comparing a String with a number").at(span)),
         };
@@ -168,9 +168,9 @@ impl<T: Target> Lowering<'_, T> {
             && matches!(operator, BinaryOperator::Equal | BinaryOperator::NotEqual)
             && self.target.composes()
         {
-            let sides = [self.text_at_run_time(left)?, self.text_at_run_time(right)?];
+            let sides = [self.run_time_string(left)?, self.run_time_string(right)?];
             let [a, b] = sides.map(|side| self.number_of_text(side, span));
-            return self.compare_texts(operator, a?, b?, span);
+            return self.compare_strings(operator, a?, b?, span);
         }
         if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {
             self.target.misses_text();

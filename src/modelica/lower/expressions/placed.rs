@@ -11,8 +11,8 @@ pub(super) fn of_operator<'a>(entry: &Builtin, arguments: &'a Arguments) -> Cow<
     if entry.inputs.is_empty() || arguments.named.is_empty() {
         return Cow::Borrowed(&arguments.positional);
     }
-    let behind = entry.inputs.iter().skip(arguments.positional.len());
-    let named = behind.map_while(|input| {
+    let after = entry.inputs.iter().skip(arguments.positional.len());
+    let named = after.map_while(|input| {
         let named = arguments.named.iter().find(|argument| argument.name.node == *input)?;
         Some(named.value.clone())
     });

@@ -5,7 +5,7 @@ use super::{Array, Lowered, Lowering, MAX_SCALARS, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::errors::ARRAY_MISMATCH;
-use crate::lower::text_array::Texts;
+use crate::lower::string_array::StringArray;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Subscript};
 
@@ -24,7 +24,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Array(array) => self.subscripted(array, subscripts, span).map(Lowered::Array),
             // All elements have the same text, or it is not known.
             Lowered::Text(text) => Ok(Lowered::Text(text)),
-            Lowered::Texts(texts) => self.text_elements(texts, subscripts, span),
+            Lowered::Strings(strings) => self.string_elements(strings, subscripts, span),
             Lowered::Record(fields) => {
                 let mut chosen = Vec::with_capacity(fields.len());
                 for (name, value) in fields {
@@ -66,9 +66,9 @@ pub(super) fn stacked<S: Copy>(
     values: Vec<Lowered<S>>,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
-    if let Some(texts) = text_arrays(&values) {
-        return match Texts::stacked(&texts) {
-            Some(texts) => Ok(Lowered::Texts(texts)),
+    if let Some(strings) = string_arrays(&values) {
+        return match StringArray::stacked(&strings) {
+            Some(strings) => Ok(Lowered::Strings(strings)),
             None => Err(fault!(ARRAY_MISMATCH, "the elements have different sizes").at(span)),
         };
     }
@@ -85,22 +85,22 @@ pub(super) fn stacked<S: Copy>(
     Ok(Lowered::Record(fields))
 }
 
-/// Values that are all texts or arrays of texts, one at least; `None` for numbers.
-pub(super) fn text_arrays<S: Copy>(values: &[Lowered<S>]) -> Option<Vec<Texts>> {
-    let texts = |value: &Lowered<S>| match value {
-        Lowered::Text(text) => Some(Texts::filled(Vec::new(), text.clone())),
-        Lowered::Texts(texts) => Some(texts.clone()),
+/// Values that are all Strings or arrays of Strings, one at least; `None` for numbers.
+pub(super) fn string_arrays<S: Copy>(values: &[Lowered<S>]) -> Option<Vec<StringArray>> {
+    let strings = |value: &Lowered<S>| match value {
+        Lowered::Text(text) => Some(StringArray::filled(Vec::new(), text.clone())),
+        Lowered::Strings(strings) => Some(strings.clone()),
         _ => None,
     };
-    let all: Vec<Texts> = values.iter().map(texts).collect::<Option<_>>()?;
+    let all: Vec<StringArray> = values.iter().map(strings).collect::<Option<_>>()?;
     (!all.is_empty()).then_some(all)
 }
 
-/// An array of texts as a value: one without dimensions is a text.
-pub(super) fn of_texts<S>(texts: Texts) -> Lowered<S> {
-    match texts.texts.first() {
-        Some(text) if texts.dims.is_empty() => Lowered::Text(text.clone()),
-        _ => Lowered::Texts(texts),
+/// An array of Strings as a value: one without dimensions is a String.
+pub(super) fn string_value<S>(strings: StringArray) -> Lowered<S> {
+    match strings.strings.first() {
+        Some(text) if strings.dims.is_empty() => Lowered::Text(text.clone()),
+        _ => Lowered::Strings(strings),
     }
 }
 
@@ -114,7 +114,7 @@ pub(super) fn arrays<S: Copy>(
         Lowered::Record(_) => {
             Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(span))
         }
-        Lowered::Text(_) | Lowered::Texts(_) | Lowered::Numbered(_) => {
+        Lowered::Text(_) | Lowered::Strings(_) | Lowered::Numbered(_) => {
             Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(span))
         }
     };

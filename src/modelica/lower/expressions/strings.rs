@@ -1,6 +1,6 @@
-//! Functions of texts: called while the model is compiled, by the interpreter.
+//! Functions of Strings: called while the model is compiled, by the interpreter.
 
-use super::records::of_texts;
+use super::records::string_value;
 use super::{Array, Choice, Lowered, Lowering, Target};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
@@ -11,7 +11,7 @@ use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::function::{OnDemand, library_of};
 use crate::lower::number_values::{append_numbers, value_of};
 use crate::lower::shape::UNKNOWN_TEXT;
-use crate::lower::text_array::Texts;
+use crate::lower::string_array::StringArray;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
@@ -20,7 +20,7 @@ use indexmap::IndexMap;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Functions that find files: whoever compiles the model knows where they are (MLS §13.5).
+/// Functions that find files: their locations are known at translation (MLS §13.5).
 const FIND_FILES: &[&str] = &[
     "Modelica.Utilities.Files.loadResource",
     "ModelicaServices.ExternalReferences.loadResource",
@@ -28,9 +28,9 @@ const FIND_FILES: &[&str] = &[
 ];
 
 impl<T: Target> Lowering<'_, T> {
-    /// The outputs of a function that takes or gives texts, if all its arguments are known and it
-    /// can be run now; parameters that a text depends on are settled.
-    pub(super) fn text_call(
+    /// The outputs of a function with Strings as inputs or outputs, if all its arguments are known
+    /// and it can be run now; parameters on which a String depends are evaluated.
+    pub(super) fn string_call(
         &mut self,
         function: &Arc<Function>,
         arguments: &[Lowered<T::Scalar>],
@@ -101,7 +101,7 @@ impl<T: Target> Lowering<'_, T> {
         self.interpreted(function, values, span).map_err(Some)?.ok_or(None)
     }
 
-    /// The outputs of a function as numbers and texts; `None` if one of them is neither.
+    /// The outputs of a function as numbers and Strings; `None` if one of them is neither.
     fn interpreted(
         &mut self,
         function: &Arc<Function>,
@@ -132,22 +132,22 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// The texts that subscripts choose; a single one at a position that is not known is chosen by
-    /// its number.
-    pub(super) fn text_elements(
+    /// The Strings that subscripts select; a single one at a position that is not known is selected
+    /// by its number.
+    pub(super) fn string_elements(
         &mut self,
-        texts: Texts,
+        strings: StringArray,
         subscripts: &[Subscript],
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let mut dims = Vec::new();
         let mut positions = vec![0];
-        let mut choices = self.choices(&texts.dims, subscripts, span)?;
-        if self.target.settles_texts().is_some_and(|settles| *settles) {
-            self.settle_choices(&mut choices, &texts.dims);
+        let mut choices = self.choices(&strings.dims, subscripts, span)?;
+        if self.target.evaluates_string_parameters().is_some_and(|settles| *settles) {
+            self.settle_choices(&mut choices, &strings.dims);
         }
         if choices.iter().any(|choice| matches!(choice, Choice::Computed(_)))
-            && let Some(numbers) = self.numbers_of_texts(&texts)
+            && let Some(numbers) = self.string_numbers(&strings)
         {
             let chosen = self.chosen_by(numbers, choices, span)?;
             return match chosen.elements.as_slice() {
@@ -156,7 +156,7 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         let mut choices = choices.into_iter();
-        for size in &texts.dims {
+        for size in &strings.dims {
             let (chosen, keeps) = match choices.next() {
                 Some(Choice::Known { positions, keeps }) => (positions, keeps),
                 Some(Choice::Computed(_) | Choice::ComputedVector(_)) => {
@@ -168,8 +168,8 @@ impl<T: Target> Lowering<'_, T> {
             positions = positions.iter().flat_map(step).collect();
             dims.extend(keeps.then_some(chosen.len()));
         }
-        let chosen = positions.into_iter().map(|at| texts.texts[at].clone()).collect();
-        Ok(of_texts(Texts { dims, texts: chosen }))
+        let chosen = positions.into_iter().map(|at| strings.strings[at].clone()).collect();
+        Ok(string_value(StringArray { dims, strings: chosen }))
     }
 
     /// Evaluates the parameters that positions depend on.
@@ -185,19 +185,19 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// The numbers of texts, if all are known and the texts of the model have numbers.
-    fn numbers_of_texts(&mut self, texts: &Texts) -> Option<Array<T::Scalar>> {
-        if texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
+    /// The numbers of Strings, if all are known and the Strings of the model have numbers.
+    fn string_numbers(&mut self, strings: &StringArray) -> Option<Array<T::Scalar>> {
+        if strings.strings.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
             return None;
         }
-        let elements = texts.texts.iter().map(|text| self.target.text_number(text));
-        Some(Array { dims: texts.dims.clone(), elements: elements.collect::<Option<_>>()? })
+        let elements = strings.strings.iter().map(|text| self.target.string_number(text));
+        Some(Array { dims: strings.dims.clone(), elements: elements.collect::<Option<_>>()? })
     }
 
     /// What a reference stands for, if that is known.
     fn known_reference(&mut self, reference: &ComponentReference) -> Option<Value> {
         let variable = reference.as_ident().and_then(|name| self.loop_variable(name));
-        let wanted = match variable {
+        let expected = match variable {
             Some(variable) => variable.value_type.clone(),
             None => {
                 let path = self.path(reference).ok()?;
@@ -206,11 +206,11 @@ impl<T: Target> Lowering<'_, T> {
         };
         let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
         let value = self.lower(&e).ok()?;
-        let settle = self.target.settles_texts().is_some_and(|settles| *settles);
-        self.known_value(&value, &wanted, settle)
+        let settle = self.target.evaluates_string_parameters().is_some_and(|settles| *settles);
+        self.known_value(&value, &expected, settle)
     }
 
-    /// The value of an argument; of arrays of texts too little is known.
+    /// The value of an argument; of arrays of Strings too little is known.
     fn known_argument(
         &mut self,
         argument: &Lowered<T::Scalar>,
@@ -229,21 +229,21 @@ impl<T: Target> Lowering<'_, T> {
     fn known_value(
         &mut self,
         argument: &Lowered<T::Scalar>,
-        wanted: &ValueType,
+        expected: &ValueType,
         settle: bool,
     ) -> Option<Value> {
         match argument {
             Lowered::Text(text) => {
                 (!text.contains(UNKNOWN_TEXT)).then(|| Value::String(text.clone()))
             }
-            Lowered::Texts(texts) => {
-                let is_known = texts.texts.iter().all(|text| !text.contains(UNKNOWN_TEXT));
-                let elements = Elements::String(texts.texts.to_vec());
-                is_known.then(|| Value::Array(ArrayValue { dims: texts.dims.clone(), elements }))
+            Lowered::Strings(strings) => {
+                let is_known = strings.strings.iter().all(|text| !text.contains(UNKNOWN_TEXT));
+                let elements = Elements::String(strings.strings.to_vec());
+                is_known.then(|| Value::Array(ArrayValue { dims: strings.dims.clone(), elements }))
             }
-            Lowered::Record(fields) => self.known_record(fields, wanted, settle),
+            Lowered::Record(fields) => self.known_record(fields, expected, settle),
             Lowered::Numbered(_) => None,
-            Lowered::Array(array) if matches!(wanted, ValueType::ExternalObject(_)) => {
+            Lowered::Array(array) if matches!(expected, ValueType::ExternalObject(_)) => {
                 self.known_object(array)
             }
             Lowered::Array(array) => {
@@ -256,7 +256,7 @@ impl<T: Target> Lowering<'_, T> {
                     };
                     numbers.push(known?);
                 }
-                value_of(&numbers, &array.dims, wanted)
+                value_of(&numbers, &array.dims, expected)
             }
         }
     }
@@ -282,10 +282,10 @@ impl<T: Target> Lowering<'_, T> {
     fn known_record(
         &mut self,
         fields: &[(Ident, Lowered<T::Scalar>)],
-        wanted: &ValueType,
+        expected: &ValueType,
         settle: bool,
     ) -> Option<Value> {
-        let ValueType::Record(type_name, types) = wanted else { return None };
+        let ValueType::Record(type_name, types) = expected else { return None };
         let mut known = IndexMap::with_capacity(fields.len());
         for (name, value) in fields {
             let field = self.known_value(value, &types.get(name)?.value_type, settle)?;
@@ -298,10 +298,10 @@ impl<T: Target> Lowering<'_, T> {
     fn known_records(
         &mut self,
         fields: &[(Ident, Lowered<T::Scalar>)],
-        wanted: &ValueType,
+        expected: &ValueType,
         settle: bool,
     ) -> Option<Value> {
-        let Value::Record(of_arrays) = self.known_record(fields, wanted, settle)? else {
+        let Value::Record(of_arrays) = self.known_record(fields, expected, settle)? else {
             return None;
         };
         let Value::Array(first) = of_arrays.fields.values().next()? else { return None };
@@ -327,9 +327,9 @@ impl<T: Target> Lowering<'_, T> {
             let field = |(name, value): (&Ident, &Value)| Some((*name, self.lowered_value(value)?));
             return record.fields.iter().map(field).collect::<Option<_>>().map(Lowered::Record);
         }
-        if let Value::Array(ArrayValue { dims, elements: Elements::String(texts) }) = value {
-            let texts = texts.as_slice().into();
-            return Some(Lowered::Texts(Texts { dims: dims.clone(), texts }));
+        if let Value::Array(ArrayValue { dims, elements: Elements::String(strings) }) = value {
+            let strings = strings.as_slice().into();
+            return Some(Lowered::Strings(StringArray { dims: dims.clone(), strings }));
         }
         let mut numbers = Vec::new();
         append_numbers(value, &mut numbers)?;

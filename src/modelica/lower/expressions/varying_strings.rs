@@ -1,4 +1,4 @@
-//! Texts that change at events, as the numbers of a table: two are the same if their numbers are.
+//! Strings that change at events, as the numbers of a table: two are the same if their numbers are.
 
 use super::{Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
@@ -22,18 +22,18 @@ impl<T: Target> Lowering<'_, T> {
                 self.target.misses_text();
                 Err(computed(span))
             }
-            Lowered::Text(text) => self.target.text_number(&text).ok_or_else(|| {
+            Lowered::Text(text) => self.target.string_number(&text).ok_or_else(|| {
                 self.target.misses_text();
                 depends_on_conditions(span)
             }),
-            Lowered::Array(_) | Lowered::Record(_) | Lowered::Texts(_) => {
+            Lowered::Array(_) | Lowered::Record(_) | Lowered::Strings(_) => {
                 Err(fault!(ARRAY_MISMATCH, "expected a scalar String").at(span))
             }
         }
     }
 
     /// What a text is, made at run time if it is not known now.
-    pub(crate) fn text_at_run_time(
+    pub(crate) fn run_time_string(
         &mut self,
         e: &Expression,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
@@ -50,17 +50,20 @@ impl<T: Target> Lowering<'_, T> {
         if !is_unknown(&made) {
             return made;
         }
-        match self.settling_texts(|own| own.lower(e)) {
+        match self.with_string_parameters(|own| own.lower(e)) {
             Some(settled) if !is_unknown(&settled) => settled,
             _ => made,
         }
     }
 
     /// What is made of Strings whose parameters are evaluated for it; `None` where none can be.
-    pub(super) fn settling_texts<R>(&mut self, lower: impl FnOnce(&mut Self) -> R) -> Option<R> {
-        let before = std::mem::replace(self.target.settles_texts()?, true);
+    pub(super) fn with_string_parameters<R>(
+        &mut self,
+        lower: impl FnOnce(&mut Self) -> R,
+    ) -> Option<R> {
+        let before = std::mem::replace(self.target.evaluates_string_parameters()?, true);
         let result = lower(self);
-        *self.target.settles_texts()? = before;
+        *self.target.evaluates_string_parameters()? = before;
         Some(result)
     }
 
@@ -77,7 +80,7 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// `if condition then first else second`
-    pub(super) fn choice_of_texts(
+    pub(super) fn string_choice(
         &mut self,
         condition: T::Scalar,
         [first, second]: [T::Scalar; 2],
@@ -88,7 +91,7 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// A relation of a text that changes and another one.
-    pub(super) fn varying_texts(
+    pub(super) fn varying_strings(
         &mut self,
         operator: BinaryOperator,
         a: T::Scalar,
@@ -97,7 +100,7 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let b = match operator {
             BinaryOperator::Add => self.lower(right)?,
-            _ => self.text_at_run_time(right)?,
+            _ => self.run_time_string(right)?,
         };
         if operator == BinaryOperator::Add && matches!(b, Lowered::Text(_) | Lowered::Numbered(_)) {
             return match self.composes {
@@ -106,11 +109,11 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         let b = self.number_of_text(b, span)?;
-        self.compare_texts(operator, a, b, span)
+        self.compare_strings(operator, a, b, span)
     }
 
-    /// Whether two texts are the same, by their numbers.
-    pub(super) fn compare_texts(
+    /// Whether two Strings are the same, by their numbers.
+    pub(super) fn compare_strings(
         &mut self,
         operator: BinaryOperator,
         a: T::Scalar,

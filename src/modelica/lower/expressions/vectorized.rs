@@ -1,10 +1,10 @@
 //! Functions applied to arrays element by element (MLS §12.4.6).
 
-use super::records::{arrays, field, of_texts, text_arrays};
+use super::records::{arrays, field, string_arrays, string_value};
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
-use crate::lower::text_array::Texts;
+use crate::lower::string_array::StringArray;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -57,9 +57,9 @@ fn gathered<S: Copy>(
         });
         return whole.collect::<Result<_, _>>().map(Lowered::Record);
     }
-    if let Some(texts) = text_arrays(ones).as_deref().and_then(Texts::stacked) {
-        let dims = [sizes, &texts.dims[1..]].concat();
-        return Ok(Lowered::Texts(Texts { dims, ..texts }));
+    if let Some(strings) = string_arrays(ones).as_deref().and_then(StringArray::stacked) {
+        let dims = [sizes, &strings.dims[1..]].concat();
+        return Ok(Lowered::Strings(StringArray { dims, ..strings }));
     }
     let ones = arrays(ones.to_vec(), span)?;
     let inner = ones.first().map_or(&[][..], |one| &one.dims);
@@ -77,9 +77,9 @@ fn surplus<'a, S>(input: &FunctionComponent, argument: &'a Lowered<S>) -> Option
             let n = array.dims.len().checked_sub(input.dims.len())?;
             (n > 0).then(|| &array.dims[..n])
         }
-        (Lowered::Texts(texts), _) => {
-            let n = texts.dims.len().checked_sub(input.dims.len())?;
-            (n > 0).then(|| &texts.dims[..n])
+        (Lowered::Strings(strings), _) => {
+            let n = strings.dims.len().checked_sub(input.dims.len())?;
+            (n > 0).then(|| &strings.dims[..n])
         }
         // Arrays of records are records of arrays.
         (Lowered::Record(values), ValueType::Record(_, fields)) => {
@@ -112,7 +112,7 @@ fn element<S: Copy>(array: &Lowered<S>, rank: usize, at: usize) -> Lowered<S> {
             let fields = fields.iter().map(|(name, field)| (*name, element(field, rank, at)));
             Lowered::Record(fields.collect())
         }
-        Lowered::Texts(texts) => of_texts(texts.part(rank, at)),
+        Lowered::Strings(strings) => string_value(strings.part(rank, at)),
         other => other.clone(),
     }
 }

@@ -4,21 +4,21 @@ use super::emitter::{Emitter, Operand};
 use super::instances::Instances;
 use super::statements::Body;
 use crate::bytecode::{Code, ExternalCall, Instruction, Register};
-use crate::external::{COMPOSE, Kind, Slot};
-use crate::lower::expressions::TextPart;
+use crate::external::{COMPOSE, Slot, SlotKind};
+use crate::lower::expressions::StringPart;
 use std::sync::Arc;
 
 impl Instances {
     /// The number of a text of the model.
     pub(in crate::lower) fn number_of(&mut self, text: &Arc<str>) -> f64 {
         // A variable that nothing was assigned to is empty where it is zero.
-        let texts = &mut self.functions.texts;
-        texts.insert("".into());
-        texts.insert_full(text.clone()).0 as f64
+        let strings = &mut self.functions.strings;
+        strings.insert("".into());
+        strings.insert_full(text.clone()).0 as f64
     }
 
     /// A function that makes a text of parts: its number and its arguments.
-    pub(in crate::lower) fn composer<S: Copy>(&mut self, parts: &[TextPart<S>]) -> (u32, Vec<S>) {
+    pub(in crate::lower) fn composer<S: Copy>(&mut self, parts: &[StringPart<S>]) -> (u32, Vec<S>) {
         self.number_of(&"".into());
         let mut emitter = Emitter::default();
         let mut inputs = Vec::new();
@@ -26,7 +26,7 @@ impl Instances {
             inputs.extend(row);
             emitter.permanent(row.len() as u32)
         });
-        let key = (arguments.clone(), emitter.texts().to_vec());
+        let key = (arguments.clone(), emitter.strings().to_vec());
         let code = match self.composers.get(&key) {
             Some(known) => *known,
             None => {
@@ -42,12 +42,12 @@ impl Instances {
 
 impl Body<'_, '_> {
     /// Parts of a text as arguments of a call.
-    pub(super) fn slots(&mut self, parts: &[TextPart<Operand>]) -> Vec<Slot> {
+    pub(super) fn slots(&mut self, parts: &[StringPart<Operand>]) -> Vec<Slot> {
         slots(&mut self.emitter, parts, Emitter::copies)
     }
 
     /// The number of a text of parts.
-    pub(super) fn composed(&mut self, parts: &[TextPart<Operand>]) -> Operand {
+    pub(super) fn composed(&mut self, parts: &[StringPart<Operand>]) -> Operand {
         let arguments = self.slots(parts);
         let d = self.emitter.block(1);
         make(&mut self.emitter, arguments, d);
@@ -58,26 +58,26 @@ impl Body<'_, '_> {
 /// Parts as arguments, the scalars of each in a row.
 fn slots<S: Copy>(
     emitter: &mut Emitter,
-    parts: &[TextPart<S>],
+    parts: &[StringPart<S>],
     mut row: impl FnMut(&mut Emitter, &[S]) -> Register,
 ) -> Vec<Slot> {
     let mut slots = Vec::with_capacity(parts.len());
     let text = |emitter: &mut Emitter, text: &Arc<str>| Slot {
-        kind: Kind::Text,
+        kind: SlotKind::Text,
         first: emitter.text(text.clone()),
         dims: Box::new([]),
     };
     for part in parts {
         match part {
-            TextPart::Text(known) => slots.push(text(emitter, known)),
-            TextPart::Numbered(number) => {
+            StringPart::Text(known) => slots.push(text(emitter, known)),
+            StringPart::Numbered(number) => {
                 let first = row(emitter, std::slice::from_ref(number));
-                slots.push(Slot { kind: Kind::Numbered, first, dims: Box::new([]) });
+                slots.push(Slot { kind: SlotKind::Numbered, first, dims: Box::new([]) });
             }
-            TextPart::Written(scalars, format) => {
+            StringPart::Written(scalars, format) => {
                 let first = row(emitter, scalars);
                 let dims = Box::new([scalars.len() as u32]);
-                slots.push(Slot { kind: Kind::Number, first, dims });
+                slots.push(Slot { kind: SlotKind::Number, first, dims });
                 slots.extend(format.iter().map(|format| text(emitter, format)));
             }
         }
@@ -87,7 +87,7 @@ fn slots<S: Copy>(
 
 /// The text of parts, its number to the register `d`.
 fn make(emitter: &mut Emitter, arguments: Vec<Slot>, d: Register) {
-    let result = Some(Slot { kind: Kind::Numbered, first: d, dims: Box::new([]) });
+    let result = Some(Slot { kind: SlotKind::Numbered, first: d, dims: Box::new([]) });
     // No text was there before.
     emitter.emit(Instruction::Unassign { d, n: 1 });
     let external = emitter.external(ExternalCall::new(&COMPOSE, arguments, result));
@@ -97,5 +97,5 @@ fn make(emitter: &mut Emitter, arguments: Vec<Slot>, d: Register) {
 fn compose(mut emitter: Emitter, arguments: Vec<Slot>, n_inputs: u32) -> Code {
     let d = emitter.permanent(1);
     make(&mut emitter, arguments, d);
-    Code { gives_texts: true, ..emitter.finish("String".into(), n_inputs, d, 1) }
+    Code { returns_strings: true, ..emitter.finish("String".into(), n_inputs, d, 1) }
 }

@@ -19,7 +19,7 @@ use crate::syntax::ast::{self, Binding, ExpressionKind, Modification};
 use std::sync::Arc;
 
 /// What an annotation says.
-struct Wanted {
+struct DerivativeAnnotation {
     name: Name,
     without: Vec<Ident>,
     zero: Vec<Ident>,
@@ -35,9 +35,10 @@ impl Instances {
         arguments: &[Argument],
         span: Span,
     ) -> Option<Derivative> {
-        let wanted: Vec<Wanted> = function.annotation.iter().filter_map(wanted).collect();
-        let mut first = wanted.iter().filter(|wanted| wanted.order == 1);
-        first.find_map(|wanted| self.used(flat, function, arguments, wanted, span))
+        let annotated: Vec<DerivativeAnnotation> =
+            function.annotation.iter().filter_map(derivative_annotation).collect();
+        let mut first = annotated.iter().filter(|annotated| annotated.order == 1);
+        first.find_map(|annotated| self.used(flat, function, arguments, annotated, span))
     }
 
     fn used(
@@ -45,10 +46,10 @@ impl Instances {
         flat: &FlatModel,
         function: &Function,
         arguments: &[Argument],
-        wanted: &Wanted,
+        annotated: &DerivativeAnnotation,
         span: Span,
     ) -> Option<Derivative> {
-        let bare = Name { global: false, parts: wanted.name.parts.clone() };
+        let bare = Name { global: false, parts: annotated.name.parts.clone() };
         let of = flat.functions.get(&bare)?.clone();
         let mut given: Vec<Lowered<Option<f64>>> = arguments.iter().map(known).collect();
         if arguments.iter().any(|argument| matches!(argument, Argument::Record(_))) {
@@ -60,9 +61,9 @@ impl Instances {
             let Argument::Shape(shape) = argument else { continue };
             let scalars = next..next + shape.len() as u32;
             next = scalars.end;
-            if wanted.zero.contains(&input.name) {
+            if annotated.zero.contains(&input.name) {
                 zero.extend(scalars);
-            } else if is_real(input) && !wanted.without.contains(&input.name) {
+            } else if is_real(input) && !annotated.without.contains(&input.name) {
                 tangents.extend(scalars);
                 given.push(known(argument));
                 second.push(known(argument));
@@ -105,9 +106,10 @@ impl Instances {
         first: &Instance,
         span: Span,
     ) -> Option<u32> {
-        let mut wanted = function.annotation.iter().filter_map(wanted);
-        let wanted = wanted.find(|wanted| wanted.order == 2 && wanted.zero.is_empty())?;
-        let bare = Name { global: false, parts: wanted.name.parts.clone() };
+        let mut annotated = function.annotation.iter().filter_map(derivative_annotation);
+        let annotated =
+            annotated.find(|annotated| annotated.order == 2 && annotated.zero.is_empty())?;
+        let bare = Name { global: false, parts: annotated.name.parts.clone() };
         let of = flat.functions.get(&bare)?.clone();
         if of.inputs.len() != given.len() {
             return None;
@@ -131,7 +133,7 @@ fn known(argument: &Argument) -> Lowered<Option<f64>> {
         Argument::Shape(shape) => unknown(shape),
         Argument::Known(bits) => Lowered::scalar(Some(f64::from_bits(*bits))),
         Argument::Text(text) => Lowered::Text(text.clone()),
-        Argument::Texts(texts) => Lowered::Texts(texts.clone()),
+        Argument::Strings(strings) => Lowered::Strings(strings.clone()),
         Argument::Record(fields) => {
             Lowered::Record(fields.iter().map(|(name, field)| (*name, known(field))).collect())
         }
@@ -143,21 +145,25 @@ fn unknown(shape: &Shape) -> Lowered<Option<f64>> {
 }
 
 /// `derivative(order = 1, noDerivative = a, zeroDerivative = b) = f`
-fn wanted(argument: &ast::Argument) -> Option<Wanted> {
+fn derivative_annotation(argument: &ast::Argument) -> Option<DerivativeAnnotation> {
     let (name, modification) = element(argument)?;
     if name != "derivative" {
         return None;
     }
-    let mut wanted =
-        Wanted { name: reference(modification)?, without: vec![], zero: vec![], order: 1 };
+    let mut annotated = DerivativeAnnotation {
+        name: reference(modification)?,
+        without: vec![],
+        zero: vec![],
+        order: 1,
+    };
     for argument in &modification.arguments {
         let (name, modification) = element(argument)?;
         match name {
-            "noDerivative" => wanted.without.push(reference(modification)?.last()?),
-            "zeroDerivative" => wanted.zero.push(reference(modification)?.last()?),
+            "noDerivative" => annotated.without.push(reference(modification)?.last()?),
+            "zeroDerivative" => annotated.zero.push(reference(modification)?.last()?),
             "order" => match &modification.binding {
                 Some(Binding::Expression(e)) => match e.kind {
-                    ExpressionKind::Integer(order) => wanted.order = order,
+                    ExpressionKind::Integer(order) => annotated.order = order,
                     _ => return None,
                 },
                 _ => return None,
@@ -165,10 +171,10 @@ fn wanted(argument: &ast::Argument) -> Option<Wanted> {
             _ => return None,
         }
     }
-    Some(wanted)
+    Some(annotated)
 }
 
-/// The name behind `=`.
+/// The name after `=`.
 fn reference(modification: &Modification) -> Option<Name> {
     match &modification.binding {
         Some(Binding::Expression(e)) => match &e.kind {

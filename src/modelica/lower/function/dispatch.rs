@@ -12,7 +12,7 @@ use crate::lower::builder::Builder;
 use crate::lower::equation::{Assertion, Level};
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
-use crate::lower::text_part::TextPart;
+use crate::lower::string_part::StringPart;
 use crate::source::Span;
 use crate::symbolic::{Expr, RelationOperator};
 use std::sync::Arc;
@@ -116,7 +116,7 @@ fn chain(
             "`{}` of `{}`, on which sizes depend, varies and lies outside 0 to {MOST}",
             function.inputs[at].name, function.name
         );
-        let parts = vec![TextPart::Text(text.into())];
+        let parts = vec![StringPart::Text(text.into())];
         builder.dae.assertions.push(Assertion::new(known, parts, Level::Error, span));
     }
     let mut results = results.into_iter();

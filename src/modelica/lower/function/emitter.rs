@@ -19,7 +19,7 @@ pub(super) struct Emitter {
     instructions: Vec<Instruction>,
     places: Vec<(u32, Span)>,
     messages: Vec<Arc<str>>,
-    texts: Vec<Arc<str>>,
+    strings: Vec<Arc<str>>,
     externals: Vec<ExternalCall>,
     constants: FxHashMap<u64, Register>,
     values: Vec<(Register, f64)>,
@@ -57,7 +57,7 @@ impl Emitter {
             constants: self.values,
             messages: self.messages,
             places: self.places,
-            texts: self.texts,
+            strings: self.strings,
             externals: self.externals,
             ..Code::default()
         }
@@ -84,17 +84,17 @@ impl Emitter {
     }
 
     pub(super) fn text(&mut self, text: Arc<str>) -> u32 {
-        self.texts.push(text);
-        self.texts.len() as u32 - 1
+        self.strings.push(text);
+        self.strings.len() as u32 - 1
     }
 
     /// All Strings so far.
-    pub(super) fn texts(&self) -> &[Arc<str>] {
-        &self.texts
+    pub(super) fn strings(&self) -> &[Arc<str>] {
+        &self.strings
     }
 
-    pub(super) fn text_at(&self, position: u32) -> Arc<str> {
-        self.texts[position as usize].clone()
+    pub(super) fn string_at(&self, position: u32) -> Arc<str> {
+        self.strings[position as usize].clone()
     }
 
     pub(super) fn external(&mut self, call: ExternalCall) -> u32 {

@@ -7,7 +7,7 @@ use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::{At, Diagnostic};
 use crate::eval::{FunctionComponent, c_function};
-use crate::external::{self, Entry, Kind, Slot};
+use crate::external::{self, Entry, Slot, SlotKind};
 use crate::fault;
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::expressions::{Lowered, size_fault};
@@ -123,7 +123,8 @@ impl Body<'_, '_> {
         arguments: &[Slot],
         span: Span,
     ) -> Result<(), Diagnostic> {
-        let is_known = |at: usize| arguments.get(at).is_none_or(|slot| slot.kind != Kind::Numbered);
+        let is_known =
+            |at: usize| arguments.get(at).is_none_or(|slot| slot.kind != SlotKind::Numbered);
         match entry.files().all(is_known) {
             true => Ok(()),
             false => Err(fault!(
@@ -144,15 +145,15 @@ impl Body<'_, '_> {
     ) -> Result<(), Diagnostic> {
         let Instances { functions, .. } = &mut *self.instances;
         for argument in entry.files() {
-            let name = self.emitter.text_at(arguments[argument].first);
+            let name = self.emitter.string_at(arguments[argument].first);
             if external::names_a_file(&name) {
                 functions.files.keep(&name, &self.flat.resources).at(span)?;
             }
         }
-        let is_known = |argument: &usize| arguments[*argument].kind == Kind::Text;
+        let is_known = |argument: &usize| arguments[*argument].kind == SlotKind::Text;
         for argument in entry.possible_files().filter(is_known) {
-            let name = self.emitter.text_at(arguments[argument].first);
-            // Whoever needs the file says that it is not there.
+            let name = self.emitter.string_at(arguments[argument].first);
+            // A missing file is reported where it is needed.
             let _ = functions.files.keep(&name, &self.flat.resources);
         }
         Ok(())
@@ -168,12 +169,12 @@ impl Body<'_, '_> {
         match value {
             Lowered::Text(text) => {
                 let first = self.emitter.text(text);
-                Ok(Slot { kind: Kind::Text, first, dims: Box::new([]) })
+                Ok(Slot { kind: SlotKind::Text, first, dims: Box::new([]) })
             }
             Lowered::Array(array) => {
                 let kind = match component.is_some_and(is_object) {
-                    true => Kind::Object,
-                    false => Kind::Number,
+                    true => SlotKind::Object,
+                    false => SlotKind::Number,
                 };
                 let first = self.emitter.row(&array.elements);
                 let dims = array.dims.iter().map(|size| *size as u32).collect();
@@ -182,8 +183,8 @@ impl Body<'_, '_> {
             Lowered::Record(_) => {
                 Err(fault!(NOT_SUPPORTED, "a record as argument of an external function").at(span))
             }
-            Lowered::Texts(texts) => {
-                if texts.texts.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
+            Lowered::Strings(strings) => {
+                if strings.strings.iter().any(|text| text.contains(UNKNOWN_TEXT)) {
                     return Err(fault!(
                         NOT_SUPPORTED,
                         "Strings that are not known at translation, as argument of an external \
@@ -193,14 +194,14 @@ impl Body<'_, '_> {
                 }
                 // They stand in a row.
                 let positions: Vec<u32> =
-                    texts.texts.iter().map(|text| self.emitter.text(text.clone())).collect();
+                    strings.strings.iter().map(|text| self.emitter.text(text.clone())).collect();
                 let first = positions.first().copied().unwrap_or(0);
-                let dims = texts.dims.iter().map(|size| *size as u32).collect();
-                Ok(Slot { kind: Kind::Text, first, dims })
+                let dims = strings.dims.iter().map(|size| *size as u32).collect();
+                Ok(Slot { kind: SlotKind::Text, first, dims })
             }
             Lowered::Numbered(number) => {
                 let first = self.emitter.row(&[number]);
-                Ok(Slot { kind: Kind::Numbered, first, dims: Box::new([]) })
+                Ok(Slot { kind: SlotKind::Numbered, first, dims: Box::new([]) })
             }
         }
     }

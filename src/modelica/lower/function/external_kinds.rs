@@ -18,10 +18,10 @@ pub(super) fn external_name(function: &Function, clause: &ast::External) -> Stri
 pub(super) fn refusal(function: &Function) -> Option<String> {
     let FunctionBody::External(clause) = &function.body else { return None };
     let name = external_name(function, clause);
-    let takes_texts =
+    let takes_strings =
         |i: &FunctionComponent| i.value_type == ValueType::String && !i.dims.is_empty();
     match c_function::in_rust(function, clause) {
-        Some(_) if function.inputs.iter().any(takes_texts) => {
+        Some(_) if function.inputs.iter().any(takes_strings) => {
             Some(format!("is the external function `{name}`, which takes arrays of Strings"))
         }
         None if c_function::brings_code(clause) => None,
@@ -36,9 +36,9 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
     }
 }
 
-/// Whether a function is external and needs its texts: all but one that fails with a message, which
-/// may be unknown in parts.
-pub(super) fn reads_texts(function: &Function) -> bool {
+/// Whether a function is external and needs its Strings: all but one that fails with a message,
+/// which may be unknown in parts.
+pub(super) fn reads_strings(function: &Function) -> bool {
     matches!(function.body, FunctionBody::External(_)) && !fails(function)
 }
 

@@ -7,14 +7,14 @@ use crate::budget::step_limit;
 use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use crate::external::{Effect, Kind, Slot};
+use crate::external::{Effect, Slot, SlotKind};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
 use crate::lower::shape::Shape;
 use crate::lower::shape::UNKNOWN_TEXT;
-use crate::lower::text_array::Texts;
+use crate::lower::string_array::StringArray;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use indexmap::IndexMap;
@@ -62,7 +62,7 @@ struct Signature {
 
 impl Signature {
     /// Whether Strings are passed by their numbers.
-    fn takes_numbers_of_texts(&self) -> bool {
+    fn takes_string_numbers(&self) -> bool {
         self.arguments.iter().any(Argument::holds_number_of_text)
     }
 }
@@ -76,8 +76,8 @@ pub(super) enum Argument {
     Known(u64),
     /// A text.
     Text(Arc<str>),
-    /// An array of texts.
-    Texts(Texts),
+    /// An array of Strings.
+    Strings(StringArray),
     /// A record of which some components are known, on which sizes may depend.
     Record(Vec<(Ident, Argument)>),
 }
@@ -88,7 +88,7 @@ impl Argument {
         match self {
             Argument::Shape(shape) => passed.extend(std::iter::repeat_n(true, shape.len())),
             Argument::Known(_) => passed.push(false),
-            Argument::Text(_) | Argument::Texts(_) => {}
+            Argument::Text(_) | Argument::Strings(_) => {}
             Argument::Record(fields) => {
                 fields.iter().for_each(|(_, field)| field.append_passed(passed));
             }
@@ -102,7 +102,7 @@ impl Argument {
             Argument::Record(fields) => {
                 fields.iter().any(|(_, field)| field.holds_number_of_text())
             }
-            Argument::Known(_) | Argument::Text(_) | Argument::Texts(_) => false,
+            Argument::Known(_) | Argument::Text(_) | Argument::Strings(_) => false,
         }
     }
 
@@ -111,7 +111,7 @@ impl Argument {
         match self {
             Argument::Known(_) => true,
             Argument::Record(fields) => fields.iter().any(|(_, field)| field.has_known()),
-            Argument::Shape(_) | Argument::Text(_) | Argument::Texts(_) => false,
+            Argument::Shape(_) | Argument::Text(_) | Argument::Strings(_) => false,
         }
     }
 }
@@ -176,7 +176,7 @@ pub(crate) struct Instances {
     /// Whether a text was needed that is made at run time.
     pub(super) misses_text: bool,
     /// Whether the outputs of the next call are needed, though they be Strings made at run time.
-    pub(in crate::lower) wants_texts: bool,
+    pub(in crate::lower) needs_string_outputs: bool,
 }
 
 impl Instances {
@@ -207,7 +207,7 @@ impl Instances {
         span: Span,
     ) -> Result<Instance, Diagnostic> {
         let at_run_time = std::mem::replace(&mut self.sizes_at_run_time, false);
-        let mut found = self.with_texts(flat, function, arguments, span);
+        let mut found = self.with_strings(flat, function, arguments, span);
         self.sizes_at_run_time = at_run_time;
         if at_run_time
             && let Err(e) = &found
@@ -245,22 +245,22 @@ impl Instances {
             return Ok(None);
         }
         self.silent = true;
-        let found = self.with_texts(flat, function, arguments, span);
+        let found = self.with_strings(flat, function, arguments, span);
         self.silent = false;
         let silenced = |instance: Instance| Instance { silenced: true, ..instance };
         Ok(found.map(silenced).ok().filter(|instance| !instance.writes))
     }
 
     /// A function whose Strings are known; one that makes them when it runs where they are not.
-    fn with_texts(
+    fn with_strings(
         &mut self,
         flat: &FlatModel,
         function: &Arc<Function>,
         arguments: &[Lowered<Option<f64>>],
         span: Span,
     ) -> Result<Instance, Diagnostic> {
-        let is_wanted = std::mem::replace(&mut self.wants_texts, false);
-        if is_wanted && function.outputs.iter().any(is_text) {
+        let is_needed = std::mem::replace(&mut self.needs_string_outputs, false);
+        if is_needed && function.outputs.iter().any(is_text) {
             self.misses_text = true;
             return self.general_or_special(flat, function, arguments, true, span);
         }
@@ -445,23 +445,23 @@ impl Instances {
             outputs,
             folds: !function.impure
                 && !super::external_kinds::handles_objects(function)
-                && !signature.takes_numbers_of_texts(),
+                && !signature.takes_string_numbers(),
             impure: function.impure,
             writes: false,
             silenced: false,
             passed: passed(&signature.arguments),
         };
-        let gives_texts = instance.outputs.iter().any(Shape::holds_number_of_text);
-        instance.folds &= !gives_texts;
+        let returns_strings = instance.outputs.iter().any(Shape::holds_number_of_text);
+        instance.folds &= !returns_strings;
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
         body.instances.known.insert(signature.clone(), instance.clone());
         let mut code = body.compile(statements)?;
-        code.gives_texts = gives_texts;
+        code.returns_strings = returns_strings;
         code.writes = self.writes(&code);
         code.impure = function.impure || self.has_effects(&code);
         if code.n_outputs == 0 {
-            // Something stands for the call where its statement is carried out.
+            // Something replaces the call where its statement is executed.
             (code.outputs, code.n_outputs) = (code.frame, 1);
             code.constants.push((code.outputs, 0.0));
             code.frame += 1;
@@ -560,7 +560,7 @@ impl Instances {
     /// Whether all that a function writes, itself or by what it calls, are external objects in C: a
     /// package that is filled before it is sent. It is called where its value is used.
     fn changes_objects_alone(&self, function: u32) -> bool {
-        let is_object = |slot: &Slot| slot.kind == Kind::Object;
+        let is_object = |slot: &Slot| slot.kind == SlotKind::Object;
         let is_harmless = |call: &ExternalCall| {
             call.entry.effect != Effect::Writes
                 || call.entry.c.is_some() && call.arguments.iter().any(is_object)
@@ -631,7 +631,7 @@ fn signature(
         // Algorithms refuse to decide by it themselves.
         if let Lowered::Text(text) = argument
             && text.contains(UNKNOWN_TEXT)
-            && super::external_kinds::reads_texts(function)
+            && super::external_kinds::reads_strings(function)
         {
             return Err(fault!(
                 NOT_SUPPORTED,
@@ -666,16 +666,16 @@ fn signature(
 
 /// What is known of an argument; `None` if it is or holds a text that changes.
 fn known_of(
-    wanted: &ValueType,
+    expected: &ValueType,
     argument: &Lowered<Option<f64>>,
     with_values: bool,
 ) -> Option<Argument> {
     let is_whole =
-        matches!(wanted, ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_));
+        matches!(expected, ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_));
     Some(match argument {
         Lowered::Numbered(_) => Argument::Shape(Shape::Numbered),
         Lowered::Text(text) => Argument::Text(text.clone()),
-        Lowered::Texts(texts) => Argument::Texts(texts.clone()),
+        Lowered::Strings(strings) => Argument::Strings(strings.clone()),
         Lowered::Array(array) => match array.elements.as_slice() {
             [Some(value)] if array.dims.is_empty() && is_whole && with_values => {
                 Argument::Known(value.to_bits())
@@ -683,7 +683,7 @@ fn known_of(
             _ => Argument::Shape(Shape::Array(array.dims.clone())),
         },
         Lowered::Record(fields) => {
-            if let (ValueType::Record(_, types), true) = (wanted, with_values) {
+            if let (ValueType::Record(_, types), true) = (expected, with_values) {
                 let field = |(name, field): &(Ident, Lowered<_>)| {
                     let known = known_of(&types.get(name)?.value_type, field, with_values)?;
                     Some((*name, known))

@@ -15,7 +15,7 @@ use crate::budget;
 use crate::bytecode::{Code, ExternalCall, Instruction};
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, FunctionComponent, Host, RunCompiled, ValueType};
-use crate::external::{Call, Callable, Entry, Kind, Outside, Slot};
+use crate::external::{Call, Callable, Entry, Outside, Slot, SlotKind};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::lower::errors::NOT_SUPPORTED;
@@ -113,9 +113,9 @@ impl Body<'_, '_> {
             (Lowered::Record(_), _) | (_, ValueType::Record(..)) => Ok(None),
             (_, ValueType::ExternalObject(_) | ValueType::Function) => Ok(None),
             (value, _) if value.shape().is_none_or(|shape| shape.holds_unknown_text()) => Ok(None),
-            (value, wanted) => {
+            (value, expected) => {
                 arguments.push(self.slot(value, None, span)?);
-                Ok(Some(Layout::Argument(wanted.clone())))
+                Ok(Some(Layout::Argument(expected.clone())))
             }
         }
     }
@@ -134,11 +134,11 @@ fn refused(function: &Function, component: &FunctionComponent, span: Span) -> Di
 /// The letter of a signature for an argument that is read.
 fn letter(slot: &Slot) -> char {
     match (slot.kind, slot.dims.is_empty()) {
-        (Kind::Text, false) => 's',
-        (Kind::Text | Kind::Numbered, _) => 't',
-        (Kind::Object, _) => 'o',
-        (Kind::Number, true) => 'n',
-        (Kind::Number, false) => 'a',
+        (SlotKind::Text, false) => 's',
+        (SlotKind::Text | SlotKind::Numbered, _) => 't',
+        (SlotKind::Object, _) => 'o',
+        (SlotKind::Number, true) => 'n',
+        (SlotKind::Number, false) => 'a',
     }
 }
 
@@ -191,19 +191,19 @@ fn value<'s>(
     slots: &mut impl Iterator<Item = &'s Slot>,
     call: &Call<'_>,
 ) -> Option<Value> {
-    let wanted = match layout {
+    let expected = match layout {
         Layout::Record(name, fields) => {
             let field = |(name, field): &(Ident, Layout)| Some((*name, value(field, slots, call)?));
             let fields = fields.iter().map(field).collect::<Option<_>>()?;
             return Some(Value::Record(RecordValue { type_name: name.clone(), fields }));
         }
-        Layout::Argument(wanted) => wanted,
+        Layout::Argument(expected) => expected,
     };
     let slot = slots.next()?;
     let (first, dims) = (slot.first as usize, slot.dims.iter().map(|n| *n as usize));
     let dims: Vec<usize> = dims.collect();
-    if slot.kind != Kind::Text {
-        return value_of(call.numbers.get(first..first + slot.len())?, &dims, wanted);
+    if slot.kind != SlotKind::Text {
+        return value_of(call.numbers.get(first..first + slot.len())?, &dims, expected);
     }
     if dims.is_empty() {
         return Some(Value::String(call.strings.get(first)?.clone()));

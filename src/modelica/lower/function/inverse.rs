@@ -4,8 +4,8 @@
 //! inverse function takes nothing but these and returns one Real. Both are tried at some points, since
 //! functions of libraries are inverse to each other but for the range where they are made smooth: the
 //! flow through a resistance of IBPSA, solved by its declared inverse, differs by a third where it is
-//! laminar. Such an inverse solves an equation that stands alone, as its author wants it, but none in
-//! a loop. What is an inverse nowhere is not used.
+//! laminar. Such an inverse solves an equation that stands alone, as its author intends, but none
+//! in a loop. What is an inverse nowhere is not used.
 
 use super::instances::{Argument, Instance, Instances};
 use crate::bytecode::{Functions, Machine};
@@ -19,7 +19,7 @@ use crate::syntax::ast::{self, Binding, Expression, ExpressionKind, Modification
 use std::sync::Arc;
 
 /// Whether calls of a function are kept as calls, so that equations can be solved for their
-/// arguments: it has inverses, and its author does not want it to be inlined.
+/// arguments: it has inverses, and its author prevents its inlining.
 pub(super) fn is_kept(function: &Function) -> bool {
     let mut of_inputs = function.annotation.iter().filter_map(|a| inverses(a));
     let not_inlined = function.annotation.iter().any(|argument| {

@@ -4,8 +4,8 @@
 //!
 //! A function is compiled once for every combination of sizes of its arguments. Where a size
 //! depends on the value of an Integer input, it is compiled for that value, which must be known.
-//! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
-//! Where sizes are known only when it is called, the interpreter carries out the call.
+//! Loops stay loops; only a loop whose body needs sizes that change from iteration to iteration is
+//! unrolled. Where sizes are known only when it is called, the interpreter carries out the call.
 
 mod assigned_shape;
 mod composer;
@@ -52,8 +52,8 @@ use crate::symbolic::Expr;
 use crate::syntax::ast::ComponentReference;
 use std::sync::Arc;
 
-/// The outputs of a call in an equation: expressions where its statements can be carried out on
-/// expressions, else calls of its code.
+/// The outputs of a call in an equation: expressions where its statements can be evaluated
+/// symbolically, else calls of its code.
 pub(super) fn call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
@@ -63,13 +63,13 @@ pub(super) fn call(
     if let FunctionBody::PartialDerivative { of, by } = &function.body {
         return partial_derivative::call(builder, function, (of, by), arguments, span);
     }
-    let wants_texts = std::mem::take(&mut builder.calls.functions.wants_texts);
-    if wants_texts && function.outputs.iter().any(instances::is_text) {
-        builder.calls.functions.wants_texts = true;
+    let needs_string_outputs = std::mem::take(&mut builder.calls.functions.needs_string_outputs);
+    if needs_string_outputs && function.outputs.iter().any(instances::is_text) {
+        builder.calls.functions.needs_string_outputs = true;
         return compiled_call(builder, function, arguments, span);
     }
     if builder.calls.functions.may_write {
-        // Carried out on expressions, a function would write whatever its branches are.
+        // Inlined, a function would write in all of its branches.
         return compiled_call(builder, function, arguments, span);
     }
     if builder.calls.depth == 0 {
@@ -146,9 +146,13 @@ fn settle_whole_numbers(
 }
 
 /// As [`settle_whole_numbers`], of one argument and the components of a record.
-fn settle_whole(builder: &mut Builder<'_>, wanted: &ValueType, value: &mut Lowered<Expr>) -> bool {
+fn settle_whole(
+    builder: &mut Builder<'_>,
+    expected: &ValueType,
+    value: &mut Lowered<Expr>,
+) -> bool {
     let mut any = false;
-    if let (Lowered::Record(fields), ValueType::Record(_, types)) = (&mut *value, wanted) {
+    if let (Lowered::Record(fields), ValueType::Record(_, types)) = (&mut *value, expected) {
         for (name, field) in fields {
             if let Some(component) = types.get(name) {
                 any |= settle_whole(builder, &component.value_type, field);
@@ -156,7 +160,7 @@ fn settle_whole(builder: &mut Builder<'_>, wanted: &ValueType, value: &mut Lower
         }
         return any;
     }
-    let is_whole = matches!(wanted, ValueType::Integer | ValueType::Boolean);
+    let is_whole = matches!(expected, ValueType::Integer | ValueType::Boolean);
     let Lowered::Array(array) = &*value else { return false };
     let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
         return false;

@@ -1,12 +1,12 @@
-//! Calls of `function f_x = der(f, x)` (MLS §12.7.2): the function is carried out on expressions, and
-//! these are differentiated.
+//! Calls of `function f_x = der(f, x)` (MLS §12.7.2): the function is inlined, and the resulting
+//! expressions are differentiated.
 
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
 use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
-use crate::lower::dae::{Dae, Kind};
+use crate::lower::dae::{Dae, VariableKind};
 use crate::lower::errors::{ARRAY_MISMATCH, UNRESOLVED_REFERENCE};
 use crate::lower::expressions::{Array, Lowered, Target};
 use crate::name::{Ident, Name};
@@ -36,7 +36,7 @@ pub(super) fn call(
             return Err(fault!(ARRAY_MISMATCH, "`{}` must be a scalar", input.name).at(span));
         };
         let name = format!("$partial[{}]", builder.dae.variables.len());
-        let variable = builder.declare_scalar(scalar_of_nothing(&name, Kind::Signal, span));
+        let variable = builder.declare_scalar(scalar_of_nothing(&name, VariableKind::Signal, span));
         given.push((input.name, variable, *value));
         *value = builder.dae.pool.variable(variable);
     }
@@ -50,8 +50,8 @@ pub(super) fn call(
     let differentiated = |e: Expr, builder: &mut Builder<'_>| {
         let pool = &mut builder.dae.pool;
         let variables = by.iter().filter_map(|by| given.iter().find(|(name, ..)| name == by));
-        let slope = variables.fold(e, |e, (_, variable, _)| derivative(pool, e, *variable));
-        substitute(pool, slope, &actual)
+        let result = variables.fold(e, |e, (_, variable, _)| derivative(pool, e, *variable));
+        substitute(pool, result, &actual)
     };
     let array = |result| match result {
         Lowered::Array(Array { dims, elements }) => {

@@ -98,7 +98,7 @@ impl Body<'_, '_> {
             return Ok((shape, value));
         }
         if is_assigned {
-            shape.forget_texts();
+            shape.forget_strings();
         }
         let n = shape.len() as u32;
         let first = self.emitter.permanent(n);
@@ -117,7 +117,7 @@ impl Body<'_, '_> {
     fn check_input(&mut self, input: &FunctionComponent, span: Span) -> Result<(), Diagnostic> {
         let dims = match self.local(&[input.name]) {
             Some(Lowered::Array(Array { dims, .. })) => dims.clone(),
-            Some(Lowered::Texts(texts)) => texts.dims.clone(),
+            Some(Lowered::Strings(strings)) => strings.dims.clone(),
             _ => return Ok(()),
         };
         let name = &self.function.name;

@@ -1,5 +1,5 @@
-//! Functions that print, and assertions, in functions being compiled: their texts may have numbers in
-//! them that are known when the simulation gets there.
+//! Functions that print, and assertions, in functions being compiled: their messages may contain
+//! numbers that are known only when they are executed.
 
 use super::emitter::Operand;
 use super::statements::{Body, Loops};
@@ -14,7 +14,7 @@ use crate::source::Span;
 use crate::syntax::ast;
 
 impl Body<'_, '_> {
-    /// A call of a function that prints: the numbers in its text are those of when it is carried out.
+    /// A call of a function that prints: the numbers in its message are those at its execution.
     pub(super) fn printing(
         &mut self,
         arguments: &ast::Arguments,
@@ -33,7 +33,7 @@ impl Body<'_, '_> {
             );
         }
         let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
-        let text = message_parts(&mut self.of_known_texts(loops), nth(arguments, 0, "string"));
+        let text = message_parts(&mut self.with_known_strings(loops), nth(arguments, 0, "string"));
         parts.extend(self.slots(&text));
         let call = ExternalCall::new(&PRINT, parts, None);
         let external = self.emitter.external(call);
@@ -49,7 +49,7 @@ impl Body<'_, '_> {
         text: Option<&ast::Expression>,
         loops: &Loops,
     ) {
-        let known = message_text(&mut self.of_known_texts(loops), text);
+        let known = message_text(&mut self.with_known_strings(loops), text);
         let (a, message) = (self.emitter.register(condition), self.emitter.message(known.into()));
         self.emitter.emit(Instruction::Warn { a, message });
     }
@@ -62,7 +62,7 @@ impl Body<'_, '_> {
         span: Span,
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
-        let known = message_text(&mut self.of_known_texts(loops), text);
+        let known = message_text(&mut self.with_known_strings(loops), text);
         let a = self.emitter.register(condition);
         if !known.contains(UNKNOWN_TEXT) {
             let message = self.emitter.message(known.into());
@@ -73,7 +73,7 @@ impl Body<'_, '_> {
         let fails = self.emitter.block(1);
         self.emitter.emit(Instruction::Not { d: fails, a });
         let holds = self.emitter.jump_unless(Operand::Register(fails));
-        let parts = message_parts(&mut self.of_known_texts(loops), text);
+        let parts = message_parts(&mut self.with_known_strings(loops), text);
         let mut arguments = vec![self.slot(Lowered::Text(known.into()), None, span)?];
         arguments.extend(self.slots(&parts));
         let external = self.emitter.external(ExternalCall::new(&FAIL, arguments, None));

@@ -91,7 +91,7 @@ impl Body<'_, '_> {
         if largest > MOST {
             return Err(error);
         }
-        // What is known in one branch is not known behind it.
+        // What is known in one branch is not known after it.
         let known_once = std::mem::take(&mut self.known_once);
         self.bound_integers += 1;
         let mut result = Err(error);

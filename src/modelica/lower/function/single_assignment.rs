@@ -4,8 +4,8 @@ use crate::name::Ident;
 use crate::syntax::ast::{Statement, StatementKind};
 use rustc_hash::FxHashMap;
 
-/// The variables that one statement assigns to as a whole, which is carried out once and always:
-/// it stands in no branch and in no loop, and nothing returns before it.
+/// The variables that one statement assigns to as a whole, which is executed exactly once: it is in
+/// no branch and in no loop, and nothing returns before it.
 pub(super) fn assigned_once(statements: &[Statement]) -> Vec<Ident> {
     let mut counts = FxHashMap::default();
     count(statements, &mut counts);

@@ -100,7 +100,7 @@ impl<'a, 'f> Body<'a, 'f> {
         }
         let first = self.emitter.row(&outputs);
         // Outputs without value are a fault of the whole; a component of a record may have none as
-        // long as nobody reads it.
+        // long as it is not read.
         for &(at, n) in &plain {
             self.emitter.emit(Instruction::Check { a: first + at, n });
         }
@@ -121,7 +121,7 @@ impl<'a, 'f> Body<'a, 'f> {
         match argument {
             Argument::Known(bits) => Lowered::scalar(Operand::Constant(f64::from_bits(*bits))),
             Argument::Text(text) => Lowered::Text(text.clone()),
-            Argument::Texts(texts) => Lowered::Texts(texts.clone()),
+            Argument::Strings(strings) => Lowered::Strings(strings.clone()),
             Argument::Shape(shape) => {
                 let first = self.emitter.permanent(shape.len() as u32);
                 self.n_inputs += shape.len() as u32;
@@ -143,7 +143,7 @@ impl<'a, 'f> Body<'a, 'f> {
     }
 
     /// As [`Body::lowering`], for messages: what is not known of them is not computed.
-    pub(super) fn of_known_texts(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+    pub(super) fn with_known_strings(&mut self, loops: &Loops) -> Lowering<'_, Self> {
         let mut lowering = self.lowering(loops);
         lowering.composes = false;
         lowering
@@ -313,8 +313,8 @@ impl<'a, 'f> Body<'a, 'f> {
         }
     }
 
-    /// As a loop; unrolled if the body needs sizes that change from turn to turn; where that is not
-    /// possible either, the statements with such sizes are written size by size.
+    /// As a loop; unrolled if the body needs sizes that change from iteration to iteration; where
+    /// that is not possible either, the statements with such sizes are written size by size.
     fn for_loop(
         &mut self,
         indices: &[ForIndex],
@@ -360,9 +360,9 @@ impl<'a, 'f> Body<'a, 'f> {
         self.breaks.push(Vec::new());
         for variable in variables {
             loops.push(variable);
-            let turn = self.for_loop(inner, body, loops);
+            let iteration = self.for_loop(inner, body, loops);
             loops.pop();
-            turn?;
+            iteration?;
         }
         self.end_loop();
         Ok(())
@@ -382,7 +382,7 @@ impl<'a, 'f> Body<'a, 'f> {
         self.emitter.emit(Instruction::Constant { d: counter, value: 0.0 });
         let start = self.emitter.len();
         let operator = crate::symbolic::RelationOperator::Less;
-        let (a, b) = (counter, self.emitter.register(range.turns()));
+        let (a, b) = (counter, self.emitter.register(range.iterations()));
         self.emitter.emit(Instruction::Relation { operator, d: goes_on, a, b });
         let exit = self.emitter.jump_unless(Operand::Register(goes_on));
         match range {
@@ -399,9 +399,9 @@ impl<'a, 'f> Body<'a, 'f> {
         let value_type = self.lowering(loops).type_of_index(index);
         let value = Operand::Register(value);
         loops.push(LoopVariable { name: index.name.node, value, value_type });
-        let turn = self.for_loop(inner, body, loops);
+        let iteration = self.for_loop(inner, body, loops);
         loops.pop();
-        turn?;
+        iteration?;
         self.emitter.jump_to(start);
         self.emitter.land(exit);
         self.end_loop();
@@ -420,9 +420,9 @@ impl<'a, 'f> Body<'a, 'f> {
             };
             let stop = self.lowering(loops).scalar(stop)?;
             let first = self.emitter.copies(&[start, step, stop]);
-            let turns = self.emitter.block(1);
-            self.emitter.emit(Instruction::Turns { d: turns, range: first });
-            return Ok(Iterated::Range { first, turns });
+            let iterations = self.emitter.block(1);
+            self.emitter.emit(Instruction::Iterations { d: iterations, range: first });
+            return Ok(Iterated::Range { first, iterations });
         }
         let variables = self.lowering(loops).loop_variables(index)?;
         let elements: Vec<_> = variables.iter().map(|variable| variable.value).collect();
@@ -488,16 +488,16 @@ impl<'a, 'f> Body<'a, 'f> {
 /// What a loop runs over.
 #[derive(Debug, Clone, Copy)]
 enum Iterated {
-    /// Three registers from `first` on, and one for the number of turns.
-    Range { first: Register, turns: Register },
+    /// Three registers from `first` on, and one for the number of iterations.
+    Range { first: Register, iterations: Register },
     /// Elements in a row.
     Elements { first: Register, n: usize },
 }
 
 impl Iterated {
-    fn turns(self) -> Operand {
+    fn iterations(self) -> Operand {
         match self {
-            Iterated::Range { turns, .. } => Operand::Register(turns),
+            Iterated::Range { iterations, .. } => Operand::Register(iterations),
             Iterated::Elements { n, .. } => Operand::Constant(n as f64),
         }
     }

@@ -6,7 +6,9 @@ use crate::bytecode::{Elementary, Instruction};
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
-use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Target, TextPart, Unary};
+use crate::lower::expressions::{
+    Array, Binary, Branch, Choice, Lowered, StringPart, Target, Unary,
+};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
@@ -231,7 +233,7 @@ impl Target for Body<'_, '_> {
         Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
     }
 
-    fn text_number(&mut self, text: &Arc<str>) -> Option<Operand> {
+    fn string_number(&mut self, text: &Arc<str>) -> Option<Operand> {
         self.composes.then(|| Operand::Constant(self.instances.number_of(text)))
     }
 
@@ -239,13 +241,17 @@ impl Target for Body<'_, '_> {
         self.composes
     }
 
-    fn compose(&mut self, parts: &[TextPart<Operand>], span: Span) -> Result<Operand, Diagnostic> {
+    fn compose(
+        &mut self,
+        parts: &[StringPart<Operand>],
+        span: Span,
+    ) -> Result<Operand, Diagnostic> {
         self.emitter.place(span);
         Ok(self.composed(parts))
     }
 
-    fn wants_texts(&mut self, wanted: bool) {
-        self.instances.wants_texts = wanted;
+    fn needs_string_outputs(&mut self, needed: bool) {
+        self.instances.needs_string_outputs = needed;
     }
 
     fn misses_text(&mut self) {

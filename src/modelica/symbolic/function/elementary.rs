@@ -47,8 +47,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         domain: POSITIVE,
         ..real("log10", Value::Unary(crate::elementary::log10), |pool, x, _| {
-            let slope = pool.constant(std::f64::consts::LOG10_E);
-            pool.div(slope, x[0])
+            let factor = pool.constant(std::f64::consts::LOG10_E);
+            pool.div(factor, x[0])
         })
     },
 ];

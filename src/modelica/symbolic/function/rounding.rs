@@ -18,7 +18,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             "mod",
             Value::Binary(|x, y| x - (x / y).floor() * y),
             ResultType::AsArguments,
-            |pool, x, which| remainder_slope(pool, "floor", x, which),
+            |pool, x, which| remainder_derivative(pool, "floor", x, which),
         )
     },
     Function {
@@ -27,7 +27,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             "rem",
             Value::Binary(|x, y| x - (x / y).trunc() * y),
             ResultType::AsArguments,
-            |pool, x, which| remainder_slope(pool, "div", x, which),
+            |pool, x, which| remainder_derivative(pool, "div", x, which),
         )
     },
     jumping("ceil", Value::Unary(f64::ceil), ResultType::Real, zero),
@@ -50,7 +50,7 @@ const fn jumping(
 }
 
 /// Of x − q y between the jumps of q, which is `floor(x / y)` or `div(x, y)`.
-fn remainder_slope(pool: &mut Pool, quotient: &str, x: &[Expr], which: usize) -> Expr {
+fn remainder_derivative(pool: &mut Pool, quotient: &str, x: &[Expr], which: usize) -> Expr {
     if which == 0 {
         return pool.constant(1.0);
     }

@@ -52,8 +52,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let two = pool.constant(2.0);
             let (a, b) = (pool.pow(x[0], two), pool.pow(x[1], two));
             let divisor = pool.add(a, b);
-            let slope = pool.div(x[1 - which], divisor);
-            if which == 0 { slope } else { pool.neg(slope) }
+            let partial = pool.div(x[1 - which], divisor);
+            if which == 0 { partial } else { pool.neg(partial) }
         })
     },
 ];

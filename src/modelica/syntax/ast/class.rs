@@ -36,7 +36,7 @@ pub struct ClassDefinition {
     pub partial: bool,
     /// `model`, `package`, ….
     pub restriction: Restriction,
-    /// What stands behind the name.
+    /// What follows the name.
     pub specifier: ClassSpecifier,
     /// The whole definition.
     pub span: Span,
@@ -83,7 +83,7 @@ pub enum Purity {
     Impure,
 }
 
-/// What stands behind a class's name (`class-specifier`).
+/// What follows a class's name (`class-specifier`).
 #[derive(Debug, Clone, PartialEq)]
 pub enum ClassSpecifier {
     /// `M … end M`, or `extends M(…) … end M`.
@@ -101,12 +101,12 @@ pub enum ClassSpecifier {
 pub struct LongClass {
     /// `Some` for `extends M(…)` (class extends, MLS §7.3.1): its modification arguments.
     pub class_extends: Option<Vec<Argument>>,
-    /// The string behind the name.
+    /// The description string after the name.
     pub description: Option<Arc<str>>,
     /// Sections in the order written; the first is [`Section::Elements`] without a keyword, if
     /// anything stands before the first keyword.
     pub sections: Sections,
-    /// The name behind `end`.
+    /// The name after `end`.
     pub end_name: Spanned<Ident>,
 }
 
@@ -198,7 +198,7 @@ pub enum Element {
 pub struct Import {
     /// Which form.
     pub kind: ImportKind,
-    /// String and annotation behind it.
+    /// Its description string and annotation.
     pub comment: Comment,
     /// The whole clause.
     pub span: Span,
@@ -274,7 +274,7 @@ pub struct Constraint {
     pub target: TypeSpecifier,
     /// Its modification.
     pub modification: Vec<Argument>,
-    /// String and annotation behind it.
+    /// Its description string and annotation.
     pub comment: Comment,
     /// The whole clause.
     pub span: Span,
@@ -324,7 +324,7 @@ pub struct DerivativeClass {
     pub comment: Comment,
 }
 
-/// `"text" annotation(…)` behind an element, equation or statement.
+/// `"description" annotation(…)` after an element, equation or statement.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Comment {
     /// The string.
@@ -342,7 +342,7 @@ pub struct ComponentClause {
     pub type_prefixes: TypePrefixes,
     /// The type.
     pub type_specifier: TypeSpecifier,
-    /// Dimensions written behind the type.
+    /// Dimensions written after the type.
     pub subscripts: Vec<Subscript>,
     /// The components.
     pub components: Vec<ComponentDeclaration>,
@@ -406,7 +406,7 @@ pub struct TypeSpecifier {
 pub struct ComponentDeclaration {
     /// Its name.
     pub name: Spanned<Ident>,
-    /// Dimensions written behind the name.
+    /// Dimensions written after the name.
     pub subscripts: Vec<Subscript>,
     /// `(…) = e`.
     pub modification: Option<Modification>,
@@ -423,13 +423,13 @@ pub struct ComponentDeclaration {
 pub struct Modification {
     /// What stands in the parentheses, in order.
     pub arguments: Vec<Argument>,
-    /// What stands behind `=` or `:=`.
+    /// What follows `=` or `:=`.
     pub binding: Option<Binding>,
     /// The whole modification.
     pub span: Span,
 }
 
-/// What stands behind the `=` of a modification.
+/// What follows the `=` of a modification.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Binding {
     /// `= e`
@@ -458,7 +458,7 @@ pub struct ElementModification {
     pub name: Spanned<Name>,
     /// What it is modified by.
     pub modification: Option<Modification>,
-    /// The string behind it.
+    /// Its description string.
     pub description: Option<Arc<str>>,
     /// The whole argument.
     pub span: Span,
@@ -509,7 +509,7 @@ pub enum EquationKind {
     If {
         /// Conditions with their equations.
         branches: Vec<(Expression, Vec<Equation>)>,
-        /// Equations behind `else`; empty without it.
+        /// Equations after `else`; empty without it.
         otherwise: Vec<Equation>,
     },
     /// `for i in 1:n loop … end for`
@@ -559,7 +559,7 @@ pub enum StatementKind {
     },
     /// `(a, , b) := f(x)`
     MultiAssign {
-        /// Left sides; `None` where an output is not wanted.
+        /// Left sides; `None` where an output is skipped.
         targets: Vec<Option<ComponentReference>>,
         /// The call; in a script any expression, so that `(a, b) := (1, 2)` can be refused by name.
         value: Expression,
@@ -570,7 +570,7 @@ pub enum StatementKind {
     If {
         /// Conditions with their statements.
         branches: Vec<(Expression, Vec<Statement>)>,
-        /// Statements behind `else`; empty without it.
+        /// Statements after `else`; empty without it.
         otherwise: Vec<Statement>,
     },
     /// `for i in 1:n loop … end for`

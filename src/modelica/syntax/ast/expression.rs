@@ -61,7 +61,7 @@ pub enum ExpressionKind {
     If {
         /// Conditions with their values.
         branches: Vec<(Expression, Expression)>,
-        /// The value behind `else`.
+        /// The value after `else`.
         otherwise: Box<Expression>,
     },
     /// `a:b` or `a:step:b`
@@ -156,7 +156,7 @@ pub struct Arguments {
     pub positional: Vec<Expression>,
     /// Named arguments.
     pub named: Vec<NamedArgument>,
-    /// `for …` behind the only argument: a reduction `sum(e for i in r)` (MLS §10.3.4.1).
+    /// `for …` after the only argument: a reduction `sum(e for i in r)` (MLS §10.3.4.1).
     pub iterators: Vec<ForIndex>,
 }
 

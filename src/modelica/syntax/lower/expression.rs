@@ -117,7 +117,7 @@ fn operand(parts: &mut Nodes<'_>, least: u8) -> Lowered<Expression> {
         ".+" => (UnaryOperator::ElementwisePlus, MULTIPLICATION),
         _ => (UnaryOperator::Not, NOT + 1),
     };
-    // Behind another operator (`a / -b * c`, beyond the MLS) a sign binds to its factor alone.
+    // After another operator (`a / -b * c`, beyond the MLS) a sign binds to its factor alone.
     let operand = binary(parts, precedence.max(least))?;
     let span = start.to(operand.span);
     Ok(Expression::new(ExpressionKind::Unary { operator, operand: Box::new(operand) }, span))

@@ -73,8 +73,8 @@ fn list(inside: &mut Nodes<'_>) -> Lowered<Vec<Statement>> {
     }
 }
 
-/// In a script any expression is a statement, as the `"";` that some write behind a call; but for a name
-/// alone, which is a command or a call without its parentheses.
+/// In a script any expression is a statement, as the `"";` that some write after a call; but for a
+/// name alone, which is a command or a call without its parentheses.
 fn assignment_or_call(mut inside: Nodes<'_>, is_in_script: bool) -> Lowered<StatementKind> {
     let left = expression::expression(&mut inside)?;
     let is_statement = match left.kind {

@@ -16,11 +16,11 @@ const SECTION_WORDS: &[&str] = &["equation", "algorithm", "public", "protected"]
 struct Block<'t> {
     /// The keyword, or `""` for a class.
     keyword: &'t str,
-    /// Keyword or class name: what stands behind `end`.
+    /// Keyword or class name: what follows `end`.
     name: &'t str,
     start: usize,
     end: usize,
-    /// An `if` directly behind the `else` of this one.
+    /// An `if` directly after the `else` of this one.
     else_if: Option<Span>,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Blocks<'t> {
     start: bool,
     /// Between `for`, `if`, … and `loop` or `then`.
     header: bool,
-    /// Directly behind the `else` of a clause.
+    /// Directly after the `else` of a clause.
     after_else: bool,
 }
 
@@ -93,7 +93,7 @@ impl<'t> Blocks<'t> {
         self.head = Head::None;
     }
 
-    /// Follows the head of a class up to the token behind its name, which tells a long class
+    /// Follows the head of a class up to the token after its name, which distinguishes a long class
     /// from a short one.
     pub(super) fn name_class(&mut self, token: &Token<'t>) {
         let word = matches!(token.kind, TokenKind::Word | TokenKind::Quoted);

@@ -39,7 +39,7 @@ pub struct Lexeme {
     pub kind: LexemeKind,
     /// First byte.
     pub start: usize,
-    /// The byte behind the last.
+    /// The byte after the last.
     pub end: usize,
     /// Whether a line end before it closes a statement of a script.
     pub ends_line: bool,

@@ -45,10 +45,10 @@ pub(super) struct Token<'t> {
 /// Words that neither begin a statement nor close one's block.
 const CONTINUING: &[&str] = &["and", "or", "then", "loop", "in", "constrainedby", "annotation"];
 
-/// Keywords behind which a statement may be complete.
+/// Keywords after which a statement may be complete.
 const COMPLETING: &[&str] = &["true", "false", "end", "break", "return"];
 
-/// Keywords behind which a statement is not complete.
+/// Keywords after which a statement is not complete.
 const INCOMPLETE: &[&str] = &[
     "and",
     "or",

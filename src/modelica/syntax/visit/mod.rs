@@ -1,7 +1,7 @@
 //! Walks over trees: [`Visit`] reads, [`Rewrite`] changes in place.
 //!
 //! A method's default goes on into the parts through the function `walk_…` or `rewrite_…` of the
-//! same name; an implementation that overrides it calls that function where it wants to go on.
+//! same name; an implementation that overrides it calls that function to continue.
 
 mod read;
 mod rewrite;

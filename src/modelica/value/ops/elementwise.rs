@@ -102,7 +102,7 @@ fn real(
 }
 
 fn join(left: &Value, right: &Value) -> Result<Value, Fault> {
-    let (a, b) = (texts(left), texts(right));
+    let (a, b) = (strings(left), strings(right));
     let all = Cell::new(0usize);
     let concatenated = |a: Arc<str>, b: Arc<str>| -> Result<Arc<str>, Fault> {
         all.set(all.get().saturating_add(a.len()).saturating_add(b.len()));
@@ -125,10 +125,10 @@ fn integers(value: &Value) -> Option<&[i64]> {
     }
 }
 
-fn texts(value: &Value) -> Vec<Arc<str>> {
+fn strings(value: &Value) -> Vec<Arc<str>> {
     match value {
         Value::String(text) => vec![text.clone()],
-        Value::Array(ArrayValue { elements: Elements::String(texts), .. }) => texts.clone(),
+        Value::Array(ArrayValue { elements: Elements::String(strings), .. }) => strings.clone(),
         _ => Vec::new(),
     }
 }

@@ -1,10 +1,10 @@
-//! The crossover of the paper: adjacent ranks mate and exchange the genes behind each crossing
+//! The crossover of the paper: adjacent ranks mate and exchange the genes after each crossing
 //! point. The points are drawn once a run.
 //!
-//! Ranks (1, 2), (3, 4), … make two children each. With the points c₁, …, cₖ the genes behind c₁
-//! are exchanged, then those behind c₂, and so on: with one point c the children are
-//! (a₁ … a_c b_c+1 … bₙ) and (b₁ … b_c a_c+1 … aₙ); with two points the genes between them change
-//! places. An odd last parent mates with rank 1 and gives the first child of that pair.
+//! Ranks (1, 2), (3, 4), … make two children each. With the points c₁, …, cₖ the genes after c₁ are
+//! exchanged, then those after c₂, and so on: with one point c the children are (a₁ … a_c b_c+1 …
+//! bₙ) and (b₁ … b_c a_c+1 … aₙ); with two points the genes between them are exchanged. An odd last
+//! parent mates with rank 1 and gives the first child of that pair.
 //!
 //! Reference: [Rubio et al. 2006](gapilib_base::bibliography#rubio-2006), Figure 3.
 
@@ -38,7 +38,7 @@ struct FixedPoints {
 impl Crossover for FixedPoints {
     fn cross(&self, parents: Parents, _: &mut Mrg32k3a) -> Result<(), Fault> {
         let Parents { first, second, .. } = parents;
-        // Behind an even number of points genes have changed places and back.
+        // After an even number of points the genes are exchanged and back in place.
         for &point in &self.points {
             first[point..].swap_with_slice(&mut second[point..]);
         }

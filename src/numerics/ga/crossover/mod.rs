@@ -30,7 +30,7 @@ pub struct Parents<'a> {
 
 /// Makes children from parents.
 pub trait Crossover: Send + Sync {
-    /// Turns two parents into two children within the ranges of `genes`.
+    /// Recombines two parents to two children within the ranges of `genes`.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! One-point crossover: the genes behind a point change places. The point is drawn anew for every
+//! One-point crossover: the genes after a point are exchanged. The point is drawn anew for every
 //! pair.
 //!
 //! Reference: [Holland 1975](gapilib_base::bibliography#holland-1975).

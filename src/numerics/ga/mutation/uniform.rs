@@ -54,7 +54,7 @@ pub fn check_factor(factor: f64) -> Result<(), Fault> {
     )
 }
 
-/// Changes the individuals behind the first `elites`; `numbers` has one number for each gene of
+/// Mutates the individuals after the first `elites`; `numbers` has one number for each gene of
 /// each individual, elites included (theirs are not used).
 pub fn mutate_uniform(
     genomes: &mut Genomes,

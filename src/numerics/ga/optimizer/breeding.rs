@@ -99,7 +99,7 @@ impl Breeding {
         Breeding { crossover: crossover.unwrap_or_else(|| self.crossover.clone()), ..self.clone() }
     }
 
-    /// Turns two parents into two children, or leaves them as they are.
+    /// Recombines two parents to two children, or copies them unaltered.
     pub fn cross(
         &self,
         first: &mut [f64],

@@ -51,7 +51,7 @@ impl Method for CmaEs {
         let mean = setup.start.unwrap_or_else(|| vec![0.5; n]);
         let distribution = Distribution::new(&mean, self.sigma, size.max(4));
         let (sigma, left) = (self.sigma, self.restarts);
-        Ok(Box::new(Search {
+        Ok(Box::new(CmaEsRun {
             rng: setup.rng,
             distribution,
             sigma,
@@ -62,7 +62,7 @@ impl Method for CmaEs {
     }
 }
 
-struct Search {
+struct CmaEsRun {
     rng: Mrg32k3a,
     distribution: Distribution,
     sigma: f64,
@@ -222,7 +222,7 @@ impl Distribution {
     }
 }
 
-impl Optimizer for Search {
+impl Optimizer for CmaEsRun {
     fn ask(&mut self, batch: &mut Genomes) {
         if self.done {
             return;
@@ -256,7 +256,7 @@ impl Optimizer for Search {
     }
 }
 
-impl Search {
+impl CmaEsRun {
     fn restart(&mut self) {
         if self.left == 0 {
             self.done = true;

@@ -87,7 +87,7 @@ impl Method for Gapilib {
         let mut rng = setup.rng;
         let breeding = self.breeding.for_run(setup.genes.len(), &mut rng);
         let pending = self.sampling.sample(&setup.genes, self.population, &mut rng)?;
-        Ok(Box::new(Search {
+        Ok(Box::new(PaperRun {
             settings: Gapilib { breeding, ..self.clone() },
             genes: setup.genes,
             rng,
@@ -110,7 +110,7 @@ impl Method for Gapilib {
     }
 }
 
-struct Search {
+struct PaperRun {
     settings: Gapilib,
     genes: Vec<Gene>,
     rng: Mrg32k3a,
@@ -119,7 +119,7 @@ struct Search {
     fault: Option<Fault>,
 }
 
-impl Optimizer for Search {
+impl Optimizer for PaperRun {
     fn ask(&mut self, batch: &mut Genomes) {
         self.pending.rows().for_each(|genome| batch.push(genome));
     }
@@ -158,14 +158,14 @@ impl Optimizer for Search {
     }
 }
 
-impl Search {
+impl PaperRun {
     /// The next generation: elites, children, random individuals.
     fn next(&mut self, batch: &Genomes, fitness: &[f64]) -> Result<Genomes, Fault> {
         let (ordered, fitness) = sort_by_fitness(batch, fitness)?;
         let Gapilib { population, parents, elites, sampling, selection, breeding, .. } =
             &self.settings;
         let rng = &mut self.rng;
-        // A population that was changed to be larger has fewer individuals behind it.
+        // After the population was enlarged, the evaluated generation is still the smaller one.
         let (parents, elites) = ((*parents).min(ordered.len()), (*elites).min(ordered.len()));
         let mut chosen = Genomes::with_capacity(self.genes.len(), parents);
         let places = selection.select(&fitness, parents, rng)?;

@@ -15,7 +15,7 @@ use crate::ga::mutation::Course;
 use crate::ga::operators::{self, usual};
 use crate::ga::sampling::Sampling;
 use crate::ga::selection::Selection;
-use crate::ga::survival::{Brood, Rated, Survival, Survivor, Wanted};
+use crate::ga::survival::{Brood, Rated, Sizes, Survival, Survivor};
 use crate::ga::{Gene, Genomes, Mrg32k3a, order};
 use crate::registry::{BAD_OPTION, Entry, Options};
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub const ENTRY: Entry<dyn Method> = Entry {
 
 /// The first stream of random numbers of further islands, far from those of other methods.
 const STREAM: u64 = 2_000_003;
-/// Generations between two migrations, unless others are wanted.
+/// Generations between two migrations by default.
 const MIGRATION: f64 = 10.0;
 /// How often a failed individual of the first generation is drawn again.
 const REDRAWS: usize = 10;
@@ -127,7 +127,7 @@ impl Method for Genetic {
 
 impl Genetic {
     /// A population of its own.
-    fn population(&self, setup: Setup) -> Result<Search, Fault> {
+    fn population(&self, setup: Setup) -> Result<GeneticRun, Fault> {
         let n = setup.genes.len();
         let size = if self.population == 0 { (5 * n).clamp(20, 100) } else { self.population };
         let planned = breeding::planned(&setup, size);
@@ -138,7 +138,7 @@ impl Genetic {
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
-        Ok(Search {
+        Ok(GeneticRun {
             settings: Genetic { population: size, breeding, ..self.clone() },
             genes,
             rng,
@@ -154,7 +154,7 @@ impl Genetic {
     }
 }
 
-struct Search {
+struct GeneticRun {
     settings: Genetic,
     genes: Vec<Gene>,
     rng: Mrg32k3a,
@@ -167,13 +167,13 @@ struct Search {
     fitness: Vec<f64>,
     /// Generations that each of it has survived.
     ages: Vec<u64>,
-    /// Turns left to complete the first generation.
+    /// Attempts left to complete the first generation.
     redraws: usize,
     course: Course,
     fault: Option<Fault>,
 }
 
-impl Optimizer for Search {
+impl Optimizer for GeneticRun {
     fn ask(&mut self, batch: &mut Genomes) {
         self.pending.rows().for_each(|genome| batch.push(genome));
     }
@@ -220,7 +220,7 @@ impl Optimizer for Search {
     }
 }
 
-impl Island for Search {
+impl Island for GeneticRun {
     fn best(&self) -> Option<Vec<f64>> {
         let best = *order(&self.fitness).first()?;
         Some(self.parents.row(best).to_vec()).filter(|_| !has_failed(self.fitness[best]))
@@ -233,7 +233,7 @@ impl Island for Search {
     }
 }
 
-impl Search {
+impl GeneticRun {
     fn go_on(&mut self, batch: &Genomes, fitness: &[f64]) -> Result<(), Fault> {
         match self.redraws {
             0 => self.replace(batch, fitness)?,
@@ -242,8 +242,8 @@ impl Search {
         if self.redraws == 0 { self.breed() } else { Ok(()) }
     }
 
-    fn wanted(&self) -> Wanted {
-        Wanted { population: self.settings.population, elites: self.settings.elites }
+    fn sizes(&self) -> Sizes {
+        Sizes { population: self.settings.population, elites: self.settings.elites }
     }
 
     /// The first generation: keeps what succeeded and draws the rest again.
@@ -276,7 +276,7 @@ impl Search {
             parents: &self.families,
             genes: &self.genes,
         };
-        let survivors = self.settings.survival.survivors(&brood, self.wanted())?;
+        let survivors = self.settings.survival.survivors(&brood, self.sizes())?;
         let mut next = Genomes::with_capacity(offspring.n_genes(), survivors.len());
         survivors.iter().for_each(|&one| next.push(brood.genome(one)));
         let next_fitness = survivors.iter().map(|&one| brood.fitness(one)).collect();
@@ -291,7 +291,7 @@ impl Search {
 
     fn breed(&mut self) -> Result<(), Fault> {
         let Genetic { selection, breeding, survival, .. } = &self.settings;
-        let count = survival.n_offspring(self.wanted());
+        let count = survival.n_offspring(self.sizes());
         let rng = &mut self.rng;
         let drawn = match selection.draws_all_at_once() {
             true => selection.select(&self.fitness, 2 * count.div_ceil(2), rng)?,

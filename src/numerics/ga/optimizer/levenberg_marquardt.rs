@@ -36,7 +36,7 @@ pub(crate) const FINE: f64 = 1e-7;
 /// Relative offset at which the others stop. Problems with large residuals converge slowly from here
 /// (ENSO takes as many steps again).
 pub(crate) const COARSE: f64 = 3e-4;
-/// A minimum whose residuals come near to the errors of the simulation can be told to this offset at
+/// A minimum whose residuals come near to the errors of the simulation is located to this offset at
 /// best (Lanczos1: residuals of 1e-13).
 const COARSEST: f64 = 0.02;
 /// A scale falls at most by this factor in a step; with scales that never fall, MGH10 and Eckerle4
@@ -102,7 +102,7 @@ impl Accuracy {
 
 /// What was asked last.
 #[derive(Clone, Copy, PartialEq)]
-enum Asked {
+enum Request {
     Start,
     Jacobian,
     Probe,
@@ -127,7 +127,7 @@ pub struct Descent {
     taken: u64,
     /// Steps in a row that fell short of the prediction.
     curved: u32,
-    asked: Asked,
+    asked: Request,
     offset: Option<Offset>,
     /// The relative offset at which it stops.
     goal: f64,
@@ -151,7 +151,7 @@ impl Descent {
             left: steps,
             taken: 0,
             curved: 0,
-            asked: Asked::Start,
+            asked: Request::Start,
             offset: None,
             goal,
             end: None,
@@ -182,7 +182,7 @@ impl Descent {
 
     /// Whether it has just come to a place whose derivatives are not yet known.
     pub fn has_moved(&self) -> bool {
-        self.end.is_none() && self.asked == Asked::Jacobian
+        self.end.is_none() && self.asked == Request::Jacobian
     }
 
     /// Whether it is on the way to the minimum where `other` has ended: the linear model about this
@@ -300,7 +300,7 @@ impl Descent {
         }
     }
 
-    /// The next step; ends where there is none that can be told from rounding.
+    /// The next step; ends where none exceeds rounding errors.
     fn propose(&mut self) {
         let step = self.model.as_ref().and_then(|m| m.step(&self.x, &self.scales, self.radius));
         let Some(step) = step else { return self.finish(DescentEnd::NoDescent) };
@@ -309,10 +309,10 @@ impl Descent {
             return self.finish(DescentEnd::NoDescent);
         }
         self.set_trial(&step.by, 1.0);
-        self.asked = Asked::Trial;
+        self.asked = Request::Trial;
         if self.curved >= CURVED && step.damping > 0.0 {
             self.set_trial(&step.by, PROBE);
-            self.asked = Asked::Probe;
+            self.asked = Request::Probe;
         }
         self.step = Some(step);
     }
@@ -325,7 +325,7 @@ impl Descent {
 
     /// Bends the step by its acceleration, found from the residuals a part of it away.
     fn take_probe(&mut self, answers: &Answers<'_>) {
-        self.asked = Asked::Trial;
+        self.asked = Request::Trial;
         let Some(step) = self.step.take() else { return };
         let by = self.bent(&step, answers.residuals).unwrap_or_else(|| step.by.clone());
         self.set_trial(&by, 1.0);
@@ -364,7 +364,7 @@ impl Descent {
         let ratio = gain / step.reduction;
         self.curved = if ratio < 0.25 { self.curved + 1 } else { self.curved };
         if ratio <= 0.25 {
-            // Where the parabola through both values and the slope has its minimum, within limits.
+            // The minimum of the parabola through both values and the derivative, within limits.
             let part = if sum.is_finite() { 0.5 / (1.0 - 0.5 * ratio) } else { 0.25 };
             self.radius = part.clamp(0.1, 0.5) * step.length.min(self.radius);
         } else if ratio >= 0.75 || step.damping == 0.0 {
@@ -374,7 +374,7 @@ impl Descent {
             self.x.copy_from_slice(&self.trial);
             self.residuals = answers.residuals.to_vec();
             self.sum = sum;
-            self.asked = Asked::Jacobian;
+            self.asked = Request::Jacobian;
             return;
         }
         let error = self.accuracy.noise * self.accuracy.size * 1e-3 * self.sum.sqrt();
@@ -413,29 +413,29 @@ pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) 
 }
 
 impl Descent {
-    /// What the next question wants to know.
+    /// What the next request needs to be evaluated.
     pub(crate) fn wants_now(&self) -> Wants {
         match self.asked {
-            Asked::Start | Asked::Jacobian => Wants::Jacobians,
-            Asked::Probe | Asked::Trial => Wants::Residuals,
+            Request::Start | Request::Jacobian => Wants::Jacobians,
+            Request::Probe | Request::Trial => Wants::Residuals,
         }
     }
 
     /// Asks for one individual; for none when it has ended or its steps are used up.
     pub(crate) fn ask_next(&self, batch: &mut Genomes) {
-        if self.end.is_some() || self.left == 0 && self.asked != Asked::Jacobian {
+        if self.end.is_some() || self.left == 0 && self.asked != Request::Jacobian {
             return;
         }
         match self.asked {
-            Asked::Start | Asked::Jacobian => batch.push(&self.x),
-            Asked::Probe | Asked::Trial => batch.push(&self.trial),
+            Request::Start | Request::Jacobian => batch.push(&self.x),
+            Request::Probe | Request::Trial => batch.push(&self.trial),
         }
     }
 
     /// Takes the answers about it.
     pub fn take(&mut self, answers: &Answers<'_>) {
         match self.asked {
-            Asked::Start => {
+            Request::Start => {
                 self.sum = answers.residuals.iter().map(|r| r * r).sum();
                 self.residuals = answers.residuals.to_vec();
                 if self.sum.is_finite() {
@@ -445,9 +445,9 @@ impl Descent {
                     self.end = Some(DescentEnd::Failed);
                 }
             }
-            Asked::Jacobian => self.take_jacobian(answers),
-            Asked::Probe => self.take_probe(answers),
-            Asked::Trial => self.take_trial(answers),
+            Request::Jacobian => self.take_jacobian(answers),
+            Request::Probe => self.take_probe(answers),
+            Request::Trial => self.take_trial(answers),
         }
     }
 

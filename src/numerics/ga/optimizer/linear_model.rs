@@ -148,13 +148,13 @@ impl LinearModel {
             damping = parameter;
             let mut blocked = Vec::new();
             for (column, &j) in free.iter().enumerate() {
-                let wanted = own[column] / scales[j];
-                let limit = limit(x[j], wanted);
-                if wanted.abs() > limit.abs() {
+                let step = own[column] / scales[j];
+                let limit = limit(x[j], step);
+                if step.abs() > limit.abs() {
                     blocked.push(j);
                     by[j] = limit;
                 } else {
-                    by[j] = wanted;
+                    by[j] = step;
                 }
             }
             if blocked.is_empty() {
@@ -294,19 +294,19 @@ fn damped(
             break;
         }
         // d‖z‖/dλ = −Σ z² / (s² + λ) / ‖z‖
-        let slope: f64 = (0..c.len())
+        let decrease: f64 = (0..c.len())
             .filter(|&i| found.s[i] > smallest)
             .map(|i| z[i] * z[i] / (found.s[i] * found.s[i] + damping))
             .sum();
-        damping += (length / radius - 1.0) * length * length / slope;
+        damping += (length / radius - 1.0) * length * length / decrease;
         z = at(damping);
     }
     (found.v_t.tr_mul(&z), damping)
 }
 
-/// How far a gene at `x` may go in the direction of `wanted`.
-fn limit(x: f64, wanted: f64) -> f64 {
-    let room = if wanted > 0.0 { 1.0 - x } else { x };
+/// The longest step of a gene at `x` in the direction of `step`.
+fn limit(x: f64, step: f64) -> f64 {
+    let room = if step > 0.0 { 1.0 - x } else { x };
     let reach = if room <= AT { room } else { TOWARDS_BOUND * room };
-    reach.max(0.0).copysign(wanted)
+    reach.max(0.0).copysign(step)
 }

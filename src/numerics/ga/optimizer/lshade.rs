@@ -51,7 +51,7 @@ impl Method for Lshade {
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
-        Ok(Box::new(Search {
+        Ok(Box::new(LshadeRun {
             rng,
             first: size,
             budget,
@@ -68,7 +68,7 @@ impl Method for Lshade {
     }
 }
 
-struct Search {
+struct LshadeRun {
     rng: Mrg32k3a,
     /// Individuals at the beginning.
     first: usize,
@@ -86,7 +86,7 @@ struct Search {
     slot: usize,
 }
 
-impl Optimizer for Search {
+impl Optimizer for LshadeRun {
     fn ask(&mut self, batch: &mut Genomes) {
         self.trials.rows().for_each(|genome| batch.push(genome));
     }
@@ -121,7 +121,7 @@ impl Optimizer for Search {
     }
 }
 
-impl Search {
+impl LshadeRun {
     /// Trials that are not worse replace their parents; what made them better is remembered.
     fn select(&mut self, trials: &Genomes, fitness: &[f64]) {
         let mut successes: Vec<(f64, f64, f64)> = Vec::new();
@@ -172,15 +172,15 @@ impl Search {
 
     fn shrink(&mut self) {
         let spent = (self.used as f64 / self.budget as f64).min(1.0);
-        let wanted = self.first as f64 + (SMALLEST as f64 - self.first as f64) * spent;
-        let wanted = (wanted.round() as usize).max(SMALLEST);
-        if wanted >= self.population.len() {
+        let target = self.first as f64 + (SMALLEST as f64 - self.first as f64) * spent;
+        let target = (target.round() as usize).max(SMALLEST);
+        if target >= self.population.len() {
             return;
         }
         let mut kept = order(&self.fitness);
-        kept.truncate(wanted);
+        kept.truncate(target);
         kept.sort_unstable();
-        let mut next = Genomes::with_capacity(self.population.n_genes(), wanted);
+        let mut next = Genomes::with_capacity(self.population.n_genes(), target);
         kept.iter().for_each(|&k| next.push(self.population.row(k)));
         self.fitness = kept.iter().map(|&k| self.fitness[k]).collect();
         self.population = next;

@@ -1,6 +1,6 @@
-//! Optimizers: each is asked for individuals and told how good they are. It keeps no clock, no
-//! file and no thread, so that the same seed and the same answers give the same questions:
-//! a run is replayed from its recorded answers.
+//! Optimizers with the ask/tell interface: each proposes candidates and receives their objective
+//! values. It keeps no clock, no file and no thread, so that the same seed and the same answers
+//! give the same questions: a run is replayed from its recorded answers.
 //!
 //! Genes lie in the unit cube; what they stand for (a range, its logarithm) is the asker's
 //! business. The method of the paper alone works in the ranges of the genes.

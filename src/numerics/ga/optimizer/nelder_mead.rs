@@ -30,19 +30,19 @@ impl Method for NelderMead {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let start = setup.start.unwrap_or_else(|| vec![0.5; setup.genes.len()]);
         let corners = simplex(&start, self.size);
-        Ok(Box::new(Search {
+        Ok(Box::new(NelderMeadRun {
             size: self.size,
             corners,
             trial: Vec::new(),
             reflected: None,
-            asked: Asked::All,
+            asked: Request::All,
             restarts: RESTARTS,
         }))
     }
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Asked {
+enum Request {
     All,
     Reflection,
     Expansion,
@@ -52,13 +52,13 @@ enum Asked {
     Nothing,
 }
 
-struct Search {
+struct NelderMeadRun {
     size: f64,
     /// Corners with their fitness; sorted before a reflection.
     corners: Vec<(Vec<f64>, f64)>,
     trial: Vec<f64>,
     reflected: Option<(Vec<f64>, f64)>,
-    asked: Asked,
+    asked: Request,
     restarts: usize,
 }
 
@@ -73,20 +73,20 @@ fn simplex(start: &[f64], size: f64) -> Vec<(Vec<f64>, f64)> {
     corners
 }
 
-impl Optimizer for Search {
+impl Optimizer for NelderMeadRun {
     fn ask(&mut self, batch: &mut Genomes) {
         match self.asked {
-            Asked::Nothing => {}
-            Asked::All => self.corners.iter().for_each(|corner| batch.push(&corner.0)),
-            Asked::Shrinking => self.corners[1..].iter().for_each(|corner| batch.push(&corner.0)),
+            Request::Nothing => {}
+            Request::All => self.corners.iter().for_each(|corner| batch.push(&corner.0)),
+            Request::Shrinking => self.corners[1..].iter().for_each(|corner| batch.push(&corner.0)),
             _ => batch.push(&self.trial),
         }
     }
 
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
-        let first = usize::from(self.asked == Asked::Shrinking);
+        let first = usize::from(self.asked == Request::Shrinking);
         match self.asked {
-            Asked::All | Asked::Shrinking => {
+            Request::All | Request::Shrinking => {
                 for k in 0..batch.len() {
                     self.corners[first + k].1 = key(answers.fitness(k));
                 }
@@ -101,7 +101,7 @@ impl Optimizer for Search {
     }
 }
 
-impl Search {
+impl NelderMeadRun {
     /// The point on the line from the worst corner through the middle of the others; 1 is the
     /// reflection.
     fn along(&self, factor: f64) -> Vec<f64> {
@@ -121,17 +121,17 @@ impl Search {
             return self.restart();
         }
         self.trial = self.along(1.0);
-        self.asked = Asked::Reflection;
+        self.asked = Request::Reflection;
     }
 
     fn restart(&mut self) {
         if self.restarts == 0 {
-            self.asked = Asked::Nothing;
+            self.asked = Request::Nothing;
             return;
         }
         self.restarts -= 1;
         self.corners = simplex(&self.corners[0].0, self.size);
-        self.asked = Asked::All;
+        self.asked = Request::All;
     }
 
     fn judge(&mut self, fitness: f64) {
@@ -139,19 +139,19 @@ impl Search {
         let (best, second, worst) = (self.corners[0].1, self.corners[n - 1].1, self.corners[n].1);
         let found = (self.trial.clone(), fitness);
         match self.asked {
-            Asked::Reflection if fitness < best => {
+            Request::Reflection if fitness < best => {
                 self.trial = self.along(1.0 + 2.0 / n as f64);
                 self.reflected = Some(found);
-                self.asked = Asked::Expansion;
+                self.asked = Request::Expansion;
             }
-            Asked::Reflection if fitness < second => self.accept(found),
-            Asked::Reflection => {
+            Request::Reflection if fitness < second => self.accept(found),
+            Request::Reflection => {
                 let factor = 0.75 - 0.5 / n as f64;
                 self.trial = self.along(if fitness < worst { factor } else { -factor });
                 self.reflected = (fitness < worst).then_some(found);
-                self.asked = Asked::Contraction;
+                self.asked = Request::Contraction;
             }
-            Asked::Expansion => {
+            Request::Expansion => {
                 let better = match self.reflected.take() {
                     Some(reflected) if reflected.1 <= fitness => reflected,
                     _ => found,
@@ -179,6 +179,6 @@ impl Search {
                 *value = best + factor * (*value - best);
             }
         }
-        self.asked = Asked::Shrinking;
+        self.asked = Request::Shrinking;
     }
 }

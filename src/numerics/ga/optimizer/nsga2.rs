@@ -54,7 +54,7 @@ impl Method for Nsga2 {
         }
         let settings = Nsga2 { breeding, ..self.clone() };
         let (genomes, objectives) = (Genomes::with_capacity(n, 0), Vec::new());
-        Ok(Box::new(Search {
+        Ok(Box::new(Nsga2Run {
             settings,
             genes,
             rng,
@@ -81,7 +81,7 @@ impl Method for Nsga2 {
     }
 }
 
-struct Search {
+struct Nsga2Run {
     settings: Nsga2,
     genes: Vec<Gene>,
     rng: Mrg32k3a,
@@ -94,7 +94,7 @@ struct Search {
     fault: Option<Fault>,
 }
 
-impl Optimizer for Search {
+impl Optimizer for Nsga2Run {
     fn ask(&mut self, batch: &mut Genomes) {
         self.pending.rows().for_each(|genome| batch.push(genome));
     }
@@ -127,7 +127,7 @@ impl Optimizer for Search {
     }
 }
 
-impl Search {
+impl Nsga2Run {
     fn survive(&mut self, m: usize) {
         let survivors = survivors(&self.objectives, m, self.settings.population);
         let mut next = Genomes::with_capacity(self.genomes.n_genes(), 2 * survivors.len());

@@ -21,7 +21,7 @@ pub const ENTRY: Entry<dyn Sampling> = Entry {
 /// Genes that the sequence is made for; further ones are those of a Latin hypercube.
 pub(crate) const SOBOL_GENES: usize = 1 + POLYNOMIALS.len();
 
-/// For the second gene and the ones behind it: degree and inner coefficients of a primitive
+/// For the second gene and those after it: degree and inner coefficients of a primitive
 /// polynomial, and the first direction numbers.
 const POLYNOMIALS: [(u32, u32, &[u32]); 20] = [
     (1, 0, &[1]),

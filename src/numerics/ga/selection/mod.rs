@@ -84,11 +84,11 @@ fn sums(weights: &[f64]) -> Vec<f64> {
 fn pointed(sums: &[f64], u: f64) -> usize {
     let total = sums.last().copied().unwrap_or(0.0);
     let at = sums.partition_point(|sum| *sum <= u * total);
-    // Rounding may move the pointer to the end: behind the last one with a weight.
+    // Rounding may move the pointer to the end, past the last one with a weight.
     if at < sums.len() { at } else { sums.partition_point(|sum| *sum < total) }
 }
 
-/// Turns a wheel for each of `count` parents.
+/// Spins a wheel for each of `count` parents.
 fn spun(weights: &[f64], count: usize, rng: &mut Mrg32k3a) -> Vec<usize> {
     let sums = sums(weights);
     (0..count).map(|_| pointed(&sums, rng.uniform())).collect()

@@ -65,7 +65,7 @@ mod tests {
             let chosen = Tournament { size }.select(&fitness, 16_000, &mut rng).unwrap();
             for (rank, k) in [1, 3, 0, 2].into_iter().enumerate() {
                 let wins = chosen.iter().filter(|own| **own == k).count() as f64;
-                let share = |behind: usize| (behind as f64 / 4.0).powi(size as i32);
+                let share = |not_better: usize| (not_better as f64 / 4.0).powi(size as i32);
                 let expected = 16_000.0 * (share(4 - rank) - share(3 - rank));
                 assert!(
                     (wins - expected).abs() < 5.0 * expected.sqrt() + 1.0,

@@ -39,7 +39,7 @@ impl Selection for Truncation {
 ///
 /// # Errors
 ///
-/// `bad-population` when a number is negative, nobody is there, or they do not fit.
+/// `bad-population` when a number is negative, the population is empty, or they do not fit.
 pub fn check_sizes(individuals: i64, parents: i64, elites: i64) -> Result<(), Fault> {
     for (name, value, least) in
         [("N_Population", individuals, 1), ("N_Parents", parents, 1), ("N_Elitism", elites, 0)]

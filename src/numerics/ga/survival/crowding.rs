@@ -1,13 +1,13 @@
 //! Deterministic crowding: of two parents and their two children, each child competes with the
 //! parent that it is more like, and takes its place if it is better. Everyone is a parent once a
-//! generation (selection `shuffle`), and nobody competes with strangers, so that several minima
-//! stay occupied.
+//! generation (selection `shuffle`), and competes with similar individuals only, so that several
+//! minima stay occupied.
 //!
 //! Distances are Euclidean in the fractions of the ranges.
 //!
 //! Reference: [Mahfoud 1995](gapilib_base::bibliography#mahfoud-1995), §5.2.
 
-use super::{Brood, Survival, Survivor, Wanted};
+use super::{Brood, Sizes, Survival, Survivor};
 use crate::diag::Fault;
 use crate::ga::Gene;
 use crate::registry::Entry;
@@ -24,7 +24,7 @@ pub const ENTRY: Entry<dyn Survival> = Entry {
 struct Crowding;
 
 impl Survival for Crowding {
-    fn survivors(&self, brood: &Brood<'_>, _: Wanted) -> Result<Vec<Survivor>, Fault> {
+    fn survivors(&self, brood: &Brood<'_>, _: Sizes) -> Result<Vec<Survivor>, Fault> {
         let mut places: Vec<Survivor> = (0..brood.old.fitness.len()).map(Survivor::Old).collect();
         for first in (0..brood.parents.len()).step_by(2) {
             let [a, b] = brood.parents[first];
@@ -38,7 +38,7 @@ impl Survival for Crowding {
                 compete(brood, &mut places[one], first);
                 compete(brood, &mut places[other], first + 1);
             } else {
-                // The second child of the last pair was not wanted.
+                // The second child of the last pair was not requested.
                 let like = if distance(a, first) <= distance(b, first) { a } else { b };
                 compete(brood, &mut places[like], first);
             }

@@ -7,7 +7,7 @@
 //!
 //! Reference: [Rubio et al. 2006](gapilib_base::bibliography#rubio-2006), §2.
 
-use super::{Brood, Survival, Survivor, Wanted};
+use super::{Brood, Sizes, Survival, Survivor};
 use crate::diag::Fault;
 use crate::ga::{Genomes, order};
 use crate::registry::Entry;
@@ -24,14 +24,14 @@ pub const ENTRY: Entry<dyn Survival> = Entry {
 struct Elitism;
 
 impl Survival for Elitism {
-    fn n_offspring(&self, Wanted { population, elites }: Wanted) -> usize {
+    fn n_offspring(&self, Sizes { population, elites }: Sizes) -> usize {
         // Where all parents compete with them, there are as many offspring.
         if elites < population { population - elites } else { population }
     }
 
-    fn survivors(&self, brood: &Brood<'_>, wanted: Wanted) -> Result<Vec<Survivor>, Fault> {
-        let elites = order(brood.old.fitness).into_iter().take(wanted.elites).map(Survivor::Old);
-        Ok(brood.best(elites.chain(brood.offspring()).collect(), wanted.population))
+    fn survivors(&self, brood: &Brood<'_>, sizes: Sizes) -> Result<Vec<Survivor>, Fault> {
+        let elites = order(brood.old.fitness).into_iter().take(sizes.elites).map(Survivor::Old);
+        Ok(brood.best(elites.chain(brood.offspring()).collect(), sizes.population))
     }
 
     fn has_elites(&self) -> bool {

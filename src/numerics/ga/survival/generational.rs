@@ -2,7 +2,7 @@
 //!
 //! Reference: [De Jong 1975](gapilib_base::bibliography#de-jong-1975), generation gap 1.
 
-use super::{Brood, Survival, Survivor, Wanted};
+use super::{Brood, Sizes, Survival, Survivor};
 use crate::diag::Fault;
 use crate::registry::Entry;
 
@@ -18,7 +18,7 @@ pub const ENTRY: Entry<dyn Survival> = Entry {
 struct Generational;
 
 impl Survival for Generational {
-    fn survivors(&self, brood: &Brood<'_>, _: Wanted) -> Result<Vec<Survivor>, Fault> {
+    fn survivors(&self, brood: &Brood<'_>, _: Sizes) -> Result<Vec<Survivor>, Fault> {
         Ok(brood.offspring().collect())
     }
 }

@@ -47,9 +47,9 @@ pub enum Survivor {
     Offspring(usize),
 }
 
-/// Individuals that are wanted.
+/// Sizes of the next generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Wanted {
+pub struct Sizes {
     /// Individuals of a generation.
     pub population: usize,
     /// Individuals that pass on unaltered, where the way of survival has those.
@@ -59,8 +59,8 @@ pub struct Wanted {
 /// Puts the next generation together.
 pub trait Survival: Send + Sync {
     /// How many offspring a generation has.
-    fn n_offspring(&self, wanted: Wanted) -> usize {
-        wanted.population
+    fn n_offspring(&self, sizes: Sizes) -> usize {
+        sizes.population
     }
 
     /// The next generation.
@@ -68,14 +68,14 @@ pub trait Survival: Send + Sync {
     /// # Errors
     ///
     /// A user's function that failed or returned what is no number.
-    fn survivors(&self, brood: &Brood<'_>, wanted: Wanted) -> Result<Vec<Survivor>, Fault>;
+    fn survivors(&self, brood: &Brood<'_>, sizes: Sizes) -> Result<Vec<Survivor>, Fault>;
 
     /// Whether the number of elites counts.
     fn has_elites(&self) -> bool {
         false
     }
 
-    /// Whether another population may be wanted while a run goes on.
+    /// Whether the population can be resized during a run.
     fn can_resize(&self) -> bool {
         true
     }

@@ -1,7 +1,7 @@
 //! A survival that the user wrote in Modelica: a number for each of the old generation and of the
 //! offspring. Those with the smallest numbers survive.
 
-use super::{Brood, Survival, Survivor, Wanted};
+use super::{Brood, Sizes, Survival, Survivor};
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_OPERATOR;
@@ -26,8 +26,8 @@ pub(crate) const SIGNATURE: Signature = Signature {
 pub struct Own(pub Arc<dyn UserFunction>);
 
 impl Survival for Own {
-    fn survivors(&self, brood: &Brood<'_>, wanted: Wanted) -> Result<Vec<Survivor>, Fault> {
-        survivors_by(&mut |inputs| self.0.call(inputs), brood, wanted)
+    fn survivors(&self, brood: &Brood<'_>, sizes: Sizes) -> Result<Vec<Survivor>, Fault> {
+        survivors_by(&mut |inputs| self.0.call(inputs), brood, sizes)
     }
 }
 
@@ -39,7 +39,7 @@ impl Survival for Own {
 pub fn survivors_by(
     call: Call<'_>,
     brood: &Brood<'_>,
-    wanted: Wanted,
+    sizes: Sizes,
 ) -> Result<Vec<Survivor>, Fault> {
     let n_old = brood.old.fitness.len();
     // The generation is individual by individual: old first, then offspring.
@@ -62,5 +62,5 @@ pub fn survivors_by(
             ),
         }
     }
-    Ok(order(&keys).into_iter().take(wanted.population).map(one).collect())
+    Ok(order(&keys).into_iter().take(sizes.population).map(one).collect())
 }

@@ -3,7 +3,7 @@
 //!
 //! Reference: [Beyer & Schwefel 2002](gapilib_base::bibliography#beyer-schwefel-2002).
 
-use super::{Brood, Survival, Survivor, Wanted};
+use super::{Brood, Sizes, Survival, Survivor};
 use crate::diag::Fault;
 use crate::registry::Entry;
 
@@ -24,12 +24,12 @@ struct Plus {
 }
 
 impl Survival for Plus {
-    fn n_offspring(&self, wanted: Wanted) -> usize {
-        if self.offspring == 0 { wanted.population } else { self.offspring }
+    fn n_offspring(&self, sizes: Sizes) -> usize {
+        if self.offspring == 0 { sizes.population } else { self.offspring }
     }
 
-    fn survivors(&self, brood: &Brood<'_>, wanted: Wanted) -> Result<Vec<Survivor>, Fault> {
+    fn survivors(&self, brood: &Brood<'_>, sizes: Sizes) -> Result<Vec<Survivor>, Fault> {
         let old = (0..brood.old.fitness.len()).map(Survivor::Old);
-        Ok(brood.best(old.chain(brood.offspring()).collect(), wanted.population))
+        Ok(brood.best(old.chain(brood.offspring()).collect(), sizes.population))
     }
 }

@@ -1,7 +1,7 @@
 //! From the cells of a column to numbers.
 
 use super::Places;
-use super::moment::{Kind, Moment, moment, seconds};
+use super::moment::{Moment, MomentKind, moment, seconds};
 use super::number::{Form, Missing, form, missing, value};
 use super::records::Record;
 use crate::diag::Fault;
@@ -109,7 +109,7 @@ impl<'r> Cells<'r, '_> {
 
     fn moments(self) -> Result<Parsed, Fault> {
         let mut moments = Vec::with_capacity(self.rows.len());
-        let mut kind: Option<Kind> = None;
+        let mut kind: Option<MomentKind> = None;
         for (line, cell) in self.all() {
             if missing(cell).is_some() {
                 moments.push(None);

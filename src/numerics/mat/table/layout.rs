@@ -1,7 +1,7 @@
 //! Which rows of a file are what: preamble, head, units, data.
 //!
 //! The data are the longest run of equally long rows with numbers; the head is the row of names above
-//! them. What stands before the head is not read; everything behind it must fit.
+//! them. What precedes the header is not read; everything after it must fit.
 
 use super::Places;
 use super::moment::moment;
@@ -70,7 +70,7 @@ fn score<'a>(sample: impl Iterator<Item = &'a str>, separator: Separator) -> f64
         let numbers = cells.iter().filter(|cell| is_value(cell)).count();
         let entry = &mut shares[cells.len()];
         entry.0 += numbers as f64 / filled as f64;
-        entry.1 |= is_text_only(&cells);
+        entry.1 |= has_no_number(&cells);
     }
     let total = |(share, named): (f64, bool)| share + if named && share > 0.0 { 0.5 } else { 0.0 };
     shares.into_iter().map(total).fold(0.0, f64::max)
@@ -81,7 +81,7 @@ fn is_value(cell: &str) -> bool {
 }
 
 /// Whether a cell or more is text and none is a number.
-fn is_text_only(cells: &[Cow<'_, str>]) -> bool {
+fn has_no_number(cells: &[Cow<'_, str>]) -> bool {
     let mut text = false;
     for cell in cells {
         if is_value(cell) {
@@ -182,7 +182,7 @@ fn head_above(records: &[Record<'_>], block: &Range<usize>) -> Option<usize> {
         };
         first.cells.iter().enumerate().all(needs)
     };
-    let above = || (0..block.start).rev().filter(|&at| is_text_only(&records[at].cells));
+    let above = || (0..block.start).rev().filter(|&at| has_no_number(&records[at].cells));
     let nearest = above().find(|&at| names_all(&records[at])).or_else(|| above().next())?;
     let nearest = fuller_head(records, nearest, block.start).unwrap_or(nearest);
     // The same head stands before an earlier part where a file was continued.
@@ -190,7 +190,7 @@ fn head_above(records: &[Record<'_>], block: &Range<usize>) -> Option<usize> {
         records.iter().position(|record| record.cells == records[nearest].cells).unwrap_or(nearest);
     let Some(before) = nearest.checked_sub(1) else { return Some(nearest) };
     let (names, units) = (&records[before], &records[nearest]);
-    let adjacent = names.line + 1 == units.line && is_text_only(&names.cells) && names_all(names);
+    let adjacent = names.line + 1 == units.line && has_no_number(&names.cells) && names_all(names);
     let is_units = adjacent && is_units_row(units, names, Some(first));
     Some(if is_units { before } else { nearest })
 }
@@ -207,7 +207,7 @@ fn fuller_head(records: &[Record<'_>], nearest: usize, data: usize) -> Option<us
     }
     let head = (nearest.saturating_sub(MOST - 1)..nearest).rev();
     let mut together = head.take_while(|&at| {
-        records[at].line + 1 == records[at + 1].line && is_text_only(&records[at].cells)
+        records[at].line + 1 == records[at + 1].line && has_no_number(&records[at].cells)
     });
     let width = |at: usize| records[at].width() >= records[nearest].width();
     together.find(|&at| has_first(at) && named(at) > named(nearest) && width(at))
@@ -239,7 +239,7 @@ fn commented_head<'a>(
     while cells.last().is_some_and(|cell| cell.is_empty()) {
         cells.pop();
     }
-    let fits = cells.len() == first.cells.len() && is_text_only(&cells);
+    let fits = cells.len() == first.cells.len() && has_no_number(&cells);
     fits.then_some(Record { line: number + 1, cells })
 }
 
@@ -267,7 +267,7 @@ fn units_row<'a>(
     let below = first_data.and_then(|at| rows.get(at)).cloned();
     let has_units = rows.first().is_some_and(|first| is_units_row(first, head, below.as_ref()));
     let units = has_units.then(|| rows.remove(0));
-    let between = rows.iter().take_while(|row| is_text_only(&row.cells)).count();
+    let between = rows.iter().take_while(|row| has_no_number(&row.cells)).count();
     for row in rows.drain(..between) {
         warnings.push(format!("{} between header and data is ignored", places.row(row.line)));
     }

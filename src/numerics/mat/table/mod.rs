@@ -3,8 +3,8 @@
 //! Separators are semicolons, tabs, commas or blanks; numbers have decimal points or commas; a row of
 //! units may follow the names; empty cells and words such as `n/a` are missing values, NaN; dates and
 //! times of day become seconds; lines with `#`, `%` or `//` are comments, and what an instrument
-//! writes before the head is passed over. A column that cannot be read is a fault only for whoever
-//! asks for it. Nothing is guessed: what may be read in two ways is refused.
+//! writes before the head is passed over. A column that cannot be read is a fault only when it is
+//! requested. Nothing is guessed: what may be read in two ways is refused.
 
 mod column;
 mod decode;
@@ -23,7 +23,7 @@ use crate::diag::Fault;
 use crate::{bail, fault};
 use column::{Cells, Content, Parsed};
 use layout::Layout;
-use moment::{Kind, Moment};
+use moment::{Moment, MomentKind};
 use records::{Record, Separator};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -195,7 +195,7 @@ fn only_dates<'p>(
     let dates = headings.iter().zip(parsed).filter_map(|(heading, parsed)| match parsed {
         Some(Ok(Parsed { content: Content::Moments(moments), .. })) => {
             let kind = moments.iter().flatten().next()?.kind();
-            (kind == Kind::Date).then_some((heading.name, moments.as_slice()))
+            (kind == MomentKind::Date).then_some((heading.name, moments.as_slice()))
         }
         _ => None,
     });
@@ -216,7 +216,7 @@ fn numbers(
         Content::Numbers(values) => Ok(values.clone()),
         Content::Moments(moments) => {
             let kind = moments.iter().flatten().next().map(|moment| moment.kind());
-            let dates = dates.filter(|_| kind == Some(Kind::Clock));
+            let dates = dates.filter(|_| kind == Some(MomentKind::Clock));
             let (values, note) = column::in_seconds(name, moments, dates)?;
             about.notes.push(note);
             about.unit = Some("s".to_owned());

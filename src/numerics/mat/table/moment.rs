@@ -28,18 +28,18 @@ enum Date {
 
 /// What the first cell of a column of moments holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum MomentKind {
     Date,
     Clock,
     Both,
 }
 
 impl Moment {
-    pub fn kind(self) -> Kind {
+    pub fn kind(self) -> MomentKind {
         match (self.date, self.clock) {
-            (Some(_), Some(_)) => Kind::Both,
-            (Some(_), None) => Kind::Date,
-            _ => Kind::Clock,
+            (Some(_), Some(_)) => MomentKind::Both,
+            (Some(_), None) => MomentKind::Date,
+            _ => MomentKind::Clock,
         }
     }
 }
@@ -232,7 +232,7 @@ pub fn seconds(
     hint: &str,
 ) -> Result<Seconds, Fault> {
     let day_first = order(dates.unwrap_or(moments))?;
-    // Nanoseconds since the year 0: dates behind the year 2262 exceed 64 bits.
+    // Nanoseconds since the year 0: dates after the year 2262 exceed 64 bits.
     let mut found: Vec<Option<i128>> = Vec::with_capacity(moments.len());
     let mut passes_midnight = false;
     let mut is_dated = false;

@@ -10,7 +10,7 @@ pub enum Form {
     Integer,
     /// This mark is the decimal one: `0.5`, `12,75`.
     Decimal(char),
-    /// One mark with three digits behind it: decimal, or between thousands.
+    /// One mark with three digits after it: decimal, or between thousands.
     Ambiguous(char),
     /// Marks between thousands, and the decimal one if there is one: `1.300,5`, `1 013 250`.
     Grouped { group: char, decimal: Option<char> },

@@ -43,7 +43,7 @@ pub(crate) fn is_unit(cell: &str) -> bool {
     OTHER.contains(&inner) || inner.len() < cell.len() || known(inner).is_some()
 }
 
-/// A unit that is known, by itself or with words behind it: `V vs. Ref.`.
+/// A unit that is known, by itself or followed by words: `V vs. Ref.`.
 fn known(text: &str) -> Option<String> {
     let text = text.trim();
     let is_known = |text: &str| !text.is_empty() && text != "1" && units::written(text).is_some();

@@ -71,7 +71,7 @@ fn error_constant(order: usize) -> f64 {
 #[derive(Default)]
 struct Bdf {
     n_differential: usize,
-    /// Length of y; behind it all vectors hold its derivatives along directions, n for each.
+    /// Length of y; in all vectors its derivatives along directions follow, n for each.
     n: usize,
     t: f64,
     /// Step length and order of the differences, also of the last step until the next begins.

@@ -20,7 +20,7 @@ const SAME_LENGTH: f64 = 4.0 * f64::EPSILON;
 const SHORT: f64 = 1.0;
 /// What its last term is, relative to the first.
 const NEGLIGIBLE: f64 = 1e-18;
-/// Where something is looked for between points: the first step behind an event relative to 1 / norm
+/// Where something is looked for between points: the first step after an event relative to 1 / norm
 /// of A, and the parts of a period of the fastest oscillation that a step is at most.
 const FIRST_STEP: f64 = 0.5;
 const PARTS_OF_PERIOD: f64 = 8.0;

@@ -170,8 +170,8 @@ mod tests {
         let x = after(&a, h, [&[1.0, 1.0], &[0.0; 2], &[0.0; 2]]);
         assert!((x[1] - (-slow * h).exp()).abs() <= 1e-14, "{}", x[1]);
         let (c, s) = (0.6, 0.8);
-        let turn = DMatrix::from_row_slice(2, 2, &[c, -s, s, c]);
-        let mixed = &turn * a * turn.transpose();
+        let rotation = DMatrix::from_row_slice(2, 2, &[c, -s, s, c]);
+        let mixed = &rotation * a * rotation.transpose();
         let x = after(&mixed, h, [&[1.0, 0.0], &[0.0; 2], &[0.0; 2]]);
         let decay = (-slow * h).exp();
         // A itself is known to rounding of its large entries alone.

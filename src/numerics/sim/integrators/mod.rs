@@ -166,8 +166,8 @@ impl Problem<'_> {
     }
 
     /// A first step over which x changes little, from the relative speed of x at (t, y). It is not
-    /// longer than the distance of output points: derivatives that are zero at first tell nothing about
-    /// what comes, and whoever asks for points expects something between them.
+    /// longer than the distance of output points: derivatives that are zero at first predict
+    /// nothing, and users who set output points expect changes between them.
     fn first_step(&self, t: f64, y: &[f64], rhs: &[f64]) -> f64 {
         let settings = self.settings;
         let n = self.system.n_differential();

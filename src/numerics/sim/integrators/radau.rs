@@ -10,7 +10,7 @@
 //!
 //! The stages are found by Newton's method with one Jacobian for all, starting from the polynomial
 //! of the last step. Between steps the collocation polynomial, of degree 3, gives y. F at the end of
-//! a step is evaluated before the step is accepted: where F has no value there, as behind the zero of
+//! a step is evaluated before the step is accepted: where F has no value there, as past the zero of
 //! a root, the step was too long.
 //!
 //! Reference: [Hairer & Wanner 1996](gapilib_base::bibliography#hairer-wanner-1996), section IV.8.
@@ -67,7 +67,7 @@ struct Radau {
     control: StepControl,
     y: Vec<f64>,
     y_old: Vec<f64>,
-    /// z₁, z₂, z₃ one behind the other, of the last step or the attempt.
+    /// z₁, z₂, z₃ one after the other, of the last step or the attempt.
     z: Vec<f64>,
     /// Those of the last step while there is an attempt.
     z_old: Vec<f64>,
@@ -320,7 +320,7 @@ impl Radau {
             *point = y + z;
         }
         problem.rhs(t, &self.point, &mut self.end)?;
-        // What a delay gives at the end is known only behind it.
+        // The value of a delay at the end is known only after it.
         self.knows_first = !problem.system.remembers();
         Ok(())
     }

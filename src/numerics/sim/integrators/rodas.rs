@@ -10,7 +10,7 @@
 //!
 //! Nothing is iterated and nothing kept from one step to the next, so events cost no more than a
 //! step. ∂F/∂t is a difference. Between steps a polynomial of order 3 gives y. F at the end of a step
-//! is evaluated before the step is accepted: where F has no value there, as behind the zero of a
+//! is evaluated before the step is accepted: where F has no value there, as past the zero of a
 //! root, the step was too long.
 //!
 //! Reference: [Hairer & Wanner 1996](gapilib_base::bibliography#hairer-wanner-1996), sections IV.7 and VI.4.
@@ -188,7 +188,7 @@ impl Rodas {
         let error = self.error(problem.settings.tolerance, problem.nominal);
         if error <= 1.0 {
             problem.rhs(t_new, &self.trial, &mut self.rhs)?;
-            // What a delay gives at the end is known only behind it.
+            // The value of a delay at the end is known only after it.
             self.knows_first = !problem.system.remembers();
         }
         Ok(error)

@@ -21,8 +21,8 @@ pub(crate) const FAILURE_FACTOR: f64 = 0.25;
 /// A step that ends this near to the limit, relative to its length, is stretched to it: what remained
 /// would be of the size of rounding errors in t.
 const STRETCH: f64 = 1.0 + 1e-9;
-/// Behind an event the step that was good before it is at most ten times too long.
-const BEHIND_EVENT: f64 = 0.1;
+/// After an event the step that was good before it is at most ten times too long.
+const AFTER_EVENT: f64 = 0.1;
 
 /// An attempt of a step.
 #[derive(Debug, Clone, Copy)]
@@ -76,12 +76,12 @@ impl StepControl {
         self.h = problem.first_step(t, y, rhs);
     }
 
-    /// As [`StepControl::start`], for methods whose steps may be nearly as long behind an event as
+    /// As [`StepControl::start`], for methods whose steps may be nearly as long after an event as
     /// before it.
     pub fn restart(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
         let is_first = self.h == 0.0 || t <= problem.settings.start;
         let first = problem.first_step(t, y, rhs);
-        self.h = if is_first { first } else { first.max(BEHIND_EVENT * self.h) };
+        self.h = if is_first { first } else { first.max(AFTER_EVENT * self.h) };
     }
 
     /// Begins a step from t.

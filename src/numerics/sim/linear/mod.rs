@@ -34,7 +34,7 @@ const SMALL: usize = 12;
 
 impl Factorization {
     /// Prepares for matrices of a pattern. `coupled`: rows and columns of unknowns of algebraic loops,
-    /// of which nobody knows whether their diagonal holds anything.
+    /// whose diagonal may be zero.
     pub fn new(pattern: &Pattern, coupled: &[usize]) -> Factorization {
         let n = pattern.n;
         if n <= SMALL || 3 * pattern.rows.len() > n * n {

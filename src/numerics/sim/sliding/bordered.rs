@@ -12,10 +12,10 @@ pub fn bordered(inner: &Pattern, at: usize, k: usize) -> Pattern {
             _ => {
                 let column = if column < at { column } else { column - k };
                 let rows = &inner.rows[inner.column(column)];
-                let (before, behind) = rows.split_at(rows.partition_point(|row| *row < at));
+                let (before, after) = rows.split_at(rows.partition_point(|row| *row < at));
                 pattern.rows.extend(before);
                 pattern.rows.extend(at..at + k);
-                pattern.rows.extend(behind.iter().map(|row| row + k));
+                pattern.rows.extend(after.iter().map(|row| row + k));
             }
         }
         pattern.column_starts.push(pattern.rows.len());

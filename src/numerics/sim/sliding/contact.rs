@@ -1,6 +1,6 @@
 //! The forces at contacts.
 //!
-//! Behind an event, a contact is looked at again with the gap z, positive on the free side, and its
+//! After an event, a contact is examined again with the gap z, positive on the free side, and its
 //! rates w = dz/dt and dw/dt, the latter without the force of the contact itself:
 //!
 //! ```text
@@ -131,15 +131,15 @@ impl Sliding<'_> {
         let mut z = vec![0.0; self.inner.n_crossings()];
         self.inner.crossings(t, y, &mut z)?;
         let way = gap - contact.gap(z[contact.crossing]);
-        let [mut before, mut behind] = [vec![0.0; y.len()], vec![0.0; y.len()]];
+        let [mut before, mut after] = [vec![0.0; y.len()], vec![0.0; y.len()]];
         let mut moved = y.to_vec();
         contact.move_along(1.0, &mut moved);
         self.inner.rhs(t, y, &mut before)?;
-        self.inner.rhs(t, &moved, &mut behind)?;
+        self.inner.rhs(t, &moved, &mut after)?;
         let effect = self.speed(contact, t, &moved)? - self.speed(contact, t, y)?;
-        let directions = behind.iter().zip(&before).take(n);
-        for (y, (behind, before)) in y.iter_mut().zip(directions) {
-            *y += way / effect * (behind - before);
+        let directions = after.iter().zip(&before).take(n);
+        for (y, (after, before)) in y.iter_mut().zip(directions) {
+            *y += way / effect * (after - before);
         }
         Ok(())
     }

@@ -35,7 +35,7 @@ impl Sliding<'_> {
         for column in 0..y.len() {
             let entries = &mut values[slide.pattern.column(column)];
             match inner_place(column, at, k) {
-                Some(inner) => self.add_slopes(slide, (column, inner), weight, entries),
+                Some(inner) => self.add_derivatives(slide, (column, inner), weight, entries),
                 None if column - at < shares.len() => {
                     let by_share = weight_by_share(mode, shares, column - at);
                     for (row, value) in (0..at).chain(at + k..y.len()).zip(&self.out) {
@@ -48,7 +48,7 @@ impl Sliding<'_> {
     }
 
     /// Adds w_c ∂F_c/∂y of a column, which stands in `inner` of the system within.
-    fn add_slopes(
+    fn add_derivatives(
         &self,
         slide: &Slide,
         (column, inner): (usize, usize),
@@ -82,7 +82,7 @@ impl Sliding<'_> {
             let rows = &slide.pattern.rows[slide.pattern.column(column)];
             let own = &mut entries[rows.partition_point(|row| *row < slide.at)..];
             match inner_place(column, slide.at, slide.k()) {
-                Some(inner) => self.slopes_of_layers(slide, t, inner, own)?,
+                Some(inner) => self.layer_derivatives(slide, t, inner, own)?,
                 None if column - slide.at < slide.surfaces.len() => own[column - slide.at] = -1.0,
                 None => {}
             }
@@ -91,7 +91,7 @@ impl Sliding<'_> {
     }
 
     /// The derivatives of all layers by a component of the y within.
-    fn slopes_of_layers(
+    fn layer_derivatives(
         &mut self,
         slide: &Slide,
         t: f64,
@@ -130,9 +130,9 @@ impl Sliding<'_> {
                 match inner_place(column, slide.at, slide.k()) {
                     Some(at) => {
                         let nominal = slide.nominal[at];
-                        let slope =
-                            self.slope_of_speed(contact, t, &mut inner, (at, nominal), speed)?;
-                        entries[own] = slope / contact.width;
+                        let derivative =
+                            self.speed_derivative(contact, t, &mut inner, (at, nominal), speed)?;
+                        entries[own] = derivative / contact.width;
                     }
                     None if column == place => {
                         entries[own] = 1.0;
@@ -146,7 +146,7 @@ impl Sliding<'_> {
     }
 
     /// The derivative of the speed by a component of the y within, of this nominal value.
-    fn slope_of_speed(
+    fn speed_derivative(
         &mut self,
         contact: &Contact,
         t: f64,

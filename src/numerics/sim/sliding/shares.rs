@@ -62,8 +62,8 @@ pub(in crate::sim) fn attract(rates: &[f64], shares: &[f64], widths: &[f64]) -> 
     let k = shares.len();
     let jacobian = nalgebra::DMatrix::from_fn(k, k, |i, j| {
         let parts = rates.chunks_exact(k).enumerate();
-        let slope = parts.map(|(mode, rates)| weight_by_share(mode, shares, j) * rates[i]);
-        slope.sum::<f64>() / widths[i]
+        let derivative = parts.map(|(mode, rates)| weight_by_share(mode, shares, j) * rates[i]);
+        derivative.sum::<f64>() / widths[i]
     });
     if !jacobian.iter().all(|entry| entry.is_finite()) {
         return false;

@@ -44,7 +44,7 @@ pub(in crate::sim) struct Contact {
 pub(super) struct Slide {
     pub(super) surfaces: Vec<Surface>,
     pub(super) contacts: Vec<Contact>,
-    /// Where the shares stand in y: behind the algebraic unknowns that are tested.
+    /// Position of the shares in y: after the algebraic unknowns that are tested.
     pub(super) at: usize,
     pub(super) pattern: Pattern,
     /// Nominal values of the y within.

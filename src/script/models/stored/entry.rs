@@ -6,7 +6,7 @@ use crate::codegen::{Program, bytes_of};
 use crate::diag::Diagnostic;
 use crate::models::translated::{Declarations, Translated};
 use crate::name::Ident;
-use crate::source::{SourceId, noting_sources, with_sources};
+use crate::source::{SourceId, with_source_table, with_sources};
 use crate::syntax;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -41,7 +41,7 @@ impl Entry {
         model: &Translated,
         warnings: &[Diagnostic],
     ) -> Option<Vec<u8>> {
-        let (content, noted) = noting_sources(|| {
+        let (content, noted) = with_source_table(|| {
             let program = model.program.to_bytes()?;
             bytes_of(&(&model.declarations, program, warnings))
         });

@@ -8,7 +8,7 @@ use crate::syntax::ast::{
 };
 
 /// Equations that equate a variable with another, with its negative, with a constant or with the
-/// slope of another, and the declaration equations of variables.
+/// derivative of another, and the declaration equations of variables.
 pub(crate) fn trivial_equations(model: &FlatModel) -> usize {
     let declared = model.variables.values().filter(|variable| {
         variable.variability > Variability::Parameter

@@ -150,7 +150,7 @@ fn check_class(session: &mut Session, file: &ProblemFile) -> Result<(), Vec<Diag
     Err(vec![fault.at(place)])
 }
 
-/// Reads the data of all experiments, and cuts them where that is wanted.
+/// Reads the data of all experiments, and cuts them where that is requested.
 fn data_of<'f>(
     session: &mut Session,
     file: &'f ProblemFile,

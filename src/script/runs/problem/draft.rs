@@ -7,7 +7,7 @@ use crate::bail;
 use crate::codegen::ParameterInfo;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
-use crate::mat::{self, Kind, MatFile, Matrix};
+use crate::mat::{self, MatFile, Matrix, MatrixKind};
 use crate::models::simulation;
 use crate::models::simulation::Translated;
 use crate::registry::BAD_OPTION;
@@ -90,7 +90,8 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
 /// The columns of numbers by their shortest names.
 fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
     let mut found = Vec::new();
-    for (name, matrix) in table.arrays.iter().filter(|(_, matrix)| matrix.kind != Kind::Char) {
+    for (name, matrix) in table.arrays.iter().filter(|(_, matrix)| matrix.kind != MatrixKind::Char)
+    {
         for name in parts(name, matrix) {
             let column = table.column(&name)?;
             let name = table.short_name(&name).to_owned();

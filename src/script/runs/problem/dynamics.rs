@@ -1,4 +1,4 @@
-//! What happens before and behind an experiment: a steady state before it, and delays of its
+//! What happens before and after an experiment: a steady state before it, and delays of its
 //! measurements. Both become part of the class around the model.
 
 use super::enclosing_class::{EnclosingClass, own_name};

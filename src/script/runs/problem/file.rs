@@ -231,7 +231,7 @@ pub(super) struct MethodEntry {
 pub(super) enum OperatorEntry {
     /// How often the usual one takes place.
     Frequency(f64),
-    /// A name, which may have settings behind it: `sbx(eta = 5)`.
+    /// A name, which may be followed by settings: `sbx(eta = 5)`.
     Name(String),
     /// `{ name = "sbx", eta = 5 }`.
     Set(FitnessEntry),

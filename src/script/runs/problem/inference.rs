@@ -19,7 +19,7 @@ const POINTS: usize = 5;
 /// More points than this are an experiment of its own, which `repeat` speaks of.
 const MOST_POINTS: usize = 100;
 
-/// What the file wants to know of these experiments; `cancel` ends their simulations when it is set.
+/// What the file requests of these experiments; `cancel` ends their simulations when it is set.
 ///
 /// # Errors
 ///

@@ -8,7 +8,7 @@
 //! Reference: [Heinrich & Schuster 1996](gapilib_base::bibliography#heinrich-schuster-1996), §3.1.
 
 use crate::causalize::{Block, CausalizedDae};
-use crate::lower::Kind;
+use crate::lower::VariableKind;
 use crate::symbolic::{Expr, Node, VarId, print};
 use std::collections::BTreeMap;
 
@@ -59,7 +59,7 @@ pub(super) fn invariants(model: &CausalizedDae) -> Vec<Invariant> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for state in &model.states {
         let of_state =
-            |variable: &crate::lower::Variable| variable.kind == Kind::Derivative(*state);
+            |variable: &crate::lower::Variable| variable.kind == VariableKind::Derivative(*state);
         let derivative = model.dae.variables.iter().position(of_state);
         let mut terms = BTreeMap::new();
         // A derivative that nothing is known of is a term of its own.

@@ -144,7 +144,7 @@ pub(crate) fn solve_record(
 ) -> Result<Solution, Vec<Diagnostic>> {
     let text = record::text(record).map_err(|fault| vec![fault.at(Span::NONE)])?;
     let source = session.sources.add("problem".to_owned(), text.as_str());
-    // Nobody has written this text: its places lead nowhere.
+    // This text is generated: its places lead nowhere.
     let hidden = |span: Span| if span.source == source { Span::NONE } else { span };
     let solution = solve_text(session, Path::new("problem"), (source, text), options);
     solution.map_err(|errors| errors.into_iter().map(|error| error.with_spans(hidden)).collect())

@@ -8,7 +8,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
 use crate::fault;
 use crate::ga::errors::BAD_OPERATOR;
-use crate::ga::operators::{self, Kind, Size};
+use crate::ga::operators::{self, OperatorKind, Size};
 use crate::ga::optimizer::{METHODS, Method};
 use crate::registry::{self, BAD_OPTION, Choice, Entry, Options};
 use crate::source::Span;
@@ -97,8 +97,8 @@ fn without(entry: &Entry<dyn Method>, kind: &str) -> Fault {
 ///
 /// # Errors
 ///
-/// `bad-operator`, with the declaration that is wanted.
-pub(crate) fn check(kind: &Kind, name: &str, function: &Function) -> Result<(), Fault> {
+/// `bad-operator`, with the declaration that is expected.
+pub(crate) fn check(kind: &OperatorKind, name: &str, function: &Function) -> Result<(), Fault> {
     let found = [function.inputs.len(), function.outputs.len()];
     let wanted = [kind.signature.inputs.len(), kind.signature.outputs.len()];
     if found == wanted {
@@ -121,7 +121,7 @@ pub(crate) fn check(kind: &Kind, name: &str, function: &Function) -> Result<(), 
 /// A function as an operator on so many genes.
 fn compiled(
     session: &mut Session,
-    kind: &Kind,
+    kind: &OperatorKind,
     name: &str,
     n_genes: usize,
 ) -> Result<OwnFunction, Vec<Diagnostic>> {

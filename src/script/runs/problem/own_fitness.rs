@@ -1,5 +1,5 @@
 //! Fitness functions that are written in Modelica: any function of the simulated and the measured
-//! points, and of their weights if it wants them.
+//! points, and of their weights if it has such an input.
 
 use super::own_function::{Around, OwnFunction, function};
 use crate::Session;

@@ -35,7 +35,7 @@ pub(super) struct OwnFunction {
     inputs: Vec<String>,
     outputs: Vec<String>,
     settings: Settings,
-    /// Those that nobody uses now.
+    /// Those that are unused now.
     idle: Mutex<Vec<Worker>>,
 }
 

@@ -45,7 +45,7 @@ pub(super) struct Searched {
     pub run: Run,
     /// How it ended, or that the user has ended one.
     pub ending: Ending,
-    /// All; empty where only one was wanted, or others belong to other shards.
+    /// All; empty where only one was requested, or others belong to other shards.
     pub all: Vec<SolvedSearch>,
     /// What the searches of this process took.
     pub seconds: f64,
@@ -56,7 +56,7 @@ fn seed(own: &[f64; 6], number: usize) -> Result<[f64; 6], Fault> {
     Ok(Mrg32k3a::new(own)?.stream(STREAMS * number as u64).state())
 }
 
-/// The journal of a search behind the first.
+/// The journal of a search after the first.
 pub(super) fn journal(folder: &Path, number: usize) -> PathBuf {
     folder.join(format!("run-{number}.journal"))
 }
@@ -83,7 +83,7 @@ pub(super) fn refuse_leftovers(
     }
 }
 
-/// Searches as often as it is wanted, `first` included.
+/// Searches as often as requested, `first` included.
 ///
 /// # Errors
 ///

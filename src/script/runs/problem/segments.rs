@@ -14,7 +14,7 @@ use std::ops::Range;
 /// Rows of an experiment that are simulated at a stretch.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Segment {
-    /// The name of the experiment, with the number of the part behind the first.
+    /// The name of the experiment, with the number of the part after the first.
     pub name: String,
     /// Counted from 0.
     pub number: usize,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 const ESTIMATE: &str = "estimate";
 
 /// Sigma of the output `name`: all rows of a column, NaN where it has no value, or what needs none.
-/// `factor` turns values of columns into the output's unit.
+/// `factor` converts values of columns to the output's unit.
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
 //! A run and what it would have been, on one chart: the run as a line, the changed one as dots, so
-//! that they are told apart without colours too.
+//! that they are distinguished without colours too.
 
 use super::Screen;
 use crate::elementary;

@@ -76,7 +76,7 @@ pub struct Screen {
     /// The individual that is followed, from 0, in the generation of the walk.
     followed: Option<usize>,
     prompt: Option<Prompt>,
-    /// A change that the learner wants to be tried, and from which generation on, from 1.
+    /// A change that the learner requests, and from which generation on, from 1.
     wish: Option<(usize, String)>,
     branch: Option<Branch>,
     /// An individual of this generation whose curve is not known and is to be simulated.

@@ -55,7 +55,7 @@ fn screens_of_operators() {
         (0..steps).for_each(|_| assert!(screen.press(Key::Right)));
         let text = drawn(&screen);
         sample::snapshots().bind(|| insta::assert_snapshot!(format!("screen_op_{name}"), text));
-        // Nobody can be followed or inspected there; the keys say so.
+        // No individual can be followed or inspected there; the keys say so.
         for key in typed('i', "1").into_iter().chain(typed('f', "")).chain([Key::Char('j')]) {
             assert!(screen.press(key));
         }

@@ -1,6 +1,6 @@
 //! Called functions and the names and numbers of their arguments (MLS §12.4.1).
 
-use super::Walk;
+use super::NameCheck;
 use super::certainty::is_certain;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
@@ -30,7 +30,7 @@ struct Inputs<'a> {
     is_modified: bool,
 }
 
-impl<'a> Walk<'a, '_> {
+impl<'a> NameCheck<'a, '_> {
     pub(super) fn call(&mut self, function: &ComponentReference, arguments: &Arguments) {
         let name = function.name();
         let Some(called) = self.function(&name, function.span) else {

@@ -4,14 +4,14 @@
 
 use crate::flatten::checks::scope::Scope;
 use crate::flatten::declared::Declared;
-use crate::flatten::library::{ClassId, Library, Question};
+use crate::flatten::library::{BaseProperty, ClassId, Library};
 use crate::syntax::ast::{ClassSpecifier, Restriction};
 
 impl<'a> Scope<'a> {
     /// Whether it may have elements that no declaration shows: it, or a class that it extends, is
     /// replaceable, an expandable connector, or extends an unknown class.
     pub fn is_open(self) -> bool {
-        self.first(Question::Open, |class| {
+        self.first(BaseProperty::Open, |class| {
             class.library.is_replaceable(class.class)
                 || class.restriction() == Restriction::ExpandableConnector
                 || class.has_open_base()
@@ -74,7 +74,7 @@ pub fn is_certain(library: &Library, parts: &[Option<Declared>]) -> bool {
     let is_closed = |class: ClassId| !Scope { library, class }.is_open();
     parts.iter().all(|part| {
         part.is_some_and(|part| {
-            !is_replaceable(library, part) && library.class_behind(part).is_none_or(is_closed)
+            !is_replaceable(library, part) && library.class_of_declared(part).is_none_or(is_closed)
         })
     })
 }

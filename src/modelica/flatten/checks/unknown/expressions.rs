@@ -1,6 +1,6 @@
 //! Names in expressions, equations and statements.
 
-use super::Walk;
+use super::NameCheck;
 use crate::flatten::checks::scope::Component;
 use crate::flatten::checks::usage::predefined;
 use crate::flatten::declared::Declared;
@@ -14,7 +14,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Visit, walk_equation, walk_expression, walk_reference, walk_statement};
 
-impl Walk<'_, '_> {
+impl NameCheck<'_, '_> {
     /// A name in an expression.
     fn value(&mut self, name: &Name, span: Span) {
         let Some(first) = name.first() else { return };
@@ -80,7 +80,7 @@ fn is_variable(component: &Component<'_>) -> bool {
     }
 }
 
-impl Visit for Walk<'_, '_> {
+impl Visit for NameCheck<'_, '_> {
     fn reference(&mut self, reference: &ComponentReference) {
         walk_reference(self, reference);
         self.value(&reference.name(), reference.span);

@@ -28,7 +28,7 @@ use rustc_hash::FxHashSet;
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_long = matches!(class.definition().specifier, ClassSpecifier::Long(_));
     let scope = if is_long { Some(class) } else { class.parent() };
-    let mut walk = Walk {
+    let mut walk = NameCheck {
         library: class.library,
         scope,
         is_open: scope.is_some_and(Scope::has_open_names),
@@ -52,7 +52,7 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 }
 
 /// A walk over the text of a class.
-struct Walk<'a, 'e> {
+struct NameCheck<'a, 'e> {
     library: &'a Library,
     /// The class in which names are looked up; `None` at the top.
     scope: Option<Scope<'a>>,
@@ -65,7 +65,7 @@ struct Walk<'a, 'e> {
     errors: &'e mut Vec<Diagnostic>,
 }
 
-impl<'a> Walk<'a, '_> {
+impl<'a> NameCheck<'a, '_> {
     fn body(&mut self, class: Scope<'a>) {
         class.elements().for_each(|(_, element)| self.element(class, element));
         for section in class.sections() {

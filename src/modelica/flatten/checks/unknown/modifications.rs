@@ -1,6 +1,6 @@
 //! Names of modified elements (MLS §7.2).
 
-use super::Walk;
+use super::NameCheck;
 use super::modified::Modified;
 use crate::flatten::lookup::types::ATTRIBUTES;
 use crate::flatten::unknown;
@@ -9,7 +9,7 @@ use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Argument, Binding, Modification, RedeclaredElement};
 use crate::syntax::visit::Visit as _;
 
-impl<'a> Walk<'a, '_> {
+impl<'a> NameCheck<'a, '_> {
     pub(super) fn modification(&mut self, of: &Modified<'a>, modification: &Modification) {
         self.arguments(of, &modification.arguments);
         if let Some(Binding::Expression(value)) = &modification.binding {

@@ -1,7 +1,7 @@
 //! Sensitivities in steps of the BDF: the staggered corrector.
 //!
-//! Behind y the differences hold m vectors s = dy/dp. Predictor, change of the step length and
-//! interpolation treat all alike. When y has passed its error test at the new time, the same
+//! In the differences, y is followed by m vectors s = dy/dp. Predictor, change of the step length
+//! and interpolation treat all alike. When y has passed its error test at the new time, the same
 //! formula is solved for each s,
 //!
 //! ```text

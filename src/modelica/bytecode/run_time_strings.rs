@@ -15,19 +15,19 @@ const MOST_BYTES: usize = 1 << 28;
 const OVERHEAD: usize = 64;
 
 /// The Strings of a program, by number.
-pub type Texts = IndexSet<Arc<str>>;
+pub type StringTable = IndexSet<Arc<str>>;
 
 /// The Strings of a simulation.
 #[derive(Clone, Default)]
-pub(crate) struct RunTimeTexts {
-    made: Texts,
+pub(crate) struct RunTimeStrings {
+    made: StringTable,
     bytes: usize,
 }
 
-impl RunTimeTexts {
+impl RunTimeStrings {
     /// Forgets all of them.
     pub fn clear(&mut self) {
-        *self = RunTimeTexts::default();
+        *self = RunTimeStrings::default();
     }
 
     /// How many there are.
@@ -43,7 +43,7 @@ impl RunTimeTexts {
     }
 
     /// The text that has a number.
-    pub fn text(&self, of_program: &Texts, number: f64) -> Option<Arc<str>> {
+    pub fn text(&self, of_program: &StringTable, number: f64) -> Option<Arc<str>> {
         if !(number >= 0.0 && number.fract() == 0.0) {
             return None;
         }
@@ -56,7 +56,7 @@ impl RunTimeTexts {
     ///
     /// # Errors
     /// The Strings of the simulation take too much memory.
-    pub fn number(&mut self, of_program: &Texts, text: Arc<str>) -> Result<f64, Fault> {
+    pub fn number(&mut self, of_program: &StringTable, text: Arc<str>) -> Result<f64, Fault> {
         if let Some(at) = of_program.get_index_of(&text) {
             return Ok(at as f64);
         }
@@ -81,29 +81,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_have_one_number_each_and_are_forgotten_from_the_end() {
-        let program = Texts::from_iter([Arc::from("known")]);
-        let mut texts = RunTimeTexts::default();
-        assert_eq!(texts.number(&program, "known".into()).unwrap(), 0.0);
-        assert_eq!(texts.number(&program, "a".into()).unwrap(), 1.0);
-        assert_eq!(texts.number(&program, "b".into()).unwrap(), 2.0);
-        assert_eq!(texts.number(&program, "a".into()).unwrap(), 1.0);
-        assert_eq!(texts.text(&program, 0.0).as_deref(), Some("known"));
-        assert_eq!(texts.text(&program, 2.0).as_deref(), Some("b"));
-        texts.truncate(1);
-        assert_eq!(texts.text(&program, 2.0), None);
-        assert_eq!(texts.number(&program, "c".into()).unwrap(), 2.0);
+    fn strings_have_one_number_each_and_are_forgotten_from_the_end() {
+        let program = StringTable::from_iter([Arc::from("known")]);
+        let mut strings = RunTimeStrings::default();
+        assert_eq!(strings.number(&program, "known".into()).unwrap(), 0.0);
+        assert_eq!(strings.number(&program, "a".into()).unwrap(), 1.0);
+        assert_eq!(strings.number(&program, "b".into()).unwrap(), 2.0);
+        assert_eq!(strings.number(&program, "a".into()).unwrap(), 1.0);
+        assert_eq!(strings.text(&program, 0.0).as_deref(), Some("known"));
+        assert_eq!(strings.text(&program, 2.0).as_deref(), Some("b"));
+        strings.truncate(1);
+        assert_eq!(strings.text(&program, 2.0), None);
+        assert_eq!(strings.number(&program, "c".into()).unwrap(), 2.0);
         for wrong in [-1.0, 0.5, f64::NAN, f64::INFINITY] {
-            assert_eq!(texts.text(&program, wrong), None, "{wrong}");
+            assert_eq!(strings.text(&program, wrong), None, "{wrong}");
         }
     }
 
     #[test]
-    fn the_memory_of_texts_is_limited() {
-        let mut texts = RunTimeTexts::default();
+    fn the_memory_of_strings_is_limited() {
+        let mut strings = RunTimeStrings::default();
         let long = |c: &str| Arc::from(c.repeat(MOST_BYTES / 2));
-        assert!(texts.number(&Texts::new(), long("a")).is_ok());
-        let error = texts.number(&Texts::new(), long("b")).expect_err("too long");
+        assert!(strings.number(&StringTable::new(), long("a")).is_ok());
+        let error = strings.number(&StringTable::new(), long("b")).expect_err("too long");
         assert!(error.message.contains("256 MB"), "{}", error.message);
     }
 }

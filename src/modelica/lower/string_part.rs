@@ -1,10 +1,10 @@
-//! Texts in parts, some of which are known only during the simulation. Data only.
+//! Strings in parts, some of which are known only during the simulation. Data only.
 
 use std::sync::Arc;
 
 /// A part of a text, with scalars of a kind.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum TextPart<S> {
+pub enum StringPart<S> {
     /// A text that is known at translation.
     Text(Arc<str>),
     /// A text by its number; in a call that writes, the call.
@@ -14,22 +14,22 @@ pub enum TextPart<S> {
     Written(Vec<S>, Option<Arc<str>>),
 }
 
-impl<S> TextPart<S> {
+impl<S> StringPart<S> {
     /// The scalars in it.
     pub fn scalars(&self) -> &[S] {
         match self {
-            TextPart::Text(_) => &[],
-            TextPart::Numbered(number) => std::slice::from_ref(number),
-            TextPart::Written(row, _) => row,
+            StringPart::Text(_) => &[],
+            StringPart::Numbered(number) => std::slice::from_ref(number),
+            StringPart::Written(row, _) => row,
         }
     }
 
     /// The same, to be changed.
     pub(crate) fn scalars_mut(&mut self) -> &mut [S] {
         match self {
-            TextPart::Text(_) => &mut [],
-            TextPart::Numbered(number) => std::slice::from_mut(number),
-            TextPart::Written(row, _) => row,
+            StringPart::Text(_) => &mut [],
+            StringPart::Numbered(number) => std::slice::from_mut(number),
+            StringPart::Written(row, _) => row,
         }
     }
 }

@@ -2,7 +2,7 @@
 //! (MLS §3.7.1).
 
 use super::varying_strings::computed;
-use super::{Array, Choice, Lowered, Lowering, Target, TextPart};
+use super::{Array, Choice, Lowered, Lowering, StringPart, Target};
 use crate::diag::{At, Diagnostic};
 use crate::eval::ValueType;
 use crate::fault;
@@ -45,8 +45,8 @@ impl<T: Target> Lowering<'_, T> {
         let mut parts = Vec::with_capacity(sides.len());
         for side in sides {
             parts.push(match side {
-                Lowered::Text(text) if !text.contains(UNKNOWN_TEXT) => TextPart::Text(text),
-                Lowered::Numbered(number) => TextPart::Numbered(number),
+                Lowered::Text(text) if !text.contains(UNKNOWN_TEXT) => StringPart::Text(text),
+                Lowered::Numbered(number) => StringPart::Numbered(number),
                 _ => return Err(computed(span)),
             });
         }
@@ -57,7 +57,7 @@ impl<T: Target> Lowering<'_, T> {
     pub(crate) fn number_part(
         &mut self,
         arguments: &Arguments,
-    ) -> Result<Option<TextPart<T::Scalar>>, Diagnostic> {
+    ) -> Result<Option<StringPart<T::Scalar>>, Diagnostic> {
         let named = |name: &str| arguments.named.iter().find(|a| a.name.node == name);
         let Some(argument) = arguments.positional.first() else { return Ok(None) };
         let which = match self.type_of(argument) {
@@ -75,7 +75,7 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(format) = format {
             let Lowered::Text(format) = self.lower(format)? else { return Ok(None) };
             let is_known = !format.contains(UNKNOWN_TEXT);
-            return Ok(is_known.then_some(TextPart::Written(row, Some(format))));
+            return Ok(is_known.then_some(StringPart::Written(row, Some(format))));
         }
         for (name, default) in DEFAULTS {
             row.push(match named(name) {
@@ -83,7 +83,7 @@ impl<T: Target> Lowering<'_, T> {
                 None => self.target.constant(default),
             });
         }
-        Ok(Some(TextPart::Written(row, None)))
+        Ok(Some(StringPart::Written(row, None)))
     }
 
     /// `String(e, …)` of an enumeration: the text of one of its literals.
@@ -92,7 +92,7 @@ impl<T: Target> Lowering<'_, T> {
         argument: &Expression,
         literals: &[Ident],
         arguments: &Arguments,
-    ) -> Result<Option<TextPart<T::Scalar>>, Diagnostic> {
+    ) -> Result<Option<StringPart<T::Scalar>>, Diagnostic> {
         let Ok(ordinal) = self.scalar(argument) else { return Ok(None) };
         let mut layout = [0.0, 1.0];
         for (value, name) in layout.iter_mut().zip(["minimumLength", "leftJustified"]) {
@@ -104,12 +104,12 @@ impl<T: Target> Lowering<'_, T> {
         for literal in literals {
             let literal = Value::String(literal.as_str().trim_matches('\'').into());
             let text = text(&literal, 0, layout[0] as i64, layout[1] != 0.0).at(argument.span)?;
-            let Some(number) = self.target.text_number(&text) else { return Ok(None) };
+            let Some(number) = self.target.string_number(&text) else { return Ok(None) };
             numbers.push(number);
         }
         let numbers = Array { dims: vec![numbers.len()], elements: numbers };
         let chosen = self.chosen_by(numbers, vec![Choice::Computed(ordinal)], argument.span)?;
-        Ok(chosen.elements.first().copied().map(TextPart::Numbered))
+        Ok(chosen.elements.first().copied().map(StringPart::Numbered))
     }
 
     /// The type of a scalar or of the elements of an array; Real where it is not known.
