@@ -418,8 +418,13 @@ impl Evaluation {
         self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// The simulated points at several places, with derivatives where the simulator has exact ones.
-    pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
+    /// The simulated points at several places, with derivatives where the simulator has exact ones,
+    /// with the tolerance of the solver times `factor`.
+    pub(super) fn exact_all(
+        &self,
+        places: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Linearization, Failed>> {
         let linearization = |own: Simulation| match own.failed {
             Some(failed) => Err(failed),
             None => Ok(Linearization {
@@ -430,7 +435,8 @@ impl Evaluation {
                 simulations: 1,
             }),
         };
-        let found = self.distributed(places, Asked::DerivativesOrPoints, self.tolerance);
+        let tolerance = factor * self.tolerance;
+        let found = self.distributed(places, Asked::DerivativesOrPoints, tolerance);
         found.into_iter().map(linearization).collect()
     }
 
