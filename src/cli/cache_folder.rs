@@ -82,7 +82,7 @@ fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Whether a folder is no link and belongs to the user, and no other user can write it.
+/// Whether a folder is not a link and belongs to the user, and no other user can write it.
 #[cfg(unix)]
 fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir() && is_of_user(&found, 0o022))

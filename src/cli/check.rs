@@ -173,7 +173,7 @@ fn check_class(session: &mut Session, class: &Name) -> bool {
     is_right
 }
 
-/// The balance of a component that is no system by itself, such as a resistor with open pins.
+/// The balance of a component that is not a system by itself, such as a resistor with open pins.
 fn component(session: &mut Session, model: &str, errors: &[Diagnostic]) -> Option<String> {
     let is_singular = errors.iter().all(|error| error.code.slug == "singular-system");
     is_singular.then(|| checking::component_balance(session, model))?

@@ -111,7 +111,7 @@ impl Embedding {
 }
 
 /// Runs the command line with these arguments, the name of the program as the first, and gives its
-/// exit code; for launchers that are no process of their own.
+/// exit code; for launchers that are not a separate process.
 pub fn command(arguments: Vec<OsString>) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,

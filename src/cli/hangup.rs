@@ -85,7 +85,7 @@ pub(super) fn watch(interrupt: &Arc<AtomicBool>, noticed: Arc<AtomicBool>) {
     let _ = std::thread::Builder::new().name("hang-up".to_owned()).spawn(look);
 }
 
-/// Whether the process was started to go on without its terminal.
+/// Whether the process was started to continue without its terminal.
 pub(super) fn outlives_terminal() -> bool {
     #[cfg(unix)]
     return super::signals::ignores_hangup();

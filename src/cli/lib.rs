@@ -77,8 +77,8 @@ use std::process::ExitCode;
 /// a thousand deep.
 const STACK: usize = 256 << 20;
 
-/// Runs the command that the process was started with. Exit code 2 for a wrong command line; what
-/// the other codes mean stands in the help of each command.
+/// Runs the command that the process was started with. Exit code 2 for a wrong command line; the
+/// help of each command describes the other codes.
 pub fn main() -> ExitCode {
     crate::budget::allow_long_calls();
     #[cfg(unix)]

@@ -17,7 +17,7 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// The text of a file, a pipe or a device.
 ///
 /// # Errors
-/// As [`read`]; what is no UTF-8.
+/// As [`read`]; what is not UTF-8.
 pub(super) fn read_text(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path)?);
     text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8"))

@@ -111,7 +111,7 @@ pub(super) fn with_files(
 }
 
 /// The class that is meant and the files: the class is what `--model` names, or else the argument
-/// that is no file and reads as the name of a class.
+/// that is not a file and reads as the name of a class.
 pub(super) fn class_and_files(
     model: Option<&String>,
     files: &[PathBuf],

@@ -31,7 +31,7 @@ pub(super) fn walk_through(
     let walked = (|| {
         loop {
             if let Some((generation, change)) = screen.take_wish() {
-                // The run prints and shows its progress; the screen comes back after it.
+                // The run prints and shows its progress; the screen returns after it.
                 leave();
                 let branch = run_again(generation, &change);
                 release(std::mem::replace(&mut terminal, ratatui::try_init()?));

@@ -43,7 +43,7 @@ impl Path<'_> {
         found.ok_or_else(|| self.outside(name, &[target]))
     }
 
-    /// Whether X goes on beyond `target` in slice `k`, which starts there, in the direction from
+    /// Whether X continues beyond `target` in slice `k`, which starts there, in the direction from
     /// which it came.
     fn turns_on(&self, k: usize, target: f64) -> bool {
         let came_from = self.x[..k].iter().rev().find(|&&x| x != target);

@@ -62,7 +62,7 @@ pub struct Recorder {
     pub failures: u64,
     /// Why simulations failed, and how often.
     pub causes: IndexMap<String, u64>,
-    /// What the user changed while the run went on, and from which generation on.
+    /// What the user changed during the run, and from which generation on.
     pub changes: Vec<(usize, String)>,
     /// Whether operators of the genetic algorithm make one generation of the other; a script without
     /// them evaluates individuals that it chooses in another way.

@@ -18,7 +18,7 @@ pub struct Seeds {
     chain: Option<Chain>,
     /// The chain is that of the run before, and nothing was drawn since.
     inherited: bool,
-    /// Another seed was set after the first simulation; it counts when the run goes on.
+    /// Another seed was set after the first simulation; it counts when the run continues.
     waiting: Option<[f64; 6]>,
     /// Places in the scripts that draw between two generations.
     in_cycle: FxHashSet<u64>,
@@ -49,7 +49,7 @@ impl Seeds {
         self.since.push(site);
     }
 
-    /// The run goes on with a simulation. The seed set since the last one, if it is not the one
+    /// The run continues with a simulation. The seed set since the last one, if it is not the one
     /// that the run is named by: what was drawn for the first population comes from another.
     pub fn goes_on(&mut self, generations: usize) -> Option<[f64; 6]> {
         self.in_cycle.extend(self.since.drain(..));

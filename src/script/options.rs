@@ -41,12 +41,12 @@ pub enum Echo {
 /// What an error does to a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strictness {
-    /// The script goes on; the run ends with exit code 1 if the error was not read.
+    /// The script continues; the run ends with exit code 1 if the error was not read.
     #[default]
     Usual,
     /// The first error ends the run.
     Strict,
-    /// The script goes on and the run ends with exit code 0.
+    /// The script continues and the run ends with exit code 0.
     Lenient,
 }
 
@@ -104,8 +104,8 @@ pub enum Journaling {
     /// It does not.
     #[default]
     Off,
-    /// It does, written again whenever so many seconds have passed, and begins anew.
+    /// It does, rewritten after this many seconds each time, and begins from the start.
     Fresh(f64),
-    /// It does, and goes on from what an earlier run has left.
+    /// It does, and continues from what an earlier run has left.
     Resume(f64),
 }

@@ -58,11 +58,11 @@ const POSITION: &str = "function position input String names[:]; input String na
 
 #[test]
 fn elements_and_sizes_of_constant_strings_are_known() {
-    let comprehension = "package Air constant String names[3] = {\"a\", \"b\", \"c\"}; end Air; \
+    let array_iteration = "package Air constant String names[3] = {\"a\", \"b\", \"c\"}; end Air; \
         model M replaceable package Medium = Air; \
         Real y[3] = {if Medium.names[i] == \"b\" then i else 0 for i in 1:3}; \
         Real x = sum(y); end M;";
-    assert_eq!(at_end(comprehension), 2.0);
+    assert_eq!(at_end(array_iteration), 2.0);
     let size = "model A parameter String names[:] = {\"a\", \"b\"}; Real y[size(names, 1)] = \
         fill(2, size(names, 1)); end A; model M A a(names = {\"p\", \"q\", \"r\"}); \
         Real x = sum(a.y); end M;";

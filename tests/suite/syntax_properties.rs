@@ -162,7 +162,7 @@ fn compound(inner: BoxedStrategy<Expression>) -> impl Strategy<Value = Expressio
             .prop_map(|(function, arguments)| ExpressionKind::Call { function, arguments }),
         1 => list.prop_map(ExpressionKind::Array),
         1 => (boxed.clone(), indices(inner.clone()))
-            .prop_map(|(element, indices)| ExpressionKind::Comprehension { element, indices }),
+            .prop_map(|(element, indices)| ExpressionKind::ArrayIteration { element, indices }),
         1 => rows.prop_map(ExpressionKind::Matrix),
         1 => prop::collection::vec(prop::option::of(inner.clone()), 2..4)
             .prop_map(ExpressionKind::Tuple),

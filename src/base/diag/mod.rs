@@ -23,7 +23,7 @@ use crate::source::Span;
 pub enum Severity {
     /// Worth knowing, nothing is wrong.
     Note,
-    /// The work goes on; the result may not be what was meant.
+    /// The work continues; the result may not be what was meant.
     Warning,
     /// The work named could not be done.
     Error,

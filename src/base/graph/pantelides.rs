@@ -4,7 +4,7 @@
 //! for each equation e
 //!     until e, or its derivative, can be matched to a variable without derivative:
 //!         differentiate every variable and every equation that the search has met;
-//!         match the new variables as their originals were; go on with the derivative of e
+//!         match the new variables as their originals were; continue with the derivative of e
 //! ```
 //!
 //! Reference: [Pantelides 1988](crate::bibliography#pantelides-1988).
@@ -92,7 +92,7 @@ impl Reduction {
         self.met_equation.fill(false);
         self.met_variable.fill(false);
         self.met_equation[root] = true;
-        // Equations from the root down, each with the variable tried and where to go on.
+        // Equations from the root down, each with the variable tried and where to continue.
         let mut path = vec![(root, 0)];
         while let Some((equation, next)) = path.last_mut() {
             let Some(&variable) = self.equations[*equation].get(*next) else {

@@ -21,7 +21,7 @@ pub struct Page<'a> {
     pub scripts: &'a [&'a str],
     /// Data for the scripts: the id of their element, and JSON.
     pub data: &'a [(&'a str, String)],
-    /// What stands in the page.
+    /// The content of the page.
     pub body: Markup,
 }
 
@@ -52,7 +52,7 @@ impl Page<'_> {
     }
 }
 
-/// Within a script element nothing may look like its end or like a comment; in JSON `<` stands in
+/// Within a script element nothing may look like its end or like a comment; in JSON `<` occurs in
 /// strings only.
 fn within_script(json: &str) -> String {
     json.replace('<', "\\u003c")

@@ -48,7 +48,7 @@ pub enum Scale {
 /// line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; empty to leave it out there.
+    /// Its name in the legend; empty to omit it there.
     pub name: String,
     /// Horizontal coordinates.
     pub x: Vec<f64>,

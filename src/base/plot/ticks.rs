@@ -49,7 +49,7 @@ impl Ticks {
     }
 }
 
-/// Values beyond 1e150 are no data; leaving them out keeps differences finite.
+/// Values beyond 1e150 are not data; leaving them out keeps differences finite.
 fn is_shown(value: f64, scale: Scale) -> bool {
     match scale {
         Scale::Linear => value.abs() <= 1e150,
@@ -78,7 +78,7 @@ fn linear((low, high): (f64, f64), count: usize) -> Ticks {
     Ticks { scale: Scale::Linear, low, high, major, minor: Vec::new(), exponent }
 }
 
-/// 1, 2 or 5 and a power of ten: the smallest such step that is no less than `rough`.
+/// 1, 2 or 5 and a power of ten: the smallest such step that is not less than `rough`.
 fn nice_step(rough: f64) -> (i32, i32) {
     let power = elementary::log10(rough).floor() as i32;
     let mantissa = rough / elementary::powi(10f64, power);

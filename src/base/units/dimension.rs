@@ -37,7 +37,7 @@ impl Dimension {
         self.zip(other, i32::checked_sub)
     }
 
-    /// The power; `None` if an exponent is no multiple of 1/60.
+    /// The power; `None` if an exponent is not a multiple of 1/60.
     pub fn power(self, exponent: f64) -> Option<Dimension> {
         let mut out = [0; 7];
         for (out, part) in out.iter_mut().zip(self.0) {

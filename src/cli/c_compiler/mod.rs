@@ -3,7 +3,7 @@
 //! `$CC`, else `cc`, `gcc` or `clang`. A unit is preprocessed first: the digest of what comes out,
 //! of the compiler's version and of the libraries that are linked is the name of the shared object
 //! in the user's cache folder, next to which its own digest stands. What is damaged there is
-//! compiled anew.
+//! recompiled.
 
 mod cache;
 mod library;

@@ -76,7 +76,7 @@ impl Worker {
         self.begun.take_if(|begun| begun.document.uri == document.uri);
     }
 
-    /// Begins to examine a document; one that was begun goes on later.
+    /// Begins to examine a document; an interrupted examination continues later.
     fn examine(&mut self, document: Arc<Document>, documents: &Documents) {
         self.drop_examination(&document);
         if let Some(former) = self.begun.take() {

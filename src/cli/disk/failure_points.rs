@@ -49,7 +49,7 @@ for k in 1:3 loop
 end for;
 ";
 
-/// The disk in a folder; all else in memory, and a clock that goes on at every look.
+/// The disk in a folder; all else in memory, and a clock that advances at every read.
 struct DiskWorld {
     disk: Arc<Disk>,
     root: PathBuf,

@@ -201,7 +201,7 @@ impl Disk {
         self.to_read(path)?.read_start(most as u64)
     }
 
-    /// Writes a file anew, all of it or nothing, safe against a power cut.
+    /// Rewrites a file, all of it or nothing, safe against a power cut.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.write_as(path, &mut |file| file.write_all(bytes), Safety::OnDisk)
     }

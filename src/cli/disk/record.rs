@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-/// Lines beyond twice the number of files that are written before the record is written anew.
+/// Lines beyond twice the number of files that are written before the record is rewritten.
 const SLACK: usize = 1000;
 
 /// The files made, by their real paths.

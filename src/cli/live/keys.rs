@@ -1,4 +1,4 @@
-//! Keys that are pressed while a run goes on. A thread reads them, so that Ctrl-C works in the
+//! Keys that are pressed during a run. A thread reads them, so that Ctrl-C works in the
 //! midst of a long simulation.
 
 use crate::hangup::{self, Input};

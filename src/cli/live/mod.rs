@@ -1,5 +1,5 @@
-//! The live view of a run: a screen of its own on the terminal, drawn from time to time while the
-//! run goes on, and the keys that are pressed meanwhile.
+//! The live view of a run: a screen of its own on the terminal, drawn from time to time during the
+//! run, and the keys that are pressed meanwhile.
 
 mod draw;
 mod keys;

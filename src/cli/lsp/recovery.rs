@@ -105,8 +105,8 @@ fn place(errors: &[Diagnostic]) -> usize {
     errors.first().map_or(0, |error| error.span().start as usize)
 }
 
-/// The lines that may be the reason of the first error: its own, that of what stands before it, and
-/// the line above its own. The end of a class is none.
+/// The lines that may be the reason of the first error: its own, that of what precedes it, and the
+/// line above its own. The end of a class is none.
 fn suspects(text: &str, errors: &[Diagnostic]) -> Vec<Range<usize>> {
     let at = place(errors).min(text.len());
     let Some(head) = text.get(..at) else { return Vec::new() };

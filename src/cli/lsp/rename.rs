@@ -57,7 +57,7 @@ pub fn check(workspace: &mut Workspace, found: &Found, all: &Documents) -> Resul
     Err(Refusal::failed("it is declared in a library outside the open documents"))
 }
 
-/// Whether a class has a file of its own in the folder of its package.
+/// Whether a class has a separate file in the folder of its package.
 fn is_named_by_file(workspace: &mut Workspace, class: crate::flatten::ClassId) -> bool {
     let library = workspace.session.library();
     let span = library.definition_of(class).name.span;
@@ -77,7 +77,7 @@ fn is_named_by_file(workspace: &mut Workspace, class: crate::flatten::ClassId) -
 /// The changes that give a name another spelling.
 ///
 /// # Errors
-/// It is no identifier, another element has it already, or what it means cannot be renamed.
+/// It is not an identifier, another element has it already, or what it means cannot be renamed.
 pub fn edits(
     workspace: &mut Workspace,
     found: &Found,

@@ -201,8 +201,8 @@ impl Validator for Assistance<'_, '_> {
     }
 }
 
-/// Whether brackets, strings, comments and blocks are closed. Two empty lines end any input: one may
-/// stand within a block.
+/// Whether brackets, strings, comments and blocks are closed. Two empty lines end any input: a
+/// single one is allowed within a block.
 fn is_complete(input: &str) -> bool {
     if input.trim_start().starts_with(':') || input.ends_with("\n\n") {
         return true;

@@ -55,8 +55,8 @@ pub(super) fn collected(paths: &[PathBuf]) -> Vec<Found> {
     found
 }
 
-/// Scripts below a folder, and transcripts whose scripts are gone. What runs have written is no test,
-/// nor are tables of numbers, which have the ending of scripts.
+/// Scripts below a folder, and transcripts whose scripts are gone. Files that runs have written are
+/// not tests, nor are tables of numbers, which have the ending of scripts.
 fn below(folder: &Path, found: &mut Vec<Found>) {
     let Ok(names) = disk::list_named(folder) else { return };
     if names.iter().any(|name| name == ORIGIN) {

@@ -88,7 +88,7 @@ impl Junit {
     }
 }
 
-/// Text as XML holds it; control characters cannot stand in it.
+/// Text as XML holds it; control characters are not allowed in it.
 fn escaped(text: &str) -> String {
     let allowed = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '?' } else { c };
     text.chars().map(allowed).collect::<String>().render().into_string()

@@ -494,8 +494,8 @@ fn chi_square(
     )
 }
 
-/// Equal values at an end of the data, as of a sensor that is saturated there: the fit goes on where they
-/// stay. They are no outliers.
+/// Equal values at an end of the data, as of a sensor that is saturated there: the simulated values
+/// continue where they stay. They are no outliers.
 fn saturated(series: &super::Series, own: &Own<'_>, suspects: &mut Vec<usize>) -> Option<Finding> {
     let value = |point: usize| series.y[point - own.first];
     let size = rms(&own.residuals);

@@ -32,7 +32,7 @@ const SETTLED: f64 = 1e-7;
 /// Concludes a run: call it once, before [`Solution::of`](super::Solution::of). What cannot be done
 /// becomes a finding; the best point is never lost.
 pub fn conclude(run: &mut Run) {
-    // Another driver may conclude a run that goes on.
+    // Another driver may conclude a run in progress.
     run.conclusion = super::Conclusion::default();
     let done = saddle::leave(run)
         .and_then(|()| reweigh(run))

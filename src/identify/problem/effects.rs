@@ -3,7 +3,7 @@
 //!
 //! An output that changes in steps (a switching time between two samples, a rounded number) has a
 //! derivative of zero nearly everywhere. Only finite changes over the whole range tell: the
-//! parameter is held at values there and the others are fitted anew, as for a profile.
+//! parameter is fixed at values there and the others are refitted, as for a profile.
 
 use super::failure::Failed;
 use super::profile::limit;
@@ -41,7 +41,7 @@ pub enum Effect {
 /// The effect of finite changes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Finite {
-    /// The ends of the values whose sum of squares is within the 95 % limit, the others fitted anew;
+    /// The ends of the values whose sum of squares is within the 95 % limit, the others refitted;
     /// `None` where the range ends before.
     pub ends: [Option<f64>; 2],
     /// Why there is no derivative to go by.
@@ -122,7 +122,7 @@ pub fn effect(
         }
     }
     for fit in &mut within {
-        let (jacobian, took) = sensitivities(problem, evaluation, &fit.values, 1.0);
+        let (jacobian, took) = sensitivities(problem, evaluation, &fit.values);
         simulations += took;
         fit.deviations = deviations(&jacobian, statistics, k);
     }
@@ -176,7 +176,7 @@ fn is_smooth(
     k: usize,
     simulations: &mut u64,
 ) -> bool {
-    let (jacobian, took) = sensitivities(problem, evaluation, point, 1.0);
+    let (jacobian, took) = sensitivities(problem, evaluation, point);
     *simulations += took;
     let most = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, |most: f64, own| most.max(own));
     let derivative = most(&mut jacobian[k].iter().map(|derivative| derivative.abs()));

@@ -206,7 +206,7 @@ impl Evaluation {
         Some(answered)
     }
 
-    /// The objectives of one individual, simulated anew in any case, as the method requires them.
+    /// The objectives of one individual, simulated again in any case, as the method requires them.
     pub(super) fn objectives_anew(
         &self,
         problem: &Problem,
@@ -418,13 +418,8 @@ impl Evaluation {
         self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// The simulated points at several places, with derivatives where the simulator has exact ones,
-    /// with the tolerance of the solver times `factor`.
-    pub(super) fn exact_all(
-        &self,
-        places: &[Vec<f64>],
-        factor: f64,
-    ) -> Vec<Result<Linearization, Failed>> {
+    /// The simulated points at several places, with derivatives where the simulator has exact ones.
+    pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
         let linearization = |own: Simulation| match own.failed {
             Some(failed) => Err(failed),
             None => Ok(Linearization {
@@ -435,8 +430,7 @@ impl Evaluation {
                 simulations: 1,
             }),
         };
-        let tolerance = factor * self.tolerance;
-        let found = self.distributed(places, Asked::DerivativesOrPoints, tolerance);
+        let found = self.distributed(places, Asked::DerivativesOrPoints, self.tolerance);
         found.into_iter().map(linearization).collect()
     }
 

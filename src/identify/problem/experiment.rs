@@ -67,7 +67,7 @@ struct Stage {
     name: String,
     instance: Box<dyn Instance>,
     places: Vec<usize>,
-    /// Values of the parameters, for each run anew.
+    /// Values of the parameters, new for each run.
     values: Vec<f64>,
     settings: Settings,
     retry: Option<Settings>,

@@ -18,6 +18,6 @@ pub struct Grounds {
     pub(super) quantile: f64,
     /// Complete profiles, and their parameters.
     pub(super) profiles: Vec<(usize, Profile)>,
-    /// A better fit that they came upon.
+    /// A better fit that they found.
     pub(super) better: Option<(Vec<f64>, f64)>,
 }

@@ -19,7 +19,7 @@ use crate::ga::optimizer::{MINIMUM, test_minimum};
 
 /// Parameters that are held at most.
 const MOST: usize = 3;
-/// Moves to a better point, after each of which the test is made anew.
+/// Moves to a better point, after each of which the test is repeated.
 const MOVES: usize = 6;
 /// Simulations that trying may take.
 const BUDGET: u64 = 2000;

@@ -79,7 +79,7 @@ pub struct Profiles {
     pub profiles: Vec<Profile>,
     /// Simulations that they took.
     pub simulations: u64,
-    /// Values with a smaller sum of squares, if the fits came upon such: the search had ended
+    /// Values with a smaller sum of squares, if the fits found such: the search had ended
     /// beside the best.
     pub better: Option<(Vec<f64>, f64)>,
 }
@@ -246,7 +246,8 @@ enum Care {
     AllStarts,
 }
 
-/// Connected values within the limit, as fractions of the range; `None` where it goes on to the end.
+/// Connected values within the limit, as fractions of the range; `None` where it continues to the
+/// end.
 #[derive(Clone, Copy)]
 struct Piece {
     ends: [Option<f64>; 2],
@@ -336,8 +337,8 @@ impl Walk<'_> {
         Ok(pieces)
     }
 
-    /// Goes on from `inside` until the limit is crossed; `None` where the range or the budget ends
-    /// before.
+    /// Continues from `inside` until the limit is crossed; `None` where the range or the budget
+    /// ends before.
     fn until_crossing(
         &mut self,
         free: &Free,

@@ -45,8 +45,8 @@ impl Solution {
     }
 
     /// The solution with its profiles, which a minimum alone has: where the search has ended before
-    /// one, least squares go on first. Where the profiles come upon a better fit the run goes there,
-    /// `again` makes its statistics, and the profiles are made anew.
+    /// one, least squares go on first. Where the profiles find a better fit the run goes there,
+    /// `again` makes its statistics, and the profiles are repeated.
     ///
     /// # Errors
     ///
@@ -234,7 +234,7 @@ fn not_profiled(names: Vec<&str>) -> Finding {
     Finding::new(FindingKind::Missing, sentence)
 }
 
-/// That the run went to a better fit which its profiles came upon; `searched`: the objective at the
+/// That the run went to a better fit which its profiles found; `searched`: the objective at the
 /// end of the search.
 fn better_than(searched: f64, solution: &Solution) -> Finding {
     let sentence = format!(

@@ -217,8 +217,8 @@ impl Run {
         Ok((objective, simulations))
     }
 
-    /// Least squares from the best point, which it replaces; without least squares only the objective
-    /// is computed anew. Returns whether that is smaller.
+    /// Least squares from the best point, which it replaces; without least squares only the
+    /// objective is recomputed. Returns whether that is smaller.
     ///
     /// # Errors
     ///

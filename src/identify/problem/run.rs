@@ -319,8 +319,8 @@ impl Run {
         Some(record)
     }
 
-    /// Goes all steps of an earlier run again. Its best individual and another one are computed
-    /// anew: if a bit differs, it was the run of another problem.
+    /// Goes all steps of an earlier run again. Its best individual and another one are recomputed:
+    /// if a bit differs, it was the run of another problem.
     ///
     /// # Errors
     ///

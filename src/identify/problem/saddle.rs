@@ -23,7 +23,7 @@ const STEPS: [f64; 4] = [0.1, -0.1, 0.01, -0.01];
 /// An objective that is smaller by this part is not so by rounding.
 const BETTER: f64 = 1e-6;
 
-/// Goes on from the best point as long as it is a saddle.
+/// Continues from the best point as long as it is a saddle.
 ///
 /// # Errors
 ///

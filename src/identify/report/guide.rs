@@ -13,7 +13,7 @@ pub fn chapter() -> Markup {
     html! { @for block in blocks(CHAPTER) { (block.markup()) } }
 }
 
-/// The id of a section; mdBook makes the same of a heading, without what stands before.
+/// The id of a section; mdBook makes the same of a heading, without what precedes it.
 pub fn anchor(heading: &str) -> String {
     let letters = heading.to_lowercase();
     let kept = letters.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));

@@ -42,7 +42,7 @@ impl Solution {
     }
 }
 
-/// A section of the page: the id that links lead to, its heading, and what stands in it.
+/// A section of the page: the id that links lead to, its heading, and its content.
 struct Section {
     id: &'static str,
     heading: &'static str,

@@ -89,7 +89,7 @@ pub struct Code {
     pub instructions: Vec<Instruction>,
     /// Number of scalars of the inputs, which stand first in the frame.
     pub(crate) n_inputs: u32,
-    /// The first register of the outputs, which stand in a row.
+    /// The first register of the outputs, which are contiguous.
     pub outputs: Register,
     /// Number of scalars of the outputs.
     pub(crate) n_outputs: u32,

@@ -28,7 +28,7 @@ impl std::fmt::Debug for Elementary {
 /// A partial derivative: nodes in order, the last is the result.
 struct Partial {
     nodes: Vec<Node>,
-    /// Where the operand of a node, an [`Expr`] of the pool it came from, stands in `nodes`.
+    /// Where the operand of a node, an [`Expr`] of the pool it came from, is in `nodes`.
     positions: Vec<u8>,
 }
 

@@ -41,7 +41,7 @@ pub struct Machine {
     notices: Vec<(u32, Failure)>,
 }
 
-/// Where to go on when a function ends.
+/// Where to continue when a function ends.
 #[derive(Debug, Clone, Copy)]
 struct Caller {
     function: u32,
@@ -423,7 +423,7 @@ pub(super) enum MachineRequest {
     External(u32),
     /// To take the warning of the instruction before.
     Warning,
-    /// To go on at the head of a loop after so many instructions.
+    /// To continue at the head of a loop after a number of instructions.
     Pause,
 }
 

@@ -1,8 +1,8 @@
 //! Functions that run often become machine code.
 //!
 //! A function is interpreted until that took as long as its translation takes. Machine code works on
-//! the same frame as the interpreter and has every result in it at once, so that either goes on where
-//! the other stopped: machine code leaves calls, and every instruction that fails, to the
+//! the same frame as the interpreter and has every result in it at once, so that either continues
+//! where the other stopped: machine code leaves calls, and every instruction that fails, to the
 //! interpreter. Both give the same bits and take the same from the budget.
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
@@ -12,7 +12,7 @@ use crate::jit::Executable;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A function is translated when so many times its instructions were interpreted.
+/// A function is translated after its instructions were interpreted this many times.
 const OFTEN: u64 = 1_000;
 /// Shorter functions are as if they had so many instructions: making memory executable takes time.
 const SHORT: u64 = 100;

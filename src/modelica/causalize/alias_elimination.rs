@@ -136,7 +136,7 @@ impl Sets {
         (current, sign)
     }
 
-    /// A discrete variable is no state, and two equations at events determine two variables. The
+    /// A discrete variable is not a state, and two equations at events determine two variables. The
     /// fixed start of one, and what initial equations say of `pre` of it, hold for its own `pre`
     /// (MLS §8.6), not for that of another.
     fn must_stay_apart(&self, a: usize, b: usize, negated: bool) -> bool {

@@ -29,7 +29,7 @@ pub struct CausalizedDae {
     pub parameters: Vec<VarId>,
 }
 
-/// States of which each is one of several candidates, chosen anew when the constraints between the
+/// States of which each is one of several candidates, chosen again when the constraints between the
 /// candidates do not determine the others well.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Selection {

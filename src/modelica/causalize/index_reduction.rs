@@ -63,9 +63,9 @@ pub(super) fn reduce_index(
     Ok(chosen)
 }
 
-/// A constraint with what changes at events may jump there: a state that is chosen by it would go on,
-/// and the one that its author differentiates would jump. Functions of whole numbers are taken for
-/// continuous, as the density of a medium by the number of its phases.
+/// A constraint with what changes at events may jump there: a state that is chosen by it would stay
+/// continuous, and the one that its author differentiates would jump. Functions of whole numbers
+/// are taken for continuous, as the density of a medium by the number of its phases.
 fn refuse_jumps(dae: &Dae, equation: Equation) -> Result<(), Diagnostic> {
     let changes = |e: Expr, is_argument: bool| {
         let Some(variable) = dae.pool.as_variable(e).map(|v| dae.variable(v)) else { return false };
@@ -100,7 +100,7 @@ fn defines(pool: &Pool, variable: Expr, value: Expr) -> bool {
     }
 }
 
-/// Variables whose derivatives stand in the equations.
+/// Variables whose derivatives occur in the equations.
 fn differentiated_variables(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> {
     let mut states: Vec<VarId> = dae
         .variables

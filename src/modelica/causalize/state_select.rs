@@ -24,7 +24,7 @@ pub(super) fn check_state_select(
 ) -> Result<(), Diagnostic> {
     let mut has_alias = vec![false; dae.variables.len()];
     for (alias, variable) in aliases.iter().zip(&dae.variables) {
-        // `der(x) = -x` makes a derivative an alias, which is no variable that a user declares.
+        // `der(x) = -x` makes a derivative an alias, which is not a variable that a user declares.
         if let (Some(alias), false) = (alias, matches!(variable.kind, VariableKind::Derivative(_)))
         {
             has_alias[alias.of.0 as usize] = true;

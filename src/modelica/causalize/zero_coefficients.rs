@@ -18,8 +18,8 @@ const DEEPEST: usize = 20;
 pub(super) type ZeroCoefficients = FxHashSet<VarId>;
 
 /// Makes parameters and those that they depend on numbers.
-pub(super) fn evaluate(dae: &mut Dae, settled: &ZeroCoefficients) {
-    let mut left: Vec<VarId> = settled.iter().copied().collect();
+pub(super) fn evaluate(dae: &mut Dae, evaluated: &ZeroCoefficients) {
+    let mut left: Vec<VarId> = evaluated.iter().copied().collect();
     left.sort_unstable();
     let mut seen = ZeroCoefficients::default();
     while let Some(parameter) = left.pop() {
@@ -137,7 +137,7 @@ impl Zeros<'_> {
         is_zero.then(|| parameters.into_iter().collect())
     }
 
-    /// The same for a variable that is no parameter.
+    /// The same for a variable that is not a parameter.
     fn cause_of(&mut self, variable: VarId, depth: usize) -> Option<ZeroCoefficients> {
         if let Some(known) = self.known.get(&variable) {
             return known.clone();

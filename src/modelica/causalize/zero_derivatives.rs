@@ -1,4 +1,4 @@
-//! Derivatives that only coefficients of zero stand before: a transistor without capacitances has
+//! Derivatives that have only coefficients of zero: a transistor without capacitances has
 //! voltages with derivatives, but no states.
 //!
 //! ```text
@@ -85,7 +85,7 @@ fn without_zeros(
     successors[&e]
 }
 
-/// Derivatives that no equation contains any more are no unknowns.
+/// Derivatives that no equation contains any more are not unknowns.
 fn forget_unused(dae: &mut Dae, dropped: &FxHashSet<VarId>, aliases: &[Option<Alias>]) {
     let mut used = used_variables(dae);
     aliases.iter().flatten().for_each(|alias| used[alias.of.0 as usize] = true);

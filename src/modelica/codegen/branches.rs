@@ -15,7 +15,7 @@ use std::hash::Hash;
 pub(super) struct Branches {
     known: FxHashMap<Key, Branch>,
     is_open: Vec<bool>,
-    /// Those around what is written now, innermost last; the first is what stands in none.
+    /// Those around what is written now, innermost last; the first is what is in none.
     open: Vec<Branch>,
 }
 
@@ -31,7 +31,7 @@ impl Branches {
         Branches { known: FxHashMap::default(), is_open: vec![true], open: vec![Branch(0)] }
     }
 
-    /// Whether what is written now stands in a branch.
+    /// Whether what is written now is in a branch.
     pub(super) fn is_inside(&self) -> bool {
         self.open.len() > 1
     }
@@ -54,7 +54,7 @@ impl Branches {
         self.is_open[branch.0 as usize] = false;
     }
 
-    /// What follows stands in a branch within the present one.
+    /// What follows is in a branch within the present one.
     pub(super) fn enter(&mut self, condition: Register, holds: bool) {
         let key = (self.current(), condition, holds);
         let branch = match self.known.get(&key) {
@@ -68,14 +68,14 @@ impl Branches {
         self.open(branch);
     }
 
-    /// What follows stands in the branch around the present one.
+    /// What follows is in the branch around the present one.
     pub(super) fn leave(&mut self) {
         let branch = self.open.pop().expect("a branch was entered");
         self.close(branch);
     }
 
-    /// What follows may be performed from any branch: it knows what stands in none, and itself.
-    /// Returns the branches to go on with.
+    /// What follows may be executed from any branch: it knows what is in none, and itself.
+    /// Returns the branches to continue with.
     pub(super) fn begin_routine(&mut self) -> Vec<Branch> {
         let suspended = self.open.split_off(1);
         suspended.iter().for_each(|branch| self.close(*branch));

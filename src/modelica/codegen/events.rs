@@ -52,7 +52,7 @@ pub(crate) struct Events {
 pub(crate) struct Previous {
     pub(crate) of: VarId,
     pub(crate) register: Register,
-    /// Whether event iteration goes on until both are equal.
+    /// Whether event iteration continues until both are equal.
     pub(crate) discrete: bool,
     /// Whether every difference counts, not only one that is more than rounding.
     pub(crate) exact: bool,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! regular     P A = L U, rows scaled by their largest entry
-//! up to 2     x = b / a; by determinants where the determinant is no small difference
+//! up to 2     x = b / a; by determinants where the determinant is not a small difference
 //! up to 6     the same factors without a workspace where no pivot is small
 //! singular    A S V = W with orthogonal columns wⱼ; x = S Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
 //!             zero, less its part in the null space, which the other S vⱼ span: of all solutions

@@ -136,7 +136,7 @@ impl Calls {
     /// Writes the results of a call.
     pub(super) fn run(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
         if !self.functions.codes[call.function as usize].impure {
-            return self.run_anew(call, r);
+            return self.run_again(call, r);
         }
         let n = self.functions.n_outputs(call.function);
         if !call.inputs.is_empty() {
@@ -160,7 +160,7 @@ impl Calls {
         }
         self.take_back(call.function, &arguments);
         let before = self.machine.journal().len();
-        let done = self.run_anew(call, r);
+        let done = self.run_again(call, r);
         let results = done.map(|()| r[call.d as usize..][..n].to_vec());
         let requests = before..self.machine.journal().len();
         if results.is_err() {
@@ -185,7 +185,7 @@ impl Calls {
         });
     }
 
-    fn run_anew(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
+    fn run_again(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
         let arguments = call.arguments.iter().map(|a| r[*a as usize]);
         let results = match call.inputs.is_empty() {
             true => self.machine.call(&self.functions, call.function, arguments),

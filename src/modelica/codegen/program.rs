@@ -191,7 +191,7 @@ impl Program {
         self.crossings.outputs.len() - self.crossing_relations.len()
     }
 
-    /// Whether nothing happens at events but that recorded inputs go on: there is nothing to iterate.
+    /// Whether recorded inputs alone change at events: there is nothing to iterate.
     pub(crate) fn acts_by_recordings_alone(&self) -> bool {
         self.events.is_empty()
             && self.relations.is_empty()

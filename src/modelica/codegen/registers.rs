@@ -58,7 +58,7 @@ impl Registers {
         &self.systems
     }
 
-    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix anew.
+    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix again.
     pub(super) fn workspace(&mut self, matrix: Expr, n: usize) -> u32 {
         *self.workspaces.entry(matrix).or_insert_with(|| {
             self.systems.push(n);

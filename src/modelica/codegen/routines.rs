@@ -1,6 +1,6 @@
 //! Code that several branches of a tape share.
 //!
-//! An if-expression that stands in several branches is evaluated only in those that are taken. It
+//! An if-expression that occurs in several branches is evaluated only in those that are taken. It
 //! is written at most twice: where it is met first, and as a routine that all other branches
 //! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with
 //! such branches, as media have, would be written as often as there are ways through it.
@@ -10,7 +10,7 @@ use super::tape::Tape;
 use crate::symbolic::Expr;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Instructions from which an if-expression is not written anew in every branch.
+/// Instructions from which an if-expression is not repeated in every branch.
 const LARGE: usize = 50;
 
 /// The routines of a tape that is being written.

@@ -1,9 +1,9 @@
 //! A tape as code of Cranelift, which makes machine code of it.
 //!
 //! Results stay in registers of the machine; only outputs are written to memory. Where the tape
-//! fails at a value that is not finite, the code goes on and adds up `0 · value`: the sum, which it
-//! returns, is zero if all were finite. Calls of functions and linear systems that need a workspace
-//! are [upcalls](super::upcalls), which are only made while all values are finite.
+//! fails at a value that is not finite, the code continues and adds up `0 · value`: the sum, which
+//! it returns, is zero if all were finite. Calls of functions and linear systems that need a
+//! workspace are [upcalls](super::upcalls), which are only made while all values are finite.
 
 use super::instruction::{Instruction, LinearSolve, Register};
 use super::linear_system::{MOST_SMALL, SMALLEST_DETERMINANT, eliminate};

@@ -1,6 +1,7 @@
 //! Variables that only results show: nothing else of the model reads them, and a division in their
 //! values may have no result, as v = q/area in an empty pipe. They are computed where they are
-//! observed, so that the simulation goes on without them. A function outside its domain is an error.
+//! observed, so that the simulation continues without them. A function outside its domain is an
+//! error.
 
 use crate::causalize::{Block, CausalizedDae};
 use crate::lower::{Dae, VariableKind};

@@ -196,11 +196,11 @@ impl Evaluator<'_> {
     }
 
     fn unknown_function(&mut self, name: &Name) -> Fault {
-        let expected = name.to_string();
+        let called = name.to_string();
         let mut known = self.host.function_names();
         known.extend(functions::names().map(str::to_owned));
-        fault!(UNKNOWN_FUNCTION, "there is no function `{expected}`")
-            .help_if(suggest::did_you_mean(&expected, known.iter().map(String::as_str)))
+        fault!(UNKNOWN_FUNCTION, "there is no function `{called}`")
+            .help_if(suggest::did_you_mean(&called, known.iter().map(String::as_str)))
     }
 
     /// A function of the values of its arguments.

@@ -20,7 +20,7 @@ pub enum Given {
     Components(Vec<(Ident, Given)>),
 }
 
-/// Declares a variable of a script, anew if it exists, with what it is given. A record has the
+/// Declares a variable of a script, again if it exists, with its value. A record has the
 /// values that its class declares; other types without a value wait for an assignment.
 ///
 /// # Errors

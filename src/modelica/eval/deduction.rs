@@ -17,7 +17,7 @@ pub(super) struct SubscriptUse {
 pub(super) enum Body<'b> {
     /// Of a loop.
     Statements(&'b [Statement]),
-    /// Of a comprehension.
+    /// Of an array constructor with iterators.
     Expression(&'b Expression),
 }
 
@@ -112,7 +112,7 @@ impl SubscriptSearch {
                 self.expression(stop);
             }
             ExpressionKind::Array(elements) => self.expressions(elements),
-            ExpressionKind::Comprehension { element, indices } => {
+            ExpressionKind::ArrayIteration { element, indices } => {
                 self.expression(element);
                 self.expressions(indices.iter().filter_map(|i| i.range.as_ref()));
             }

@@ -78,8 +78,8 @@ impl Evaluator<'_> {
                 let values = self.expressions(elements)?;
                 construct::array(values).at(span)
             }
-            ExpressionKind::Comprehension { element, indices } => {
-                self.comprehension(element, indices, span)
+            ExpressionKind::ArrayIteration { element, indices } => {
+                self.array_iteration(element, indices, span)
             }
             ExpressionKind::Matrix(rows) => self.matrix(rows, span),
             ExpressionKind::Tuple(elements) => self.tuple(elements, span),

@@ -222,7 +222,7 @@ impl Memory {
         }
     }
 
-    /// What stands in a slot, as the component's type has it.
+    /// The content of a slot, as the component's type has it.
     fn value(&self, component: &FunctionComponent, slot: &Slot) -> Result<Value, Fault> {
         let first = slot.first as usize;
         if slot.kind == SlotKind::Text && !slot.dims.is_empty() {

@@ -1,6 +1,6 @@
-//! Where execution goes on after a statement.
+//! Where execution continues after a statement.
 
-/// Where execution goes on after a statement.
+/// Where execution continues after a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// With the next statement.

@@ -39,9 +39,9 @@ pub struct Function {
 }
 
 impl Function {
-    /// Outputs and protected variables, each after those that its declaration names (MLS §12.4.4): a
-    /// protected constant may stand in the default of an output. Those that need each other keep their
-    /// order.
+    /// Outputs and protected variables, each after those that its declaration names (MLS §12.4.4):
+    /// the default of an output may contain a protected constant. Those that need each other keep
+    /// their order.
     pub(crate) fn variables_in_order(&self) -> Vec<&FunctionComponent> {
         let mut waiting: Vec<_> = self.outputs.iter().chain(&self.locals).collect();
         let mut ordered = Vec::with_capacity(waiting.len());

@@ -88,8 +88,8 @@ pub trait Host {
         reference: &ast::ComponentReference,
     ) -> Result<Option<Value>, Diagnostic>;
 
-    /// Assigns to a dotted or global name that is no variable of the scope, such as a parameter of
-    /// the model translated last or a flag; `false` if there is nothing of that name.
+    /// Assigns to a dotted or global name that is not a variable of the scope, such as a parameter
+    /// of the model translated last or a flag; `false` if there is nothing of that name.
     fn assign(
         &mut self,
         target: &ast::ComponentReference,
@@ -118,7 +118,8 @@ pub trait Host {
         false
     }
 
-    /// Called when an assignment of a script to what is no variable of it fails, or is not reached.
+    /// Called when an assignment of a script to what is not a variable of it fails, or is not
+    /// reached.
     fn lose(&mut self, target: &ast::ComponentReference) {
         let _ = target;
     }

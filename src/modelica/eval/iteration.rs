@@ -1,5 +1,5 @@
-//! Iterators: loops' ranges, comprehensions `{e for i in r}` (MLS §10.4.1) and reductions
-//! `sum(e for i in r)` (MLS §10.3.4).
+//! Iterators: loops' ranges, array constructors with iterators `{e for i in r}` (MLS §10.4.1) and
+//! reductions `sum(e for i in r)` (MLS §10.3.4).
 
 use super::deduction::Body;
 use super::errors::MISPLACED;
@@ -107,7 +107,7 @@ impl Evaluator<'_> {
 
     /// `{e for i in r, j in s}`: the last iterator is the first dimension's, as in
     /// `{{e for i in r} for j in s}` (MLS §10.4.1.1).
-    pub(super) fn comprehension(
+    pub(super) fn array_iteration(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -117,7 +117,7 @@ impl Evaluator<'_> {
         let range = self.iterated(outer, Body::Expression(element))?;
         let mut values = Vec::with_capacity(range.count().min(1 << 16));
         self.with_each(outer, &range, |evaluator| {
-            let value = evaluator.comprehension(element, inner, span)?;
+            let value = evaluator.array_iteration(element, inner, span)?;
             if values.is_empty() {
                 element_count(&[&[range.count()], value.dims()].concat()).at(span)?;
             }
@@ -141,7 +141,7 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Result<Option<Value>, Diagnostic> {
         if name == "array" {
-            return self.comprehension(element, indices, span).map(Some);
+            return self.array_iteration(element, indices, span).map(Some);
         }
         let Some(Meaning::Reduction(reduction)) = functions::find(name).map(|entry| entry.meaning)
         else {

@@ -132,7 +132,7 @@ impl Scope {
         }
     }
 
-    /// Declares a variable of a script, anew if it exists. Sizes are `None` where any is accepted;
+    /// Declares a variable of a script, again if it exists. Sizes are `None` where any is accepted;
     /// without a value, reading it before an assignment is a fault.
     pub fn declare(
         &mut self,

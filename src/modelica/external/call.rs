@@ -74,7 +74,7 @@ pub trait Outside {
         Err(refused(&format!("to read the file `{path}`")))
     }
 
-    /// Writes a file anew.
+    /// Rewrites a file.
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
         let _ = bytes;
         Err(refused(&format!("to write the file `{path}`")))

@@ -128,7 +128,7 @@ fn dgeqrf(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The product of the reflections whose vectors stand in the columns of `a`, that of column `k`
+/// The product of the reflections whose vectors are the columns of `a`, that of column `k`
 /// from row `k + shift` on; the first `columns` columns of it.
 fn product(a: &DMatrix<f64>, taus: &[f64], shift: usize, columns: usize) -> DMatrix<f64> {
     let mut q = DMatrix::identity(a.nrows(), columns);

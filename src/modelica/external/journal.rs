@@ -106,7 +106,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Writes a file anew.
+    /// Rewrites a file.
     pub fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
         self.add(Deed::Write { path: path.to_owned(), bytes: bytes.to_vec() })
     }

@@ -189,7 +189,7 @@ fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// `(uplo, n, A, lda, info)`: the factor stands in one triangle, the other is left as it is.
+/// `(uplo, n, A, lda, info)`: the factor is in one triangle, the other is unchanged.
 fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
     let mut a = square(call, 2)?;
     let is_upper = call.text(0).eq_ignore_ascii_case("U");
@@ -214,7 +214,7 @@ fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
+/// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) is in row kl + ku + i − j.
 fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let band = matrix(call, 4)?;
     let diagonals = |argument| usize::try_from(call.whole(argument)).unwrap_or(0);

@@ -2,9 +2,9 @@
 //! [Vigna 2017](gapilib_base::bibliography#vigna-2017).
 //!
 //! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. As the
-//! standard library defines them, xorshift64* and xorshift128+ go on from the number that they gave,
-//! where their author goes on from the word before it is scrambled. The hidden state is that of one
-//! generator xorshift1024*, [`Random`](super::Random).
+//! standard library defines them, xorshift64* and xorshift128+ continue from the number that they
+//! returned, where their author continues from the word before it is scrambled. The hidden state is
+//! that of one generator xorshift1024*, [`Random`](super::Random).
 
 use super::Entry;
 use super::call::Call;

@@ -51,7 +51,7 @@ fn skip_white_space(call: &mut Call<'_>) -> Result<(), Fault> {
     call.give(next as f64)
 }
 
-/// The position (from 0) of the first byte from the start index on that is no white space.
+/// The position (from 0) of the first byte from the start index on that is not white space.
 fn after_white_space(call: &Call<'_>) -> usize {
     let bytes = call.text(0).as_bytes();
     let start = usize::try_from(call.whole(1) - 1).unwrap_or(0).min(bytes.len());

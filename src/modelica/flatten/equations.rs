@@ -434,7 +434,7 @@ impl Instantiation<'_> {
 
 impl Types<'_> {
     /// An equation between resolved records, such as results of functions, field by field; `false`
-    /// if the sides are no records.
+    /// if the sides are not records.
     fn equal_fields(
         &self,
         left: &Expression,
@@ -479,7 +479,7 @@ impl FunctionTable {
     }
 }
 
-/// `Connections.branch(…)` and the like, which are no equations.
+/// `Connections.branch(…)` and the like, which are not equations.
 pub(crate) fn is_graph_statement(call: &Expression) -> bool {
     match &call.kind {
         ExpressionKind::Call { function, .. } => {

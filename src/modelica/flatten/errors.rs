@@ -63,7 +63,7 @@ codes! {
     /// An import clause that cannot be.
     ILLEGAL_IMPORT = "illegal-import":
         "## What it means\n\nAn import clause imports from a class that is not a package, or two import clauses import the same name (MLS §13.2).\n\n## Example\n\n```modelica\nimport Modelica.Math.sin;\nimport sin = MyLibrary.sin;\n```\n\n## What to do\n\nRename one of the imports, or move the imported element into a package.",
-    /// A name that looks into a class that cannot be looked into.
+    /// A name that accesses a class that cannot be accessed.
     ILLEGAL_ACCESS = "illegal-access":
         "## What it means\n\nA qualified name accesses an element that is not encapsulated in a class that is not a package (MLS §5.3.2), or an element of a partial class.\n\n## Example\n\n```modelica\nmodel A\n  Real x = 1;\n  model B\n    Real y = 2;\n  end B;\nend A;\nmodel M\n  A.B b;\nend M;\n```\n\n## What to do\n\nMove the element into a package, or declare it `encapsulated`.",
     /// An operator function that no operator can call.

@@ -105,7 +105,7 @@ pub struct Variable {
     /// `annotation(absoluteValue = false)` (MLS §18): a difference, whose unit converts without the
     /// offset between the zeros of scales.
     pub is_relative: bool,
-    /// Whether its value shaped the model (an array size, a chosen branch, a condition).
+    /// Whether it is a structural parameter (an array size, a chosen branch, a condition).
     pub structural: bool,
     /// Whether the component stands directly in the class that was flattened.
     pub top_level: bool,

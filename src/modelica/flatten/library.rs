@@ -533,7 +533,7 @@ impl Class {
         &self.imports
     }
 
-    /// What stands before its keyword in the class around it; nothing for one in a file of its own.
+    /// The text before its keyword in the enclosing class; nothing for one in a separate file.
     pub(super) fn prefixes(&self) -> ElementPrefixes {
         self.declared.prefixes
     }

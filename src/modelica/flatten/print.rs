@@ -125,7 +125,7 @@ struct Flat;
 impl Rewrite for Flat {
     fn expression(&mut self, e: &mut Expression) {
         if let ExpressionKind::Call { arguments, .. } = &mut e.kind {
-            // The name of a function is no path.
+            // The name of a function is not a path.
             self.arguments(arguments);
             return;
         }

@@ -45,7 +45,7 @@ impl Instantiation<'_> {
         Ok(self.shape_of(&resolved))
     }
 
-    /// The sizes of an array of components that are no variables and have no value.
+    /// The sizes of an array of components that are not variables and have no value.
     fn component_dims(
         &mut self,
         array: &Expression,
@@ -145,8 +145,8 @@ impl Instantiation<'_> {
                 };
                 Some(std::iter::once(elements.len()).chain(inner).collect())
             }
-            ExpressionKind::Comprehension { element, indices } => {
-                self.comprehension_shape(element, indices)
+            ExpressionKind::ArrayIteration { element, indices } => {
+                self.array_iteration_shape(element, indices)
             }
             ExpressionKind::Matrix(rows) => self.matrix_shape(rows),
             ExpressionKind::Range { .. } => self.value_shape(e),
@@ -198,7 +198,7 @@ impl Instantiation<'_> {
         (subscripts.len() <= dims.len()).then_some(left)
     }
 
-    fn comprehension_shape(
+    fn array_iteration_shape(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],

@@ -354,7 +354,7 @@ impl Visit for MostVariable<'_, '_> {
             ExpressionKind::Call { arguments, .. } if !arguments.iterators.is_empty() => {
                 self.iterated(&arguments.iterators, &arguments.positional);
             }
-            ExpressionKind::Comprehension { element, indices } => {
+            ExpressionKind::ArrayIteration { element, indices } => {
                 self.iterated(indices, [&**element]);
             }
             _ => walk_expression(self, e),

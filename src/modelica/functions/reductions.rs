@@ -74,7 +74,7 @@ impl Reduction {
     ///
     /// # Errors
     ///
-    /// A product of arrays, which is no reduction.
+    /// A product of arrays, which is not a reduction.
     pub fn first(self, value: Value) -> Result<Value, Fault> {
         if self == Reduction::Product && value.rank() > 0 {
             return Err(fault!(

@@ -202,7 +202,7 @@ impl Builder<'_> {
 
     /// A loop is unrolled, or else a function.
     fn loop_statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Broken, Diagnostic> {
-        // What stands in an unrolled loop leaves it to the whole to be a function.
+        // In an unrolled loop, the whole statement becomes a function instead.
         let before = loops.is_empty().then(|| self.execution.values.clone());
         let (asserted, guards) = (self.dae.assertions.len(), self.execution.guards.len());
         let outer = loops.len();

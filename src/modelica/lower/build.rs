@@ -223,7 +223,7 @@ impl<'a> Builder<'a> {
             for at in 0..variable.len() {
                 let element = array.elements[if array.dims.is_empty() { 0 } else { at }];
                 let known = match *name {
-                    "fixed" | "stateSelect" => self.settled(element)?,
+                    "fixed" | "stateSelect" => self.evaluate_structural(element)?,
                     _ => None,
                 };
                 let scalar = &mut self.dae.variables[first + at];

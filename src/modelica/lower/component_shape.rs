@@ -75,8 +75,8 @@ struct Declaration<'a, 'l, T: Target> {
 }
 
 impl<T: Target> Declaration<'_, '_, T> {
-    /// A variable, or a component of one; the sizes of the arrays of records around it stand
-    /// before its own.
+    /// A variable, or a component of one; the sizes of the arrays of records around it precede its
+    /// own.
     fn component(
         &mut self,
         component: &FunctionComponent,

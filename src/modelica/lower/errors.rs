@@ -1,7 +1,7 @@
 //! Codes of this stage.
 
 crate::codes! {
-    /// Not as many equations as unknowns.
+    /// The numbers of equations and unknowns differ.
     UNBALANCED_MODEL = "unbalanced-model":
         "## What it means\nThe numbers of equations and unknowns of the model differ, so it has no solution or many solutions.\n\n\
          ## Example\n`model M Real x; Real y; equation x = 1; end M;` has two unknowns and one equation.\n\n\
@@ -46,7 +46,7 @@ crate::codes! {
         "## What it means\nAn equation refers to a variable or function that is not in the flat model.\n\n\
          ## Example\nAn equation uses `y` where only `x` is declared.\n\n\
          ## What to do\nDeclare the variable or the function, or correct its name.",
-    /// A binding of a constant, an array size or a start value that is no number.
+    /// A binding of a constant, an array size or a start value that is not a number.
     NO_CONSTANT_VALUE = "no-constant-value":
         "## What it means\nA range, a subscript or a size in an equation must be known when the model is translated, but this one is not.\n\n\
          ## Example\n`fill(0.0, n)` where `n` is a variable, or `x[n]` where it varies between events.\n\n\

@@ -41,14 +41,14 @@ impl Builder<'_> {
         let mut named = Named(Vec::new());
         named.expression(binding);
         for reference in named.0 {
-            self.settle_named(&reference)?;
+            self.evaluate_named(&reference)?;
         }
         self.sized(binding, dims)
             .map_err(|why| error.or_else("with the values of parameters", &why))
     }
 
     /// Evaluates the parameter that a reference names, if its value is known.
-    fn settle_named(&mut self, reference: &ComponentReference) -> Result<(), Diagnostic> {
+    fn evaluate_named(&mut self, reference: &ComponentReference) -> Result<(), Diagnostic> {
         let path = Lowering::new(self).path(reference)?;
         let Some((position, _, variable)) = self.flat.variables.get_full(&*path) else {
             return Ok(());
@@ -58,7 +58,7 @@ impl Builder<'_> {
         }
         let first = self.scalars.first[position].0;
         for scalar in first..first + variable.len() as u32 {
-            if let Some(value) = self.settled_parameter(VarId(scalar), MAX_DEPTH)? {
+            if let Some(value) = self.evaluated_parameter(VarId(scalar), MAX_DEPTH)? {
                 self.dae.variables[scalar as usize].kind = VariableKind::Constant(value);
             }
         }
@@ -67,25 +67,25 @@ impl Builder<'_> {
 
     /// The value that parameters give an expression when compiling; they cannot be set any more.
     /// `None` if it depends on variables, or on parameters without values.
-    pub(super) fn settled(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
-        self.settled_below(e, MAX_DEPTH)
+    pub(super) fn evaluate_structural(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
+        self.evaluate_below(e, MAX_DEPTH)
     }
 
-    fn settled_below(&mut self, e: Expr, depth: usize) -> Result<Option<f64>, Diagnostic> {
+    fn evaluate_below(&mut self, e: Expr, depth: usize) -> Result<Option<f64>, Diagnostic> {
         if let Some(known) = self.dae.pool.as_constant(e) {
             return Ok(Some(known));
         }
         let variables = self.dae.pool.variables(e);
         let mut values = vec![f64::NAN; variables.last().map_or(0, |v| v.0 as usize + 1)];
         for variable in variables {
-            let Some(value) = self.settled_parameter(variable, depth)? else { return Ok(None) };
+            let Some(value) = self.evaluated_parameter(variable, depth)? else { return Ok(None) };
             values[variable.0 as usize] = value;
         }
         let value = evaluate(&self.dae.pool, e, &values[..]);
         Ok(value.is_finite().then_some(value))
     }
 
-    fn settled_parameter(
+    fn evaluated_parameter(
         &mut self,
         variable: VarId,
         depth: usize,
@@ -98,7 +98,7 @@ impl Builder<'_> {
             VariableKind::Discrete
                 if depth > 0 && self.dae.variables[position].base != BaseType::Real =>
             {
-                return self.settled_variable(variable, depth);
+                return self.evaluated_variable(variable, depth);
             }
             _ => return Ok(None),
         }
@@ -110,7 +110,7 @@ impl Builder<'_> {
         };
         let element = self.sized(given, &declared.dims)?.elements
             [(variable.0 - self.scalars.first[at].0) as usize];
-        let value = self.settled_below(element, depth - 1)?;
+        let value = self.evaluate_below(element, depth - 1)?;
         if value.is_some() {
             self.dae.variables[position].kind = VariableKind::Parameter { tunable: false };
         }
@@ -118,7 +118,7 @@ impl Builder<'_> {
     }
 
     /// The value of a discrete variable by its binding equation.
-    fn settled_variable(
+    fn evaluated_variable(
         &mut self,
         variable: VarId,
         depth: usize,
@@ -134,7 +134,7 @@ impl Builder<'_> {
         };
         let place = (variable.0 - self.scalars.first[at].0) as usize;
         match self.sized(binding, &declared.dims) {
-            Ok(array) => self.settled_below(array.elements[place], depth - 1),
+            Ok(array) => self.evaluate_below(array.elements[place], depth - 1),
             Err(_) => Ok(None),
         }
     }

@@ -12,7 +12,7 @@ use rustc_hash::FxHashSet;
 const MOST_NODES: usize = 1000;
 
 impl Builder<'_> {
-    /// What is lowered from here on stands in a branch, up to [`Builder::leave_branch`].
+    /// What is lowered from here on is in a branch, up to [`Builder::leave_branch`].
     pub(super) fn enter_branch(&mut self, condition: Expr, holds: bool) {
         let condition = match holds {
             true => condition,

@@ -8,7 +8,7 @@ use crate::symbolic::Expr;
 use crate::syntax::ast::{Expression, ExpressionKind};
 
 impl Builder<'_> {
-    /// The value of a binding, which stands in the flat model.
+    /// The value of a binding, which is in the flat model.
     pub(super) fn binding_value(
         &mut self,
         binding: &Expression,

@@ -263,7 +263,7 @@ impl Visit for Iterators {
 
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
-            ExpressionKind::Comprehension { indices, .. } => self.add(indices),
+            ExpressionKind::ArrayIteration { indices, .. } => self.add(indices),
             ExpressionKind::Call { arguments, .. } => self.add(&arguments.iterators),
             _ => {}
         }

@@ -141,8 +141,8 @@ impl Target for Builder<'_> {
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
 
-    fn settle(&mut self, condition: Expr) -> Option<f64> {
-        self.settled(condition).ok().flatten()
+    fn structural_value(&mut self, condition: Expr) -> Option<f64> {
+        self.evaluate_structural(condition).ok().flatten()
     }
 
     fn element(

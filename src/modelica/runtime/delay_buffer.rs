@@ -83,7 +83,7 @@ impl History {
         self.jumps.front().map(|at| self.times[*at])
     }
 
-    /// Goes on to the pieces that begin up to `t` and forgets what lies far before it.
+    /// Advances to the pieces that begin up to `t` and forgets what lies far before it.
     pub(super) fn advance(&mut self, t: f64) {
         while let Some(at) = self.jumps.front().copied()
             && (self.times[at] <= t || same_time(self.times[at], t))

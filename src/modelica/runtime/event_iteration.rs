@@ -20,11 +20,11 @@ use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
-/// Rounds of an event iteration after which values that come back are looked for.
+/// Rounds of an event iteration after which recurring values are searched for.
 const MAX_ROUNDS: usize = 100;
 /// Most rounds, however new the values are: a counter that counts itself never has the same again.
 const MOST_ROUNDS: usize = 10_000;
-/// Passes of a round after which values that have come back end it.
+/// Passes of a round after which recurring values end it.
 const MAX_PASSES: usize = 60;
 /// Most passes, however new the values are: each of 200 relays in a chain may wait for the one before.
 const MOST_PASSES: usize = 10_000;
@@ -137,7 +137,7 @@ impl System {
         let program = self.program.clone();
         if program.events.is_empty() {
             let jumps = self.advance_recordings(t);
-            let y_changed = self.at_instant(t, |own| own.settle(t, Stage::Event))?;
+            let y_changed = self.at_instant(t, |own| own.iterate_events(t, Stage::Event))?;
             return Ok(EventOutcome::Continue { y_changed: y_changed | jumps });
         }
         for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
@@ -209,13 +209,13 @@ impl System {
         let mut is_stepwise = false;
         let mut known = FxHashSet::default();
         for round in 0..MOST_ROUNDS {
-            // Values that come back do so for ever; those that are new each time may be a chain.
+            // Recurring values recur for ever; those that are new each time may be a chain.
             if round >= MAX_ROUNDS && !known.insert(self.values_of_events()) {
                 break;
             }
             let moves = match is_stepwise {
                 true => self.pass(t, Stage::Event, Change::All)?.is_some(),
-                false => match self.settle(t, Stage::Event) {
+                false => match self.iterate_events(t, Stage::Event) {
                     Ok(any) => {
                         changed |= any;
                         false
@@ -242,7 +242,7 @@ impl System {
         Err(Failure::EventIteration { variable: self.unstable })
     }
 
-    /// What decides how an event iteration goes on, as bits.
+    /// The state that determines how an event iteration continues, as bits.
     fn values_of_events(&self) -> Vec<u64> {
         let program = &self.program;
         let discrete = program.events.discrete.iter().chain(&program.sorted.states);
@@ -254,7 +254,7 @@ impl System {
 
     /// Solves once and updates relations; what changed, if anything.
     fn pass(&mut self, t: f64, stage: Stage, change: Change) -> Result<Option<Moved>, Failure> {
-        self.note_lagged();
+        self.note_iterate();
         if let Err(failure) = self.solve(stage) {
             // The branch may be the wrong one: relations of what was solved before it tell.
             return match self.update_relations(t, change) {
@@ -262,7 +262,7 @@ impl System {
                 false => Err(self.refine(failure)),
             };
         }
-        let lag = self.moved_lagged();
+        let lag = self.changed_iterate();
         self.unstable = lag.unwrap_or(self.unstable);
         Ok(match (self.update_relations(t, change), lag) {
             (true, _) => Some(Moved::Relation),
@@ -272,14 +272,14 @@ impl System {
     }
 
     /// Solves and updates relations until they stay as they are; whether one changed.
-    pub(super) fn settle(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
-        let (mut any, mut comes_back) = (false, false);
+    pub(super) fn iterate_events(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+        let (mut any, mut recurs) = (false, false);
         let mut known = FxHashSet::default();
         for number in 0..MOST_PASSES {
             if number >= PASSES_AT_ONCE {
-                comes_back |= !known.insert(self.values_of_events());
+                recurs |= !known.insert(self.values_of_events());
             }
-            if number >= MAX_PASSES && comes_back {
+            if number >= MAX_PASSES && recurs {
                 break;
             }
             let change = if number < PASSES_AT_ONCE { Change::All } else { Change::First };
@@ -297,21 +297,21 @@ impl System {
             return Ok(true);
         }
         let (registers, inconsistent) = (self.registers.clone(), self.inconsistent.clone());
-        let settled = self.settle_leniently(t, stage);
-        if settled == Ok(true) {
+        let outcome = self.iterate_leniently(t, stage);
+        if outcome == Ok(true) {
             return Ok(true);
         }
         (self.registers, self.inconsistent) = (registers, inconsistent);
         if self.find_lenient_combination(t, stage) {
             return Ok(true);
         }
-        settled?;
+        outcome?;
         Err(Failure::EventIteration { variable: self.unstable })
     }
 
-    /// The same where relations are excused that hold but for what the tolerance makes of their
+    /// The same where relations are tolerated that hold but for what the tolerance makes of their
     /// sides; whether they then come to rest.
-    fn settle_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+    fn iterate_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
         self.is_lenient = true;
         let mut rests = Ok(false);
         for _ in 0..MAX_PASSES {
@@ -332,7 +332,7 @@ impl System {
     }
 
     /// Keeps the values of the variables of discrete loops.
-    pub(super) fn note_lagged(&mut self) {
+    pub(super) fn note_iterate(&mut self) {
         for (slot, variable) in self.previous_iterate.iter_mut().zip(&self.program.events.iterated)
         {
             *slot = self.registers[variable.0 as usize];
@@ -340,7 +340,7 @@ impl System {
     }
 
     /// One of them that has another value now.
-    pub(super) fn moved_lagged(&self) -> Option<u32> {
+    pub(super) fn changed_iterate(&self) -> Option<u32> {
         let mut previous = self.previous_iterate.iter().zip(&self.program.events.iterated);
         let moved = previous.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
         moved.map(|(_, variable)| variable.0)

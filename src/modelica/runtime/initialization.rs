@@ -22,23 +22,23 @@ impl System {
             return Ok(());
         }
         self.take_start_values(t)?;
-        self.settle(t, Stage::Initial).map(|_| ())
+        self.iterate_events(t, Stage::Initial).map(|_| ())
     }
 
-    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
+    /// Solves the initial system with the simplified expressions of `homotopy` and continues from
     /// there to the actual ones, in shorter steps where a solution is missed.
     fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
         let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
         self.take_start_values(t)?;
         self.registers[active] = 1.0;
         self.registers[lambda] = 0.0;
-        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
+        let mut outcome = self.iterate_events(t, Stage::Initial).map(|_| ());
         let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
         let mut reached = self.registers.clone();
         while outcome.is_ok() && done < 1.0 {
             let next = f64::min(done + step, 1.0);
             self.registers[lambda] = next;
-            match self.settle(t, Stage::Initial) {
+            match self.iterate_events(t, Stage::Initial) {
                 Ok(_) => {
                     done = next;
                     step *= 2.0;
@@ -55,7 +55,7 @@ impl System {
         }
         self.registers[active] = 0.0;
         outcome?;
-        self.settle(t, Stage::Initial).map(|_| ())
+        self.iterate_events(t, Stage::Initial).map(|_| ())
     }
 
     /// Compares both sides of the initial equations that were not needed.

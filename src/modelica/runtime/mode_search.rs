@@ -46,9 +46,9 @@ impl System {
         false
     }
 
-    /// As [`find_combination`](System::find_combination), where relations are excused that hold but for
-    /// what the tolerance, or rounding, makes of their sides: of two diodes without a current, rounding
-    /// errors decide which one conducts, and may contradict each of them.
+    /// As [`find_combination`](System::find_combination), where relations are tolerated that hold
+    /// but for what the tolerance, or rounding, makes of their sides: of two diodes without a
+    /// current, rounding errors decide which one conducts, and may contradict each of them.
     pub(super) fn find_lenient_combination(&mut self, t: f64, stage: Stage) -> bool {
         let rounding = ROUNDING * self.largest_side();
         self.uncertainty.iter_mut().for_each(|error| *error = error.max(rounding));
@@ -83,7 +83,7 @@ impl System {
         found
     }
 
-    /// The relations that stand in a block with one of a group.
+    /// The relations that are in a block with one of a group.
     fn companions(&self, group: &[usize]) -> Vec<usize> {
         let blocks = self.program.relations_of_blocks.iter();
         let touched = blocks.filter(|block| block.iter().any(|at| group.contains(at)));
@@ -114,11 +114,11 @@ impl System {
     /// inconsistent.
     fn holds(&mut self, t: f64, stage: Stage) -> bool {
         for _ in 0..PASSES {
-            self.note_lagged();
+            self.note_iterate();
             if self.solve(stage).is_err() {
                 return false;
             }
-            if self.moved_lagged().is_none() {
+            if self.changed_iterate().is_none() {
                 return !self.note_inconsistent(t) && !self.update_roundings(t);
             }
         }

@@ -1,4 +1,4 @@
-//! Relations inside `noEvent` that have events after all, once the integrator cannot go on: the
+//! Relations inside `noEvent` that have events after all, once the integrator cannot continue: the
 //! system replaces its program by one in which they are relations as all others.
 
 use super::execution::run;
@@ -23,8 +23,8 @@ impl System {
         Ok(())
     }
 
-    /// Goes on with a program in which relations inside `noEvent` have events; whether there is one.
-    /// y is loaded and solved.
+    /// Continues with a program in which relations inside `noEvent` have events; whether there is
+    /// one. y is loaded and solved.
     pub(super) fn replace_program(&mut self, t: f64) -> Result<bool, Failure> {
         // The past of delays and derivatives along directions belong to the program at hand.
         if self.n_directions() > 0 || self.has_past() {
@@ -58,7 +58,7 @@ impl System {
         next.registers.calls = self.registers.calls.clone();
         let m = self.program.relations.len();
         next.held[..m].copy_from_slice(&self.held);
-        next.excused[..m].copy_from_slice(&self.excused);
+        next.tolerated[..m].copy_from_slice(&self.tolerated);
         next.postponed[..m].copy_from_slice(&self.postponed[..m]);
         next.switches[..m].copy_from_slice(&self.switches[..m]);
         next.switches[m..].fill(None);

@@ -1,5 +1,6 @@
-//! Variables that nothing reads and whose divisions have no value, as v = q/area in an empty pipe: the simulation
-//! goes on, results have no number for them and for what follows from them, and a warning says so.
+//! Variables that nothing reads and whose divisions have no value, as v = q/area in an empty pipe:
+//! the simulation continues, results have no number for them and for what follows from them, and a
+//! warning says so.
 
 use super::execution::{Operation, read};
 use super::partial_observation::Others;

@@ -73,14 +73,14 @@ impl System {
         // Results that have had values before the event have some after it.
         let had_values = self.unread_have_values().is_ok();
         let (registers, log) = (self.registers.clone(), self.log.clone());
-        let relations = (self.has_changed.clone(), self.held.clone(), self.excused.clone());
+        let relations = (self.has_changed.clone(), self.held.clone(), self.tolerated.clone());
         let mut first = attempt(self);
         if had_values && first.is_ok() {
             first = self.unread_have_values().and(first);
         }
         if first.is_err() {
             (self.registers, self.log) = (registers, log);
-            (self.has_changed, self.held, self.excused) = relations;
+            (self.has_changed, self.held, self.tolerated) = relations;
             self.postpone(t);
             return attempt(self).or(first);
         }

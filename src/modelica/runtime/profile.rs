@@ -265,7 +265,7 @@ impl Profile {
         (below.unwrap_or(f64::NEG_INFINITY), above.unwrap_or(f64::INFINITY))
     }
 
-    /// Goes on to the piece at `s`, of two the one towards `to`; whether it is another.
+    /// Advances to the piece at `s`, of two the one towards `to`; whether it is another.
     pub(super) fn locate(&mut self, s: f64, to: End) -> bool {
         let before = self.reading;
         loop {

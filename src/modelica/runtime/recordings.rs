@@ -1,5 +1,5 @@
 //! Recorded inputs at run time: a cursor into the knots of each recording. It moves at events alone,
-//! so that the segment that ends at a knot goes on until the event there has been handled.
+//! so that the segment that ends at a knot continues until the event there has been handled.
 
 use super::instants::same_time;
 use super::system::System;
@@ -18,7 +18,7 @@ impl System {
         }
     }
 
-    /// Goes on to the segments that begin at `t`; whether an input jumps there, or its derivative
+    /// Advances to the segments that begin at `t`; whether an input jumps there, or its derivative
     /// where equations contain it.
     pub(super) fn advance_recordings(&mut self, t: f64) -> bool {
         let program = self.program.clone();

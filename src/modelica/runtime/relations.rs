@@ -11,7 +11,8 @@
 //! is zero, and only s > 0 with s = 0 determines the pressure between them.
 //!
 //! Where no values of the relations agree with what they decide, those whose sides differ by less
-//! than errors of y as large as the tolerance are excused: ε is as large for them until they change.
+//! than errors of y as large as the tolerance are tolerated: ε is as large for them until they
+//! change.
 //!
 //! ε is a little more than what rounding makes of the sides. Without it the value of a relation
 //! that decides which equations hold, and that they bring to its very limit (a friction element
@@ -29,8 +30,8 @@ const RELATIVE: f64 = 1e-12;
 const ABSOLUTE: f64 = 1e-13;
 
 /// How far a relation is from having another value, given the one it has; negative beyond that.
-fn distance(operator: RelationOperator, holds: bool, (a, b): (f64, f64), excused: f64) -> f64 {
-    let margin = (RELATIVE * a.abs().max(b.abs()) + ABSOLUTE).max(excused);
+fn distance(operator: RelationOperator, holds: bool, (a, b): (f64, f64), tolerated: f64) -> f64 {
+    let margin = (RELATIVE * a.abs().max(b.abs()) + ABSOLUTE).max(tolerated);
     match operator {
         RelationOperator::Greater | RelationOperator::GreaterEqual if holds => a - b + margin,
         RelationOperator::Greater | RelationOperator::GreaterEqual => b - a + margin,
@@ -60,7 +61,7 @@ impl System {
                 self.unstable = register;
                 self.has_changed[at] = true;
                 self.inconsistent[at] = true;
-                self.excused[at] = 0.0;
+                self.tolerated[at] = 0.0;
                 self.registers[register as usize] = f64::from(u8::from(!before));
             }
         }
@@ -116,10 +117,10 @@ impl System {
             self.held[at] = true;
             return before;
         }
-        let excused = if self.is_lenient { self.uncertainty[at] } else { self.excused[at] };
-        let keeps = excused > 0.0 && distance(operator, before, (a, b), excused) >= 0.0;
+        let tolerated = if self.is_lenient { self.uncertainty[at] } else { self.tolerated[at] };
+        let keeps = tolerated > 0.0 && distance(operator, before, (a, b), tolerated) >= 0.0;
         if keeps {
-            (self.held[at], self.excused[at]) = (true, excused);
+            (self.held[at], self.tolerated[at]) = (true, tolerated);
             return before;
         }
         exact
@@ -139,10 +140,10 @@ impl System {
             let relation = &program.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
             let (a, b) = (pair[0], pair[1]);
-            let excused = self.excused[*at];
+            let tolerated = self.tolerated[*at];
             *z = match self.held[*at] {
-                true if holds => distance(relation.operator, true, (a, b), excused),
-                true => -distance(relation.operator, false, (a, b), excused),
+                true if holds => distance(relation.operator, true, (a, b), tolerated),
+                true => -distance(relation.operator, false, (a, b), tolerated),
                 false => a - b,
             };
         }

@@ -44,9 +44,9 @@ impl System {
             return Ok(true);
         }
         for _ in 0..PASSES {
-            self.note_lagged();
+            self.note_iterate();
             self.solve(Stage::Event)?;
-            if self.moved_lagged().is_none() {
+            if self.changed_iterate().is_none() {
                 return Ok(true);
             }
         }

@@ -128,9 +128,9 @@ impl Choice {
             return Ok(false);
         }
         if largest.is_none() {
-            self.choose_anew();
+            self.choose_states();
         }
-        // Every exchange enlarges the determinant: none comes back.
+        // Every exchange enlarges the determinant: none recurs.
         let most = 10 * selection.candidates.len();
         for _ in 0..most {
             match self.largest_change() {
@@ -182,7 +182,7 @@ impl Choice {
     }
 
     /// Takes as determined the columns of the largest pivots.
-    fn choose_anew(&mut self) {
+    fn choose_states(&mut self) {
         let k = self.nominal.len();
         let m = self.determined.len();
         let mut rest = self.jacobian.clone();

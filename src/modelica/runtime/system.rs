@@ -63,11 +63,11 @@ pub struct System {
     pub(super) held: Vec<bool>,
     /// Whether such relations are kept so from the beginning of the event at hand.
     pub(super) keeps_held: bool,
-    /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
-    /// not hold, and by how much it has.
+    /// What the tolerance makes of the sides of relations, and whether it tolerates relations that
+    /// do not hold, and by how much it has.
     pub(super) uncertainty: Vec<f64>,
     pub(super) is_lenient: bool,
-    pub(super) excused: Vec<f64>,
+    pub(super) tolerated: Vec<f64>,
     /// What the code of the crossing functions computes.
     pub(super) crossing_values: Vec<f64>,
     /// Relations that events keep as they are, as long as their sides differ by no more.
@@ -146,7 +146,7 @@ impl System {
             keeps_held: false,
             uncertainty: vec![0.0; program.relations.len()],
             is_lenient: false,
-            excused: vec![0.0; program.relations.len()],
+            tolerated: vec![0.0; program.relations.len()],
             crossing_values: Vec::new(),
             kept: Vec::new(),
             nominal: vec![1.0; n],
@@ -431,7 +431,7 @@ impl System {
 
     fn nominal_of(&mut self, variable: VarId) -> f64 {
         let program = self.program.clone();
-        // They stand in the order of the variables.
+        // They are in the order of the variables.
         let known = program.nominals.binary_search_by_key(&variable, |(v, ..)| *v);
         let value = match known.ok().map(|at| &program.nominals[at]) {
             Some((_, tape, register)) => match tape.run(&mut self.registers) {
@@ -499,7 +499,7 @@ impl System {
         self.held.fill(false);
         self.is_idle.fill(false);
         self.uncertainty.fill(0.0);
-        self.excused.fill(0.0);
+        self.tolerated.fill(0.0);
         self.update_relations(t, Change::All);
         self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {

@@ -31,8 +31,9 @@ fn place(code: &CompiledTransport, registers: &mut Memory, t: f64) -> Result<Rea
 }
 
 impl System {
-    /// Sets the values at `t`, in other pieces than before if `anew`; whether one has changed.
-    pub(super) fn load_transported(&mut self, t: f64, anew: bool) -> bool {
+    /// Sets the values at `t`, in other pieces than before if `is_restart`; whether one has
+    /// changed.
+    pub(super) fn load_transported(&mut self, t: f64, is_restart: bool) -> bool {
         if self.transported.is_empty() {
             return false;
         }
@@ -41,7 +42,7 @@ impl System {
             let mut changed = false;
             for (code, record) in program.events.transports.iter().zip(&mut self.transported) {
                 let Ok(place) = place(code, &mut self.registers, t) else { continue };
-                if anew {
+                if is_restart {
                     record.profile.locate(place.at, place.from);
                 }
                 let read = record.read(code.is_pipe(), place);

@@ -143,7 +143,7 @@ impl Pool {
     }
 
     /// Those of [`Pool::reachable`] that may contain a variable: all but nodes older than it, as
-    /// operands stand before their nodes.
+    /// operands precede their nodes.
     pub(super) fn reachable_with(&self, roots: &[Expr], variable: VarId) -> Vec<Expr> {
         let mut found = Vec::new();
         if let Some(from) = self.nodes.get_index_of(&Node::Variable(variable)) {
@@ -226,7 +226,7 @@ impl Pool {
     }
 }
 
-/// Where a visit goes on.
+/// Where a visit continues.
 enum Next {
     /// With the operands whose ids are not less.
     Operands {

@@ -109,7 +109,7 @@ impl Pool {
     }
 }
 
-/// Whether the operands of a node stand before it, and are lists where lists are needed.
+/// Whether the operands of a node precede it, and are lists where lists are needed.
 fn has_valid_operands(nodes: &[Node], at: usize) -> bool {
     let entries = |e: Expr| match nodes.get(e.index()) {
         Some(Node::List(entries)) => Some(&entries[..]),

@@ -2,7 +2,7 @@
 //!
 //! The grammar says how far it came and which rules it tried there. A small repair at that place
 //! — a `;` more, `:=` for `=` — that lets it come further is the remedy; without one the message
-//! names what was found and what may stand there.
+//! names what was found and what is allowed there.
 
 use super::errors::{MISSING_SEMICOLON, NESTING_TOO_DEEP, SYNTAX_ERROR};
 use super::grammar::{self, Rule};

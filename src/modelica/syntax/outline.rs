@@ -1,6 +1,6 @@
 //! Where the classes of a text begin and end, found without reading what is in them.
 //!
-//! Outside brackets a keyword such as `model` always begins a class (MLS §2.3.3: it is no
+//! Outside brackets a keyword such as `model` always begins a class (MLS §2.3.3: it is not an
 //! identifier), and `end` followed by anything but `if`, `for`, `while` or `when` ends one. So one
 //! pass that knows strings, comments, quoted identifiers and brackets is enough.
 

@@ -120,8 +120,8 @@ impl Pieces {
     }
 }
 
-/// The nodes inside a node, one after another. Keywords that carry no information beyond the
-/// rule they stand in are skipped.
+/// The nodes inside a node, one after another. Keywords that carry no information beyond their rule
+/// are skipped.
 pub(super) struct Nodes<'i> {
     pub(super) place: &'i TextOrigin,
     pairs: Pairs<'i, Rule>,

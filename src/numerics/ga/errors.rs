@@ -9,7 +9,7 @@ codes! {
     /// Numbers of parents, elites and individuals that do not fit together.
     BAD_POPULATION = "bad-population":
         "## What it means\n\nA generation consists of `N_Elitism` elites, `N_Parents` children and random individuals up to `N_Population`. The given numbers do not allow that.\n\n## Example\n\n`N_Population = 100; N_Parents = 100; N_Elitism = 1;`\n\n## What to do\n\nMake `N_Parents + N_Elitism` at most `N_Population`, with at least one parent; the paper uses 100, 70 and 1.",
-    /// A mutation factor that is no probability.
+    /// A mutation factor that is not a probability.
     BAD_MUTATION_FACTOR = "bad-mutation-factor":
         "## What it means\n\n`F_Mut` is the probability that a gene is replaced by a random value, so it must be between 0 and 1.\n\n## Example\n\n`F_Mut = 25;`\n\n## What to do\n\nUse a number from 0 to 1, such as 0.25.",
     /// A search range that is empty or not finite.
@@ -18,7 +18,7 @@ codes! {
     /// A crossing point outside the genome.
     BAD_CROSS_POINT = "bad-cross-point":
         "## What it means\n\nCrossover exchanges the genes after each crossing point, so a crossing point must be between 1 and the number of genes minus one (0 and the number of genes are also accepted; they exchange all genes or none).\n\n## Example\n\n`Cross(70, 1, Pop, {9})` for genomes of 6 genes.\n\n## What to do\n\nChoose crossing points between 1 and `N_Parameters - 1`.",
-    /// A user's operator whose outputs are no genes.
+    /// A user's operator whose outputs are not genes.
     BAD_OPERATOR = "bad-operator":
         "## What it means\n\nYour function replaces an operator of the genetic algorithm. Its inputs or outputs do not match that kind of operator, or it failed, or it returned unusable values: a gene that is NaN, or probabilities that are all zero.\n\n## Example\n\n`crossover = \"mean\"` with a function that returns one child.\n\n## What to do\n\nDeclare the inputs and outputs that the message lists, and return a number for every gene. `gapi help --operators` shows the declarations.",
     /// Arguments of a genetic operator whose sizes do not fit together.

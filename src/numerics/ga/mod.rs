@@ -12,8 +12,8 @@
 //! offspring = elites, children, random individuals      elites unaltered, random ones last
 //! ```
 //!
-//! Every operator is a pure function of its arguments, random numbers included, in a file of its
-//! own, with an entry in the table of its kind. A file with an entry and a row in the table add one.
+//! Every operator is a pure function of its arguments, random numbers included, in a separate file,
+//! with an entry in the table of its kind. A file with an entry and a row in the table add one.
 //!
 //! Reference: [Rubio et al. 2006](gapilib_base::bibliography#rubio-2006).
 

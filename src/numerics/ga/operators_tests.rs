@@ -97,7 +97,7 @@ proptest! {
         }
     }
 
-    /// The genes of a pair change places, nothing else.
+    /// The genes of a pair are exchanged, nothing else.
     #[test]
     fn discrete_crossovers_exchange_genes(seed in 0..1000_u32, n in 1..9_usize) {
         let genes = vec![Gene::new("g", 0.0, 100.0).unwrap(); n];

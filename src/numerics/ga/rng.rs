@@ -107,7 +107,7 @@ impl Mrg32k3a {
         Ok(Mrg32k3a { x: [x3, x2, x1], y: [y3, y2, y1] })
     }
 
-    /// The state in the order of the seed: [`Mrg32k3a::new`] of it goes on from here.
+    /// The state in the order of the seed: [`Mrg32k3a::new`] of it continues from here.
     pub fn state(&self) -> [f64; 6] {
         let [x3, x2, x1] = self.x;
         let [y3, y2, y1] = self.y;

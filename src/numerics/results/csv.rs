@@ -68,7 +68,7 @@ impl Format for Csv {
     }
 }
 
-/// The values of a variable where they stand in the table.
+/// The values of a variable at their place in the table.
 struct Column<'a> {
     values: &'a Values,
     sign: f64,

@@ -9,7 +9,7 @@
 //! | `data_2` | trajectories, time first |
 //!
 //! In binTrans all but `Aclass` are transposed. Written: binTrans in double precision; read: both
-//! layouts in any precision. A unit stands in brackets at the end of the description.
+//! layouts in any precision. A unit is in brackets at the end of the description.
 
 use super::errors::BAD_RESULT_FILE;
 use super::{Format, ResultTable, Series, Values};
@@ -186,7 +186,7 @@ fn strings(file: &MatFile, name: &str, is_transposed: bool) -> Result<Vec<String
     Ok(if is_transposed { matrix.column_strings() } else { matrix.row_strings() })
 }
 
-/// The matrix as in binNormal: points in time are rows.
+/// The matrix as in binNormal: time points are rows.
 fn oriented(file: &MatFile, name: &str, is_transposed: bool) -> Result<Matrix, Fault> {
     let matrix = file.matrix(name)?;
     Ok(if is_transposed { matrix.transposed() } else { matrix.clone() })

@@ -26,7 +26,7 @@ use std::collections::HashSet;
 pub struct ResultTable {
     /// The name of time: `time`, or `Time` as some programs write it.
     pub time_name: String,
-    /// Points in time, seconds.
+    /// Time points, seconds.
     pub time: Vec<f64>,
     /// The variables; their names differ from each other and from `time_name`.
     pub series: Vec<Series>,
@@ -52,7 +52,7 @@ pub enum Values {
     Constant(f64),
     /// One value per point in time.
     Trajectory(Vec<f64>),
-    /// The values of another series, which is no alias itself.
+    /// The values of another series, which is not an alias itself.
     Alias {
         /// Its place in [`ResultTable::series`].
         of: usize,

@@ -131,7 +131,7 @@ impl<'a> Tube<'a> {
         (!is_inside).then_some(Deviation { time, value, lower, upper })
     }
 
-    /// How far outside, in half heights of the tube; infinite for what is no number.
+    /// How far outside, in half heights of the tube; infinite for what is not a number.
     pub fn distance(&self, deviation: &Deviation) -> f64 {
         let outside = (deviation.lower - deviation.value).max(deviation.value - deviation.upper);
         if outside.is_nan() { f64::INFINITY } else { outside / self.half_height }

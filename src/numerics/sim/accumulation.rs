@@ -27,8 +27,8 @@ const COARSEST: f64 = 1e-6;
 /// first. Errors of z are errors of the force, divided by ω τ: with 1e-4 a ball on a plate that shakes
 /// takes 18,952 steps at the tolerance 1e-6 instead of 406.
 const RETURN: f64 = 1e-2;
-/// The limit of the series is within reach: so near relative to the simulated interval. Events go on
-/// before that, as they do for a clock whose ticks merely become shorter for a while.
+/// The limit of the series is within reach: so near relative to the simulated interval. Events
+/// continue before that, as they do for a clock whose ticks merely become shorter for a while.
 const REACH: f64 = 1e-6;
 
 impl Run<'_> {

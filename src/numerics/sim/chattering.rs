@@ -8,7 +8,7 @@
 //! they lead into a corner of surfaces   the solution slides along all of them
 //! else                                  the relation is followed: it is evaluated between steps,
 //!                                       without events, until it has been quiet
-//! values of events remember the side    events go on, and end with an error if the row goes on;
+//! values of events remember the side    events continue; an error if the sequence does not end;
 //!                                       where its events change nothing it is followed instead
 //! ```
 //!
@@ -312,8 +312,8 @@ impl Run<'_> {
         (NARROWEST / self.problem.settings.tolerance).max(1.0)
     }
 
-    /// Implicit methods alone know shares; where an explicit one was asked for, one of them goes on
-    /// if the system has no loops that it solves itself.
+    /// Implicit methods alone know shares; where an explicit one was asked for, one of them takes
+    /// over if the system has no loops that it solves itself.
     pub(crate) fn can_slide(&mut self) -> bool {
         let system = &mut *self.problem.system;
         if !self.is_explicit {

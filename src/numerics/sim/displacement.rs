@@ -2,10 +2,10 @@
 //!
 //! An event may displace the states (`reinit`), a surface (a set point that jumps), or the fields. A
 //! surface from which the solution is farther away than errors explain is left: the relation has the
-//! value of its sides, and the integration goes on beside it. A contact is looked at as `sliding::contact`
-//! says. Where one ends, the states are moved off the surface first, by less than their uncertainty:
-//! the relation of a solution that rests has the value of the last impact, and only one that does not
-//! hold beside the surface can notice the next.
+//! value of its sides, and the integration continues beside it. A contact is looked at as
+//! `sliding::contact` says. Where one ends, the states are moved off the surface first, by less
+//! than their uncertainty: the relation of a solution that rests has the value of the last impact,
+//! and only one that does not hold beside the surface can notice the next.
 
 use super::simulator::Run;
 use super::sliding::Contact;
@@ -41,7 +41,7 @@ impl Run<'_> {
         outcome
     }
 
-    /// Goes on with what an event has left of surfaces and contacts.
+    /// Continues with the surfaces and contacts that persist after an event.
     pub(crate) fn continue_after_event(
         &mut self,
         mut surfaces: Vec<usize>,

@@ -23,8 +23,8 @@ const MAX_TRIALS: usize = 120;
 /// are a thousandth of the tolerance where a step is short, as those after events are; with 1e-2
 /// the first impacts of a ball at tolerance 1e-4 come late by more than what tests allow.
 const MARGIN: f64 = 1e-3;
-/// Tolerance of the uncertainty that excuses relations which contradict what they decide, where the
-/// one asked for is tighter: the contradiction of the flows that start at zero in FuelCellLib 1.0
+/// Tolerance of the uncertainty within which relations may contradict what they decide, where the
+/// requested one is tighter: the contradiction of the flows that start at zero in FuelCellLib 1.0
 /// does not become smaller with the tolerance.
 const COARSEST: f64 = 1e-6;
 /// A function that has had another sign, and has grown, at the ends of so many steps in a row changes it:
@@ -152,7 +152,7 @@ impl CrossingSearch {
     }
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign
-    /// changes, and then the search goes on from `b`. y must hold y(b).
+    /// changes, and then the search continues from `b`. y must hold y(b).
     pub(crate) fn first_event(
         &mut self,
         problem: &mut Problem,

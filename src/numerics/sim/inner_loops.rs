@@ -1,5 +1,5 @@
 //! Algebraic loops solved inside of the right-hand side: where the integrator, which else holds the
-//! iteration variables as unknowns of its own, cannot go on with them.
+//! iteration variables as unknowns of its own, cannot continue with them.
 //!
 //! A fan at rest whose flow rate is given has the speed r with r |r| = 0: the Jacobian is singular
 //! there, and r' is infinite where the flow begins. Solving the loop at each evaluation needs
@@ -13,8 +13,8 @@ use super::{DaeSystem, SimErrorKind};
 const MOST_STATES: usize = 400;
 
 impl Run<'_> {
-    /// Goes on with loops solved inside. Fails with `kind`, unless this is a failure of the integrator
-    /// and there are loops that it holds.
+    /// Continues with loops solved inside. Fails with `kind`, unless this is a failure of the
+    /// integrator and there are loops that it holds.
     pub(super) fn take_loops_inside(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let system = &mut *self.problem.system;
         let n = system.n_differential();

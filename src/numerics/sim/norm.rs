@@ -8,7 +8,7 @@ const SHARE_NOISE: f64 = 1e-6;
 /// share is that of y, divided by the width of the layer and by the step: with an accuracy as that
 /// of y, tests of the error would make steps shorter and this error larger until the steps are used up
 /// (`der(x) = if x > 0.3*sin(3*time) then -2 else 2` at the tolerance 1e-6). What y does follows from
-/// the mean of the shares over time, and their values are computed anew where they are asked for.
+/// the mean of the shares over time, and their values are recomputed where they are requested.
 pub(crate) fn nominal_share(tolerance: f64) -> f64 {
     (SHARE_NOISE / tolerance).max(1.0 / tolerance.sqrt())
 }

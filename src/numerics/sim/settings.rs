@@ -27,7 +27,7 @@ pub struct Settings {
     pub initial_step: Option<f64>,
     /// Largest step, seconds.
     pub max_step: f64,
-    /// Whether the simulation goes on where events would follow each other without end: relations
+    /// Whether the simulation continues where events are chattering: relations
     /// are evaluated between steps, the solution slides or rests. If not, it fails there.
     pub treats_chattering: bool,
     /// Steps, rejected ones included, after which the simulation is given up unless it gets on.

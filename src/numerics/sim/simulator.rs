@@ -238,7 +238,7 @@ fn refused(
     (integrator.is_explicit() && system.n_algebraic() > 0).then_some(SimErrorKind::ExplicitMethod)
 }
 
-/// The integrator asked for, made anew if it is not the one at hand.
+/// The requested integrator, created if it is not the current one.
 fn integrator<'a>(
     slot: &'a mut Option<(&'static str, Box<dyn Integrator>)>,
     settings: &Settings,
@@ -252,7 +252,7 @@ fn integrator<'a>(
     integrator.as_mut()
 }
 
-/// Whether the simulation goes on after an event.
+/// Whether the simulation continues after an event.
 #[derive(PartialEq)]
 pub enum After {
     /// The step still holds.
@@ -383,8 +383,8 @@ impl Run<'_> {
         Ok(next.is_none_or(|next| next > event))
     }
 
-    /// Where no step can be made: the solution of the algebraic equations may go on elsewhere, or on
-    /// another branch. Fails with `kind` if it does not.
+    /// Where no step can be made: the solution of the algebraic equations may continue elsewhere,
+    /// or on another branch. Fails with `kind` if it does not.
     fn jump(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let system = &*self.problem.system;
         // Derivatives do not follow a solution that jumps for no reason of its own.

@@ -3,7 +3,7 @@
 //! A model that switches ten thousand times a second needs millions of steps for its minutes, and
 //! says so by its pace. A simulation that is stuck does not come to its end at any number of them.
 
-/// What is allowed, and where that was last settled.
+/// What is allowed, and where that was last extended.
 #[derive(Debug, Clone, Copy)]
 pub struct StepBudget {
     /// Attempts of steps that may be made.

@@ -176,7 +176,7 @@ pub trait DaeSystem {
 /// What an event did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventOutcome {
-    /// Goes on; `y_changed` if continuous variables jumped or branches changed.
+    /// Continues; `y_changed` if continuous variables jumped or branches changed.
     Continue {
         /// Whether the integrator must restart.
         y_changed: bool,
@@ -209,7 +209,7 @@ pub struct Side {
     pub is_reversed: bool,
 }
 
-/// How a simulation goes on where events would follow each other without end.
+/// How a simulation continues where events are chattering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Treatment {
     /// The branches change between steps, without events.

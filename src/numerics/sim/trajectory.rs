@@ -26,7 +26,7 @@ impl Trajectory {
     /// Appends a row: `values` are the columns in order.
     ///
     /// # Panics
-    /// If there are not as many values as columns.
+    /// If the numbers of values and columns differ.
     pub fn push(&mut self, time: f64, values: &[f64]) {
         assert_eq!(values.len(), self.columns.len(), "a row has one value for each column");
         self.time.push(time);

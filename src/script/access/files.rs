@@ -73,7 +73,7 @@ impl Session {
         path
     }
 
-    /// Writes a file anew, with the directories it lies in.
+    /// Rewrites a file, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let path = self.expanded(path);
         self.write_by(&path, &mut |session| {
@@ -94,7 +94,7 @@ impl Session {
         self.write_by(&path, &mut |session| session.world.append(&path, bytes))
     }
 
-    /// Writes results into a file anew, with the directories it lies in. A file with former results
+    /// Rewrites a file of results, with the directories it lies in. A file with former results
     /// is replaced, no matter which program has written it.
     pub fn write_results(
         &mut self,
@@ -117,7 +117,7 @@ impl Session {
         self.write_file(path, bytes)
     }
 
-    /// Writes the log of a session anew, in place of one that another run has written.
+    /// Rewrites the log of a session, in place of one that another run has written.
     pub(crate) fn write_log(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
         let expanded = self.expanded(path);
         self.grant_replacement_of(&expanded, |start| start.starts_with(PROMPT.as_bytes()));

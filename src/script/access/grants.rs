@@ -1,5 +1,5 @@
 //! Files and folders that a session may use: the one place that derives them from what the user has
-//! named or stands in.
+//! named and from the current folder.
 //!
 //! What the user names on the command line is granted where it leads. What is found beside or above it
 //! is granted as [`Grant::Found`]: no link leads elsewhere. What files of others name, such as a

@@ -138,7 +138,7 @@ fn get_component_count(session: &mut Session, mut args: Args) -> Result<Value, F
     Ok(Value::Integer(class.map_or(0, |class| components(&class).len() as i64)))
 }
 
-/// A component with its clause and the section it stands in.
+/// A component with its clause and the section that contains it.
 pub(super) struct Component<'c> {
     pub clause: &'c ComponentClause,
     pub one: &'c ComponentDeclaration,
@@ -308,8 +308,8 @@ fn answer(session: &mut Session, done: Result<(), Failure>) -> Result<Value, Fai
     }
 }
 
-/// Gives an element of a class, or what stands in its modification, another modification, as it is
-/// written after the element's name. A binding leaves what stands in parentheses as it is; `()`
+/// Gives an element of a class, or an element of its modification, another modification, as it is
+/// written after the element's name. A binding leaves the part in parentheses unchanged; `()`
 /// takes the binding away.
 fn modified(
     session: &mut Session,
@@ -379,7 +379,7 @@ fn component_mut(class: &mut ClassDefinition, name: Ident) -> Option<&mut Compon
     })
 }
 
-/// Changes a class where it stands in the class at the top level; what `edit` returned.
+/// Changes a class at its place in the class at the top level; what `edit` returned.
 fn edited<T>(
     session: &mut Session,
     name: &Name,

@@ -200,7 +200,7 @@ fn simulated(
     names: &[String],
     values: &[f64],
 ) -> Result<Option<Simulated>, Failure> {
-    // Each row writes the file anew: that of the row before does not stand for it.
+    // Each row rewrites the file: that of the row before does not replace it.
     session.expect_file(&result_path(&request.file));
     for (name, value) in names.iter().zip(values) {
         session.set_parameter(name, *value)?;

@@ -8,7 +8,7 @@ macro_rules! seed {
     };
 }
 
-/// The seed that goes on.
+/// The seed that continues.
 macro_rules! next_seed {
     () => {
         r#"  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";

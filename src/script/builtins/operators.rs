@@ -2,7 +2,7 @@
 //! put a generation together themselves: an entry of a table, or a function of the script.
 //!
 //! Each takes its random numbers from the generator that `Ram_Gen_ARENA` uses, starts it from
-//! `Seed` and returns the seed that goes on.
+//! `Seed` and returns the seed that continues.
 
 use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_genomes};
 use super::inputs;
@@ -159,7 +159,7 @@ impl Draws {
         Ok(Draws { before: rng.state(), rng })
     }
 
-    /// The outputs of the call: its value and the seed that goes on.
+    /// The outputs of the call: its value and the seed that continues.
     fn outputs(&self, session: &mut Session, value: Value) -> Value {
         let site = session.site_of_call();
         session.identification().recorder.seeded(self.before, self.rng.state(), site);

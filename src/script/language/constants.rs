@@ -34,7 +34,7 @@ impl Session {
         Ok(None)
     }
 
-    /// A constant that stands in a class, or a field of one: `Package.constant.field`.
+    /// A constant that is in a class, or a field of one: `Package.constant.field`.
     fn constant_in_package(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
         // A class in one that does not exist is not looked for: names may be very long.
         let owner_at = |at: usize| Name::new(name.parts[..at].iter().copied());

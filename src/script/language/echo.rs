@@ -96,7 +96,7 @@ impl Session {
             })
     }
 
-    /// The word that stands in Dymola's log between a simulation and its answer.
+    /// The word in Dymola's log between a simulation and its answer.
     fn echo_finished(&mut self, expression: &Expression, value: &Value) {
         let is_wanted = matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.dialect() == Dialect::Dymola

@@ -161,7 +161,7 @@ impl Host for Session {
         }
     }
 
-    /// At a prompt the user sees the error, and goes on with the value before.
+    /// At a prompt the user sees the error, and continues with the value before.
     fn loses_failed(&self) -> bool {
         let is_prompt = self.options.echo == Echo::Dialogue && self.execution.is_typed();
         !is_prompt && !self.is_interrupted() && self.execution.stop().is_none()

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a call says about the dialect of the script that it stands in.
+/// What a call says about the dialect of the script that contains it.
 #[derive(Debug)]
 enum Sign {
     /// Only this dialect has such a call.

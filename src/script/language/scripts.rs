@@ -33,7 +33,7 @@ impl Session {
         self.finish()
     }
 
-    /// Runs a text as the outermost script; `name` stands in diagnostics.
+    /// Runs a text as the outermost script; `name` is shown in diagnostics.
     pub fn run_text(&mut self, name: &str, text: &str) -> RunStatus {
         let source = self.sources.add(name, text);
         match Parsed::read(source, text) {

@@ -3,7 +3,7 @@
 use crate::diag::Code;
 use std::fmt;
 
-/// What stands before a statement.
+/// What precedes a statement.
 pub(crate) const PROMPT: &str = ">>> ";
 
 /// One statement and its answer.

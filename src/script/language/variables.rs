@@ -85,7 +85,7 @@ impl Session {
         declared.map(|name| name.to_string()).collect()
     }
 
-    /// The value of an expression; `name` stands in diagnostics.
+    /// The value of an expression; `name` is shown in diagnostics.
     ///
     /// # Errors
     /// What is wrong with it.

@@ -102,7 +102,7 @@ impl Workspace {
         self.open_packages.push(package);
     }
 
-    /// What a name may stand for: itself, and what the imports of the scripts make of it.
+    /// What a name may denote: itself, and what the imports of the scripts make of it.
     pub fn candidates(&self, name: &Name) -> Vec<Name> {
         let mut all = vec![name.clone()];
         let Some(first) = name.first().filter(|_| !name.global) else { return all };

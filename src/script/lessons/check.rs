@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How often a run in memory asks whether to stop before it is taken to be endless: the longest
+/// How often a run in memory asks whether to stop before it is considered endless: the longest
 /// solution, that of lesson 14, asks 1.0e5 times.
 const PATIENCE: u64 = 20_000_000;
 

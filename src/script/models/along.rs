@@ -17,7 +17,7 @@ use crate::value::Value;
 use indexmap::IndexMap;
 
 impl Session {
-    /// The values of an expression at the points in time of a table; `M[end].x` and `x` are both
+    /// The values of an expression at the time points of a table; `M[end].x` and `x` are both
     /// the variable `x`.
     pub(crate) fn along(&mut self, text: &str, table: &ResultTable) -> Result<Vec<f64>, Failure> {
         let mut expression = syntax::parse_expression(SourceId::NONE, text)?;

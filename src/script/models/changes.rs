@@ -38,7 +38,7 @@ pub enum Given<'a> {
 /// What a change concerns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Changed {
-    /// A parameter that shaped the equations.
+    /// A structural parameter of the equations.
     Structure,
     /// A start value.
     Start,

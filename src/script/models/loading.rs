@@ -133,7 +133,7 @@ impl Session {
         Ok(names)
     }
 
-    /// Loads classes from a text; `name` stands in diagnostics.
+    /// Loads classes from a text; `name` is shown in diagnostics.
     pub fn load_text(&mut self, name: &str, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let source = self.sources.add(name, text);
         self.load_source(source, text, None)

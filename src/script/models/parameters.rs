@@ -84,8 +84,8 @@ impl Session {
         changed.into_iter().chain(current.map(|current| current.model.clone()))
     }
 
-    /// Gives scalars values: each by itself, or with the array that it is an element of where that has
-    /// shaped the model.
+    /// Gives scalars values: each by itself, or with the array that it is an element of where that
+    /// is a structural parameter.
     fn set_elements(
         &mut self,
         found: &Addressed,

@@ -52,8 +52,8 @@ impl Session {
         Ok(())
     }
 
-    /// Gives the parameters these values. One that follows from others by its binding is not set: it
-    /// goes on following them.
+    /// Gives the parameters these values. One that follows from others by its binding is not set:
+    /// it continues to follow them.
     fn adopt_parameters(
         &mut self,
         model: &Arc<Translated>,

@@ -93,7 +93,7 @@ pub struct Simulated {
 /// let model = CompiledModel::new("Decay", translated.program.clone());
 /// assert_eq!(model.parameters()[0].name, "k");
 ///
-/// // Simulated again and again with other values of `k`: x at two points in time.
+/// // Simulated again and again with other values of `k`: x at two time points.
 /// let experiment = Experiment {
 ///     name: String::new(),
 ///     settings: model.settings(),

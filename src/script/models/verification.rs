@@ -1,4 +1,4 @@
-//! Models against reference results: translated, simulated, compared. The points in time are those of
+//! Models against reference results: translated, simulated, compared. The time points are those of
 //! the reference; if it is sampled, those of the experiment annotation and others between them.
 
 use super::simulation::{self, SimulationOptions};
@@ -88,7 +88,7 @@ pub fn library(session: &mut Session) -> Arc<Library> {
 }
 
 /// Translates and simulates a class as its experiment annotation says, and compares it with the
-/// reference if there is one: then the reference's time span counts, and its points in time unless it
+/// reference if there is one: then the reference's time span counts, and its time points unless it
 /// is sampled. `enter` is called with each stage as it begins; the flag ends a simulation.
 ///
 /// # Errors

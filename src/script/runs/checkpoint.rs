@@ -118,7 +118,7 @@ impl Checkpoint {
         match written {
             Ok(()) => self.keep_pending(),
             Err(error) => {
-                // A part may have been written; what stands before it is whole.
+                // A part may have been written; what precedes it is complete.
                 self.broken = Some(format!("{error}; the run continues without checkpoints"));
                 let text = format!(
                     "warning: `{}` cannot be written: {error}; the run continues without \

@@ -17,8 +17,9 @@ pub(super) struct Tracing {
 }
 
 impl Session {
-    /// Records the calls of the paper's functions from here on in a file, written anew. The host
-    /// that requests the trace has permitted the file ([`Session::permit_file`]): scripts do not.
+    /// Records the calls of the paper's functions from here on in a file, which is rewritten. The
+    /// host that requests the trace has permitted the file ([`Session::permit_file`]): scripts do
+    /// not.
     ///
     /// # Errors
     ///

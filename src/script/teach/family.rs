@@ -51,7 +51,7 @@ fn put_in_layers(family: &mut [Member]) {
     }
 }
 
-/// Where a member stands in the family; it joins if there is room for it.
+/// The position of a member in the family; it joins if there is room for it.
 fn place(family: &mut Vec<Member>, new: Member) -> Option<usize> {
     let same = |old: &Member| (old.generation, old.number) == (new.generation, new.number);
     if let Some(known) = family.iter().position(same) {

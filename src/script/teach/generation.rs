@@ -237,7 +237,7 @@ impl Generation {
         (numbers.len() == all * self.n_genes).then(|| numbers.get(own).map(<[f64]>::to_vec))?
     }
 
-    /// Who goes on for individual `k` of the generation before: its copy as elite, or its first
+    /// What replaces individual `k` of the generation before: its copy as elite, or its first
     /// child.
     pub fn successor(&self, k: usize) -> Option<usize> {
         let copy = |origin: &Origin| matches!(origin, Origin::Elite { from } if *from == k);

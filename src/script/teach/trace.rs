@@ -32,7 +32,7 @@ pub struct Trace {
     pub generations: Vec<Generation>,
     /// Whether the file ends within an event, as an interrupted run leaves it.
     pub cut: bool,
-    /// Whether the run went on after the trace had reached its largest size.
+    /// Whether the run continued after the trace had reached its largest size.
     pub full: bool,
 }
 

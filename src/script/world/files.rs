@@ -46,9 +46,9 @@ pub trait Files {
         bytes.truncate(most);
         Ok(bytes)
     }
-    /// Writes a file anew, safe against a power cut.
+    /// Rewrites a file, safe against a power cut.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-    /// Writes a file anew as `content` writes it: implementations with a disk keep none of it in
+    /// Rewrites a file as `content` writes it: implementations with a disk keep none of it in
     /// memory, and leave it to the system when it reaches the disk.
     fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
         let mut bytes = Vec::new();

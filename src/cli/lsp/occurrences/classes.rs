@@ -6,7 +6,7 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassElement, ClassSpecifier, Comment,
-    ComponentClause, ComponentDeclaration, Constraint, Deselection, Element, Extends, External,
+    ComponentClause, ComponentDeclaration, Constraint, Element, Exclusion, Extends, External,
     Import, ImportKind, InteractiveKind, LongClass, Modification, RedeclaredElement, Section,
     ShortClass, Subscript, TypeSpecifier,
 };
@@ -151,10 +151,10 @@ impl OccurrenceSearch<'_> {
     fn extends(&mut self, extends: &Extends) {
         let base = self.specifier(&extends.base);
         self.arguments(base, &extends.modification);
-        for deselected in &extends.deselected {
-            match deselected {
-                Deselection::Component(name) => self.element_name(base, *name),
-                Deselection::Connection(left, right) => {
+        for excluded in &extends.excluded {
+            match excluded {
+                Exclusion::Component(name) => self.element_name(base, *name),
+                Exclusion::Connection(left, right) => {
                     self.reference(left);
                     self.reference(right);
                 }

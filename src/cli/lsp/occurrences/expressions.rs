@@ -131,7 +131,7 @@ impl Visit for OccurrenceSearch<'_> {
                     self.expression(&argument.value);
                 }
             }
-            ExpressionKind::Comprehension { indices, .. } => {
+            ExpressionKind::ArrayIteration { indices, .. } => {
                 self.within(indices, |walk| walk_expression(walk, expression));
             }
             _ => walk_expression(self, expression),

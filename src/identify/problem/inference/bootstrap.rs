@@ -1,11 +1,11 @@
-//! The bootstrap: the fit is made again and again with data drawn anew, and the spread of the
+//! The bootstrap: the fit is repeated with resampled data, and the spread of the
 //! estimates gives intervals that hold where the linear ones do not.
 //!
 //! Residuals (centred, inflated for the degrees of freedom, drawn within their series), normal
 //! noise (parametric), or cases (points drawn with replacement within their series). Intervals by
 //! percentiles, their reflection (basic), or bias-corrected and accelerated (BCa), with the
 //! acceleration of the infinitesimal jackknife. Every replicate has a substream of random numbers
-//! of its own, so that threads do not matter. A resumed run computes it anew, with the same result.
+//! of its own, so that threads do not matter. A resumed run recomputes it, with the same result.
 //!
 //! References: [Efron & Tibshirani 1993](gapilib_base::bibliography#efron-tibshirani-1993), chapters 9,
 //! 13 and 14; [Davison & Hinkley 1997](gapilib_base::bibliography#davison-hinkley-1997), chapter 6.
@@ -30,7 +30,7 @@ const FAILED: f64 = 0.05;
 /// (Andrews 2000).
 const AT_BOUNDS: f64 = 0.025;
 
-/// What is drawn anew.
+/// What is resampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resampling {

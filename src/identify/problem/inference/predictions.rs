@@ -5,7 +5,7 @@ use crate::diag::Fault;
 use crate::elementary;
 
 /// How far bands go beyond the measured points, as a fraction of their width: as far as the eye
-/// goes on along a curve.
+/// continues a curve.
 const BEYOND: f64 = 0.1;
 /// Times at which the range of a variable X is looked for.
 const LOOKS: usize = 400;

@@ -52,7 +52,7 @@ impl Compiled {
 
 impl ScalarFunction {
     /// The values of all slots once the function has run. `given` knows the arguments by position:
-    /// `Some(None)` where the default counts, `None` where one is no scalar.
+    /// `Some(None)` where the default counts, `None` where one is not a scalar.
     fn slots(
         &self,
         given: impl Fn(usize) -> Option<Option<Scalar>>,

@@ -140,7 +140,7 @@ fn matrices_are_joined_from_scalars_vectors_and_matrices() {
 }
 
 #[test]
-fn comprehensions_nest_with_the_last_iterator_outermost() {
+fn array_iterations_nest_with_the_last_iterator_outermost() {
     assert_eq!(eval("{10*i + j for i in 1:2, j in 1:3}"), "{{11, 21}, {12, 22}, {13, 23}}");
     assert_eq!(eval("sum(i*j for i in 1:3, j in 1:2)"), "18");
     assert_eq!(eval("product(i for i in 1:5)"), "120");

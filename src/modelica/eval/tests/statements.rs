@@ -91,7 +91,7 @@ fn several_outputs_need_a_call() {
     assert!(run_fails("(a, b) := sin(1);").starts_with("wrong-outputs"));
 }
 
-/// Every statement of a script is an event, so what stands in a `when` is done where the condition
+/// Every statement of a script is an event, so the body of a `when` is executed where the condition
 /// holds.
 #[test]
 fn a_when_of_a_script_is_a_branch() {

@@ -137,7 +137,7 @@ impl Curve {
         if extrapolation == Extrapolation::Hold {
             return [self.y[end], 0.0, 0.0];
         }
-        // Steps go on as a line through the last two points.
+        // Steps continue as a line through the last two points.
         let derivative = match self.smoothness {
             Smoothness::Constant if x[interval] < x[interval + 1] => {
                 (self.y[interval + 1] - self.y[interval]) / (x[interval + 1] - x[interval])

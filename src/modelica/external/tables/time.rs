@@ -1,7 +1,7 @@
 //! `CombiTimeTable`: a table over time with its events.
 //!
 //! At an event the value before it holds until the event has been handled: while `time` has
-//! reached the next event, the segment that ends there goes on.
+//! reached the next event, the segment that ends there continues.
 
 use super::curve::{Extrapolation, Smoothness};
 use super::one::Table1D;

@@ -110,7 +110,7 @@ impl Table2D {
     fn at(&self, a: Position, b: Position) -> [f64; 6] {
         match &self.shape {
             Shape::Smooth(surface) => self.smooth(surface, a, b),
-            // Beyond the ends steps go on as bilinear functions.
+            // Beyond the ends steps continue as bilinear functions.
             Shape::Steps if a.beyond == 0.0 && b.beyond == 0.0 => {
                 let (i, j) = (step(&self.x, a), step(&self.y, b));
                 [self.z(i, j), 0.0, 0.0, 0.0, 0.0, 0.0]

@@ -376,7 +376,7 @@ impl Classes<'_> {
         errors
     }
 
-    /// Objects with a value are no unknowns: see `object_equations`.
+    /// Objects with a value are not unknowns: see `object_equations`.
     fn is_bound_object(&self, node: NodeId, model: &FlatModel) -> bool {
         let variable = model.variables.get(self.tree.nodes[node.0].path.as_str());
         variable.is_some_and(|variable| {
@@ -427,7 +427,7 @@ impl Classes<'_> {
 }
 
 impl Tree {
-    /// Whether a scalar stands in a connector that has flow variables.
+    /// Whether a scalar is in a connector that has flow variables.
     fn is_beside_flow(&self, leaf: NodeId) -> bool {
         let Some(parent) = self.nodes[leaf.0].parent else { return false };
         let NodeKind::Composite(connector) = &self.nodes[parent.0].kind else { return false };

@@ -1,4 +1,4 @@
-//! Where equations and statements may stand (MLS §4.5, §8.3, §9.1, §9.4.1, §11.2, §12.2).
+//! Where equations and statements are allowed (MLS §4.5, §8.3, §9.1, §9.4.1, §11.2, §12.2).
 
 use super::scope::{Component, Scope};
 use super::variability::is_fixed;
@@ -21,7 +21,7 @@ struct Around {
     initial: bool,
     /// A when-clause.
     when: bool,
-    /// A clocked when-clause, where equations of any form may stand (MLS §16.6).
+    /// A clocked when-clause, where equations of any form are allowed (MLS §16.6).
     clocked: bool,
     /// An if- or a for-equation whose choice or range can change during simulation.
     varying: bool,

@@ -111,8 +111,8 @@ fn inherited(class: Scope<'_>, name: Ident, depth: usize) -> Option<Inherited<'_
     })
 }
 
-/// An element after the modification of a base class, written in a class: a redeclaration decides
-/// anew whether it is replaceable, and may constrain it further.
+/// An element after the modification of a base class, written in a class: a redeclaration redefines
+/// whether it is replaceable, and may constrain it further.
 fn modified<'a>(
     writer: Scope<'a>,
     mut element: Inherited<'a>,
@@ -224,7 +224,7 @@ fn declared(element: &RedeclaredElement) -> Option<(Ident, Span, ElementPrefixes
 }
 
 /// Redeclarations in modifications, written in one class about another, are of replaceable elements
-/// that are no constants (MLS §7.3.3).
+/// that are not constants (MLS §7.3.3).
 fn redeclarations(
     writer: Scope<'_>,
     class: Scope<'_>,

@@ -165,7 +165,7 @@ impl Visit for WrittenNames {
 
     fn expression(&mut self, expression: &Expression) {
         let indices = match &expression.kind {
-            ExpressionKind::Comprehension { indices, .. } => indices.as_slice(),
+            ExpressionKind::ArrayIteration { indices, .. } => indices.as_slice(),
             ExpressionKind::Call { arguments, .. } => &arguments.iterators,
             _ => &[],
         };

@@ -100,7 +100,7 @@ fn wrong_kind(component: &Component<'_>) -> Option<Diagnostic> {
     }
 }
 
-/// Flow and stream variables that are no numbers.
+/// Flow and stream variables that are not numbers.
 fn wrong_type(component: &Component<'_>) -> Option<Diagnostic> {
     let connection = component.clause.type_prefixes.connection?;
     let (base, is_enumeration) = match component.meaning()? {

@@ -313,7 +313,7 @@ impl Visit for TypeCheck<'_, '_> {
                     }
                 }
             }
-            ExpressionKind::Comprehension { indices, .. } => {
+            ExpressionKind::ArrayIteration { indices, .. } => {
                 self.loops.extend(indices.iter().map(|index| index.name.node));
             }
             ExpressionKind::Call { function, arguments } => {

@@ -34,7 +34,7 @@ pub struct Connections {
     parent: Vec<usize>,
     /// A connection of each side, for messages.
     spans: Vec<Span>,
-    /// How often each connector stands in a connection.
+    /// How often each connector occurs in a connection.
     counts: FxHashMap<End, i64>,
     pub graph: Graph,
     /// The instance whose connections are being made.

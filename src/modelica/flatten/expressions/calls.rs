@@ -129,7 +129,7 @@ impl Instantiation<'_> {
                 (arguments.positional.as_slice(), arguments.iterators.is_empty())
             {
                 return self
-                    .comprehension(element, &arguments.iterators, span, context, local)
+                    .array_iteration(element, &arguments.iterators, span, context, local)
                     .map(Some);
             }
             let elements = self.all(&arguments.positional, context, local)?;
@@ -206,7 +206,7 @@ impl Instantiation<'_> {
     }
 }
 
-/// Whether a call means a function that stands in no class: of the language, or one that is passed
+/// Whether a call means a function that is in no class: of the language, or one that is passed
 /// to the function in progress.
 fn is_builtin(name: &Name, local: &Local) -> bool {
     let ident = name.first().filter(|_| name.is_simple());

@@ -23,7 +23,7 @@ pub struct Local {
     pub impure: bool,
     /// Whether the call at hand is an equation: an impure function without outputs may then be called.
     pub(crate) is_equation: bool,
-    /// Whether names are flat paths, to which protected components are no secret.
+    /// Whether names are flat paths, to which protected components are visible.
     pub flat: bool,
 }
 

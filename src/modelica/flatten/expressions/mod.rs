@@ -1,8 +1,8 @@
 //! Expressions with their names resolved (MLS §5.6.2): references to components become flat paths,
 //! constants of packages their values, calls of functions their full names.
 
+pub(crate) mod array_iterations;
 pub mod calls;
-pub(crate) mod comprehensions;
 pub mod constants;
 pub mod enumerations;
 pub(crate) mod implicit_ranges;

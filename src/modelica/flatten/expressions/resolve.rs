@@ -6,7 +6,7 @@ use crate::fault;
 use crate::flatten::errors::{
     CONDITIONAL_COMPONENT, NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE,
 };
-use crate::flatten::expressions::comprehensions::is_sum_of_nothing;
+use crate::flatten::expressions::array_iterations::is_sum_of_nothing;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::ScopeId;
@@ -91,8 +91,8 @@ impl Instantiation<'_> {
             ExpressionKind::Array(elements) => {
                 ExpressionKind::Array(self.all(elements, context, local)?)
             }
-            ExpressionKind::Comprehension { element, indices } => {
-                return self.comprehension(element, indices, e.span, context, local);
+            ExpressionKind::ArrayIteration { element, indices } => {
+                return self.array_iteration(element, indices, e.span, context, local);
             }
             ExpressionKind::Matrix(rows) => ExpressionKind::Matrix(
                 rows.iter()
@@ -137,7 +137,7 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, span))
     }
 
-    /// A chain of operations is no deeper than its operands.
+    /// A chain of operations is not deeper than its operands.
     fn chain(
         &mut self,
         e: &Expression,
@@ -231,8 +231,8 @@ impl Instantiation<'_> {
     }
 
     /// An if-expression whose later branches name what does not exist, up to the branch whose
-    /// condition parameters make true: the element of an empty array is no error where nothing
-    /// reads it. The parameters cannot be set any more.
+    /// condition parameters make true: the element of an empty array is not an error where it is
+    /// not read. The parameters cannot be set any more.
     ///
     /// # Errors
     /// Parameters do not choose a branch.

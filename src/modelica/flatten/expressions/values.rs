@@ -12,7 +12,7 @@ pub type Read = IndexSet<usize>;
 /// The values of constants and parameters that are known at translation.
 #[derive(Debug, Default)]
 pub struct Values {
-    /// Variables whose values shaped the model.
+    /// Structural parameters: variables whose values determine the equations.
     pub structural: IndexSet<usize>,
     /// Variables whose values were drawn at random.
     pub drawn: IndexSet<usize>,

@@ -139,7 +139,7 @@ impl Instantiation<'_> {
         }
     }
 
-    /// Makes a function ready and returns its full name; `None` if the class is no function.
+    /// Makes a function ready and returns its full name; `None` if the class is not a function.
     pub fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
         if let Some(known) = self.functions.names.get(&id) {
             return Ok(Some(known.clone()));
@@ -386,7 +386,7 @@ impl Instantiation<'_> {
         let outer: Vec<Ident> = outer.map(|declared| declared.name).collect();
         let mut components = Vec::new();
         for (_, declared) in elements.iter() {
-            // An `outer` component of a record is no part of it: bindings refer to it.
+            // An `outer` component of a record is not part of it: bindings refer to it.
             if outer.contains(&declared.name) {
                 continue;
             }
@@ -435,8 +435,8 @@ impl Instantiation<'_> {
         Ok(components)
     }
 
-    /// The sizes that redeclarations in the declaration of a record give its components: their names
-    /// are those of the class that it stands in (MLS §7.3).
+    /// The sizes that redeclarations in the declaration of a record give its components: their
+    /// names are those of the class that contains it (MLS §7.3).
     fn field_dims(
         &mut self,
         modifier: &Modifier,
@@ -545,7 +545,7 @@ impl Instantiation<'_> {
             let name = Spanned { node: Ident::new("'element'"), span };
             let index = ForIndex { name, range: Some(Expression::new(range, span)) };
             let (element, indices) = (Box::new(element), vec![index]);
-            Some(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
+            Some(Expression::new(ExpressionKind::ArrayIteration { element, indices }, span))
         })
     }
 
@@ -835,7 +835,7 @@ fn annotation(sections: &[Section]) -> Vec<Argument> {
     arguments.flatten().collect()
 }
 
-/// The annotation of an external clause; what names code may stand in that of the function, after a
+/// The annotation of an external clause; what names code may be in that of the function, after a
 /// semicolon (`external "C"; annotation(Include = …);`, as older libraries write it).
 fn annotation_of(external: &External, text: &Text) -> Option<Annotation> {
     let own = external.annotation.clone();

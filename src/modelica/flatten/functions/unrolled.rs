@@ -36,7 +36,7 @@ impl Instantiation<'_> {
     }
 }
 
-/// Whether a resolved statement is a loop over Strings, which are no numbers that a loop variable
+/// Whether a resolved statement is a loop over Strings, which are not numbers that a loop variable
 /// could hold.
 pub(super) fn runs_over_strings(statement: &Statement) -> bool {
     let StatementKind::For { indices, .. } = &statement.kind else { return false };

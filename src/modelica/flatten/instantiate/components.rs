@@ -188,7 +188,8 @@ impl Classes<'_> {
             let is_constant =
                 member.declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant);
             if is_constant && is_computed && member.declaration.modifier.binding.is_some() {
-                // A constant with a value is no input of the record's constructor (MLS §12.6.1).
+                // A constant with a value is not an input of the record's constructor (MLS
+                // §12.6.1).
                 continue;
             }
             let mut declaration = (*member.declaration).clone();

@@ -14,7 +14,7 @@ pub(super) struct BaseCache {
     known: FxHashMap<ClassId, Arc<[ClassId]>>,
     /// Classes whose bases a thread is looking up: one that needs its own bases for that has none.
     busy: FxHashSet<(ThreadId, ClassId)>,
-    /// Where a search for nested classes goes on: the first class on the way that has some, or
+    /// Where a search for nested classes continues: the first class on the way that has some, or
     /// several bases.
     forks: FxHashMap<ClassId, ClassId>,
     /// The first class among a class and its bases that answers a question.
@@ -78,7 +78,7 @@ impl Library {
         at
     }
 
-    /// Where a search goes on from a class that has no nested classes and one known base.
+    /// Where a search continues from a class that has no nested classes and one known base.
     fn passed(&self, class: ClassId) -> Option<ClassId> {
         if !self.class(class).children.is_empty() {
             return None;

@@ -57,7 +57,7 @@ impl Rules {
     /// The rules of a conversion script.
     ///
     /// # Errors
-    /// A statement is no rule.
+    /// A statement is not a rule.
     pub(super) fn of_script(script: &Script) -> Result<Rules, Diagnostic> {
         let mut rules = Rules::default();
         for statement in &script.statements {
@@ -74,10 +74,10 @@ impl Rules {
         Ok(rules)
     }
 
-    /// The rules of `change = {convertClass("A", "B"), ...}`, which stand in an annotation.
+    /// The rules of `change = {convertClass("A", "B"), ...}`, which are in an annotation.
     ///
     /// # Errors
-    /// A value is no rule.
+    /// A value is not a rule.
     pub(super) fn of_change(change: &Expression) -> Result<Rules, Diagnostic> {
         let mut rules = Rules::default();
         let written = match &change.kind {

@@ -143,7 +143,7 @@ fn needs_no_conversion(annotation: Option<&Annotation>, version: &str) -> bool {
     bound.into_iter().any(|known| &*known == version)
 }
 
-/// What stands in each `from` of a library that is about a version.
+/// The content of each `from` of a library that concerns a version.
 fn steps_from<'a>(annotation: Option<&'a Annotation>, version: &str) -> Vec<&'a [Argument]> {
     let from = inside(annotation, "conversion").filter(|one| is_named(one, "from"));
     let arguments = from.filter_map(|one| one.modification.as_ref()).map(|m| &*m.arguments);

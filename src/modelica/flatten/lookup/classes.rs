@@ -62,8 +62,8 @@ impl Classes<'_> {
         self.scope(id).text.as_ref().expect("only the top scope has no text")
     }
 
-    /// The full name of a class that stands in a scope; a modifier of a simulated model stands in
-    /// that of the whole library.
+    /// The full name of a class that is in a scope; a modifier of a simulated model is in that of
+    /// the whole library.
     pub(crate) fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
         let text = self.scope(scope).text.as_ref();
         text.map_or_else(|| Name::from(name), |text| text.name.child(name))
@@ -99,7 +99,7 @@ impl Classes<'_> {
             modifier,
             defaults,
             derived: None,
-            deselected: Vec::new(),
+            excluded: Vec::new(),
             bases: Stage::Pending,
             elements: Stage::Pending,
         });
@@ -115,7 +115,7 @@ impl Classes<'_> {
             modifier: Modifier::default(),
             defaults: Modifier::default(),
             derived: None,
-            deselected: Vec::new(),
+            excluded: Vec::new(),
             bases: Stage::Done(Rc::new([])),
             elements: Stage::Done(Rc::default()),
         }

@@ -13,7 +13,7 @@ use crate::flatten::lookup::elements::MAX_BASES;
 use crate::flatten::lookup::scope::Text;
 use crate::source::Span;
 use crate::syntax::ast::{
-    self, ClassSpecifier, Comment, ComponentClause, ComponentDeclaration, Deselection, Element,
+    self, ClassSpecifier, Comment, ComponentClause, ComponentDeclaration, Element, Exclusion,
     Restriction, Subscript,
 };
 use crate::syntax::print;
@@ -37,7 +37,7 @@ impl Classes<'_> {
                     if let Some(base) = bases.next() {
                         self.check_deselected(&text, *base, extends)?;
                         self.check_base_kind(&text, *base, extends.span)?;
-                        self.inherit(id, *base, protected, &extends.deselected, &mut found)?;
+                        self.inherit(id, *base, protected, &extends.excluded, &mut found)?;
                     }
                 }
                 Element::Component(clause) if clause.prefixes.redeclare => {
@@ -61,18 +61,18 @@ impl Classes<'_> {
         id: ScopeId,
         base: ScopeId,
         protected: bool,
-        deselected: &[Deselection],
+        excluded: &[Exclusion],
         found: &mut Elements,
     ) -> Result<(), Diagnostic> {
         let inherited = self.elements(base)?;
-        if found.is_empty() && !protected && deselected.is_empty() {
+        if found.is_empty() && !protected && excluded.is_empty() {
             *found = Elements::sharing(&inherited);
             return self.check_bases(id, found);
         }
         for (name, declaration) in inherited.iter() {
             let is_out =
-                |one: &Deselection| matches!(one, Deselection::Component(out) if out.node == name);
-            if deselected.iter().any(is_out) {
+                |one: &Exclusion| matches!(one, Exclusion::Component(out) if out.node == name);
+            if excluded.iter().any(is_out) {
                 continue;
             }
             let declaration = if protected && !declaration.protected {

@@ -149,7 +149,7 @@ impl Classes<'_> {
         let base = self.lookup_type(id, &extends.base)?;
         let own = Modifier::of_arguments(&extends.modification, id)?;
         let scope = self.base(id, base, own, outer, &extends.base)?;
-        self.scopes[scope.0 as usize].deselected = extends.deselected.clone();
+        self.scopes[scope.0 as usize].excluded = extends.excluded.clone();
         Ok(scope)
     }
 

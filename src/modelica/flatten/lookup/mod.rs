@@ -3,11 +3,11 @@
 
 pub mod classes;
 pub mod declarations;
-pub mod deselection;
 pub mod elements;
 pub(crate) mod inheritance;
 pub mod modification;
 pub mod names;
 pub mod scope;
+pub mod selective_extension;
 pub(crate) mod type_expansion;
 pub mod types;

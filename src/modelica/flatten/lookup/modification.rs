@@ -30,7 +30,7 @@ pub struct Modifier {
     pub span: Option<Span>,
     /// Whether a `final` forbids outer modifiers.
     pub is_final: bool,
-    /// What stands in the place of the element.
+    /// What replaces the element.
     pub redeclaration: Option<Redeclaration>,
 }
 
@@ -96,7 +96,7 @@ impl Modifier {
         Ok(modifier)
     }
 
-    /// The modifier that stands in parentheses.
+    /// The modifier in parentheses.
     pub fn of_arguments(arguments: &[Argument], context: ScopeId) -> Result<Modifier, Diagnostic> {
         Modifier::of_each(arguments, 0, context)
     }
@@ -384,7 +384,7 @@ impl Modifier {
 
 /// Whether an expression is an array by its form.
 fn constructs_array(value: &Expression) -> bool {
-    matches!(value.kind, ExpressionKind::Array(_) | ExpressionKind::Comprehension { .. })
+    matches!(value.kind, ExpressionKind::Array(_) | ExpressionKind::ArrayIteration { .. })
 }
 
 impl Redeclaration {

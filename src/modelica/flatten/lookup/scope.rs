@@ -12,7 +12,7 @@ use crate::flatten::lookup::types::Type;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, Deselection, Element, Restriction, Section, Visibility,
+    ClassDefinition, ClassSpecifier, Element, Exclusion, Restriction, Section, Visibility,
 };
 use std::rc::Rc;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub struct Text {
     /// Full name, for messages and as the name of functions and records.
     pub name: Name,
     pub definition: Arc<ClassDefinition>,
-    /// The class of the library; `None` for one that stands in a modification.
+    /// The class of the library; `None` for one in a modification.
     pub id: Option<ClassId>,
     /// For `extends M(…)` (MLS §7.3.1): the class that it extends and replaces.
     pub extended: Option<Rc<Nested>>,
@@ -89,7 +89,7 @@ pub struct Scope {
     /// The class that extends this one here.
     pub derived: Option<ScopeId>,
     /// What the extends clause of that class leaves out of this one.
-    pub deselected: Vec<Deselection>,
+    pub excluded: Vec<Exclusion>,
     pub bases: Stage<Rc<[ScopeId]>>,
     pub elements: Stage<Rc<Elements>>,
 }

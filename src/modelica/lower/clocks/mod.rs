@@ -43,7 +43,7 @@ pub(super) use recognition::is_clock;
 #[derive(Debug, Default)]
 pub(super) struct Clocks {
     occurrences: Vec<Occurrence>,
-    /// Equations of variables made for arguments: they stand in no when-clause and no branch.
+    /// Equations of variables made for arguments: they are in no when-clause and no branch.
     equations: Vec<Equation>,
     /// Equations in clocked when-clauses, with their clocks.
     on_clock: Vec<(VarId, Equation)>,

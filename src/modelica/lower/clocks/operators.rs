@@ -145,7 +145,7 @@ impl Builder<'_> {
     ) -> Result<i64, Diagnostic> {
         let Some(value) = call.at(at, name) else { return Ok(default) };
         let value = self.only_scalar(entry, value, span)?;
-        match self.settled(value)? {
+        match self.evaluate_structural(value)? {
             Some(number) if number >= 0.0 && number.fract() == 0.0 && number <= 9e18 => {
                 Ok(number as i64)
             }
@@ -311,7 +311,7 @@ impl Builder<'_> {
         span: Span,
     ) -> Result<Base, Diagnostic> {
         let resolution = match resolution {
-            Some(resolution) => self.settled(resolution)?,
+            Some(resolution) => self.evaluate_structural(resolution)?,
             None => Some(1.0),
         };
         let Some(resolution) = resolution.filter(|r| *r >= 1.0 && r.fract() == 0.0) else {
@@ -322,7 +322,7 @@ impl Builder<'_> {
             )
             .at(span));
         };
-        if let Some(known) = self.settled(counter)? {
+        if let Some(known) = self.evaluate_structural(counter)? {
             return match known {
                 0.0 => Ok(Base::Inferred),
                 known if known > 0.0 && known.fract() == 0.0 => {
@@ -362,7 +362,7 @@ impl Builder<'_> {
     pub(super) fn clock_of(&mut self, e: Expr, span: Span) -> Result<VarId, Diagnostic> {
         match self.dae.pool.node(e).clone() {
             Node::Variable(v) if self.dae.variable(v).kind == VariableKind::Clock => Ok(v),
-            Node::If(condition, a, b) => match self.settled(condition)? {
+            Node::If(condition, a, b) => match self.evaluate_structural(condition)? {
                 Some(0.0) => self.clock_of(b, span),
                 Some(_) => self.clock_of(a, span),
                 None => {

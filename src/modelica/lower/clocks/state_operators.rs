@@ -173,7 +173,7 @@ impl Builder<'_> {
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         let value = lowering.scalar(e)?;
-        self.settled(value)?.ok_or_else(|| {
+        self.evaluate_structural(value)?.ok_or_else(|| {
             fault!(
                 NOT_SUPPORTED,
                 "`{name}` of a transition of a state machine must be known at \

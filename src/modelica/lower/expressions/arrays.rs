@@ -124,7 +124,8 @@ impl<T: Target> Lowering<'_, T> {
         let mut positions = Vec::with_capacity(values.elements.len());
         for value in &values.elements {
             let known = self.target.as_constant(*value);
-            let known = known.or_else(|| if keeps { self.target.settle(*value) } else { None });
+            let known =
+                known.or_else(|| if keeps { self.target.structural_value(*value) } else { None });
             match known {
                 Some(known) if known >= 1.0 && known <= size as f64 && known.fract() == 0.0 => {
                     positions.push(known as usize - 1);

@@ -59,13 +59,13 @@ impl<T: Target> Lowering<'_, T> {
                     true => own.call_with_known_strings(user, arguments, span).ok(),
                     false => None,
                 });
-                let settled = made.or_else(|| {
+                let found = made.or_else(|| {
                     self.with_string_parameters(|own| {
                         own.call_with_known_strings(user, arguments, span)
                     })?
                     .ok()
                 });
-                settled.map_or(outputs, Ok)
+                found.map_or(outputs, Ok)
             }
             _ => outputs,
         }
@@ -116,7 +116,7 @@ impl<T: Target> Lowering<'_, T> {
                 if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
                     && !self.target.gives_up() =>
             {
-                self.settled_or_interpreted(user, (&values, arguments), (error, span))
+                self.evaluated_or_interpreted(user, (&values, arguments), (error, span))
             }
             outputs => outputs,
         }
@@ -124,7 +124,7 @@ impl<T: Target> Lowering<'_, T> {
 
     /// The outputs of a function that cannot be compiled: run now, as its arguments are known, or by the
     /// interpreter whenever it is called. What an impure function does, it does to the simulation.
-    fn settled_or_interpreted(
+    fn evaluated_or_interpreted(
         &mut self,
         user: &std::sync::Arc<Function>,
         (values, arguments): (&[Lowered<T::Scalar>], &Arguments),
@@ -135,7 +135,7 @@ impl<T: Target> Lowering<'_, T> {
         {
             return Ok(outputs);
         }
-        let why = match self.settled_call(user, values, span) {
+        let why = match self.evaluated_call(user, values, span) {
             Ok(outputs) => return Ok(outputs),
             Err(why) => why,
         };

@@ -60,8 +60,8 @@ impl<T: Target> Lowering<'_, T> {
                 Array::vector(values.into_iter().map(|v| self.target.constant(v)).collect())
             }
             ExpressionKind::Array(elements) => return self.constructor(elements, e.span),
-            ExpressionKind::Comprehension { element, indices } => {
-                return self.comprehension(element, indices, e.span);
+            ExpressionKind::ArrayIteration { element, indices } => {
+                return self.array_iteration(element, indices, e.span);
             }
             ExpressionKind::Matrix(rows) => self.matrix(rows, e.span)?,
             ExpressionKind::End => match self.ends.last() {
@@ -189,7 +189,7 @@ impl<T: Target> Lowering<'_, T> {
             };
         }
         if self.target.is_clock(otherwise)
-            && let Some(known) = self.target.settle(condition)
+            && let Some(known) = self.target.structural_value(condition)
         {
             return match known != 0.0 {
                 true => self.lower(value),
@@ -214,7 +214,7 @@ impl<T: Target> Lowering<'_, T> {
         };
         let Some(shape) = a.joined(&b) else {
             self.target.end_if(branch, &[]);
-            return match self.target.settle(condition) {
+            return match self.target.structural_value(condition) {
                 Some(holds) => Ok(if holds != 0.0 { first } else { second }),
                 None => Err(fault!(
                     NO_CONSTANT_VALUE,
@@ -255,7 +255,7 @@ impl<T: Target> Lowering<'_, T> {
             if a == b {
                 return Ok(first);
             }
-            if let Some(holds) = self.target.settle(condition) {
+            if let Some(holds) = self.target.structural_value(condition) {
                 return Ok(if holds != 0.0 { first } else { second });
             }
         }
@@ -285,7 +285,7 @@ impl<T: Target> Lowering<'_, T> {
         Ok((0..count.max(0.0) as usize).map(|i| start + i as f64 * step).collect())
     }
 
-    fn comprehension(
+    fn array_iteration(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -297,7 +297,7 @@ impl<T: Target> Lowering<'_, T> {
         let mut inner = Vec::new();
         for variable in self.loop_variables(last)? {
             self.loops.push(variable);
-            let element = self.comprehension(element, outer, span);
+            let element = self.array_iteration(element, outer, span);
             self.loops.pop();
             inner.push(element?);
         }
@@ -345,7 +345,7 @@ impl<T: Target> Lowering<'_, T> {
         element: &Expression,
         indices: &[ForIndex],
     ) -> Result<Array<T::Scalar>, Diagnostic> {
-        match self.comprehension(element, indices, element.span)? {
+        match self.array_iteration(element, indices, element.span)? {
             Lowered::Array(array) => Ok(array),
             _ => Err(fault!(ARRAY_MISMATCH, "a reduction over elements that are not numbers")
                 .at(element.span)),

@@ -103,7 +103,7 @@ pub(crate) trait Target {
     ) -> Result<Self::Scalar, Diagnostic>;
     /// The value of an expression on which sizes or Strings depend, which cannot change from here
     /// on; `None` if it is not known.
-    fn settle(&mut self, value: Self::Scalar) -> Option<f64> {
+    fn structural_value(&mut self, value: Self::Scalar) -> Option<f64> {
         let _ = value;
         None
     }
@@ -509,10 +509,11 @@ impl<'a, T: Target> Lowering<'a, T> {
         self.target.as_constant(scalar).ok_or_else(|| not_known(e.span))
     }
 
-    /// A number that sizes depend on: parameters in it are settled.
+    /// A number that sizes depend on: parameters in it are evaluated.
     pub(crate) fn shaping(&mut self, e: &Expression) -> Result<f64, Diagnostic> {
         let scalar = self.scalar(e)?;
-        let known = self.target.as_constant(scalar).or_else(|| self.target.settle(scalar));
+        let known =
+            self.target.as_constant(scalar).or_else(|| self.target.structural_value(scalar));
         known.ok_or_else(|| not_known(e.span))
     }
 

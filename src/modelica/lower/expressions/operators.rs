@@ -124,7 +124,7 @@ impl<T: Target> Lowering<'_, T> {
         let b = match self.branch(a, is_and, |own| own.array(right)) {
             Ok(b) => b,
             Err(error) => {
-                let known = self.target.settle(a);
+                let known = self.target.structural_value(a);
                 return if decides(known) { Ok(Lowered::scalar(a)) } else { Err(error) };
             }
         };

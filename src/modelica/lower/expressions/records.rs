@@ -1,5 +1,5 @@
-//! Arrays of records, as records of arrays: the sizes of the array stand before those of each
-//! component, so that `v.x` of an array of records `v` is the component `x` itself (MLS §10.6.1).
+//! Arrays of records, as records of arrays: the sizes of the array precede those of each component,
+//! so that `v.x` of an array of records `v` is the component `x` itself (MLS §10.6.1).
 
 use super::{Array, Lowered, Lowering, MAX_SCALARS, Target, size_fault};
 use crate::diag::Diagnostic;

@@ -135,7 +135,7 @@ impl<T: Target> Lowering<'_, T> {
                 Some(step) if self.type_of(step)? != ValueType::Integer => Some(ValueType::Real),
                 _ => both(self, start, stop),
             },
-            ExpressionKind::Comprehension { element, .. } => self.type_of(element),
+            ExpressionKind::ArrayIteration { element, .. } => self.type_of(element),
             ExpressionKind::Call { function, arguments } => {
                 self.type_of_call(function, &arguments.positional)
             }

@@ -74,11 +74,11 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// The outputs of a function that cannot be compiled, run now. Parameters among the arguments are
-    /// settled.
+    /// evaluated.
     ///
     /// # Errors
     /// An argument is not known, or the interpreter cannot run it either and says why.
-    pub(super) fn settled_call(
+    pub(super) fn evaluated_call(
         &mut self,
         function: &Arc<Function>,
         arguments: &[Lowered<T::Scalar>],
@@ -143,8 +143,8 @@ impl<T: Target> Lowering<'_, T> {
         let mut dims = Vec::new();
         let mut positions = vec![0];
         let mut choices = self.choices(&strings.dims, subscripts, span)?;
-        if self.target.evaluates_string_parameters().is_some_and(|settles| *settles) {
-            self.settle_choices(&mut choices, &strings.dims);
+        if self.target.evaluates_string_parameters().is_some_and(|evaluates| *evaluates) {
+            self.evaluate_choices(&mut choices, &strings.dims);
         }
         if choices.iter().any(|choice| matches!(choice, Choice::Computed(_)))
             && let Some(numbers) = self.string_numbers(&strings)
@@ -173,10 +173,10 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// Evaluates the parameters that positions depend on.
-    fn settle_choices(&mut self, choices: &mut [Choice<T::Scalar>], dims: &[usize]) {
+    fn evaluate_choices(&mut self, choices: &mut [Choice<T::Scalar>], dims: &[usize]) {
         for (choice, size) in choices.iter_mut().zip(dims) {
             let Choice::Computed(position) = choice else { continue };
-            match self.target.settle(*position) {
+            match self.target.structural_value(*position) {
                 Some(known) if known >= 1.0 && known <= *size as f64 => {
                     *choice = Choice::Known { positions: vec![known as usize - 1], keeps: false };
                 }
@@ -206,8 +206,9 @@ impl<T: Target> Lowering<'_, T> {
         };
         let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
         let value = self.lower(&e).ok()?;
-        let settle = self.target.evaluates_string_parameters().is_some_and(|settles| *settles);
-        self.known_value(&value, &expected, settle)
+        let evaluates =
+            self.target.evaluates_string_parameters().is_some_and(|evaluates| *evaluates);
+        self.known_value(&value, &expected, evaluates)
     }
 
     /// The value of an argument; of arrays of Strings too little is known.
@@ -215,14 +216,14 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         argument: &Lowered<T::Scalar>,
         input: &eval::FunctionComponent,
-        settle: bool,
+        evaluates: bool,
     ) -> Option<Value> {
         match argument {
             Lowered::Text(_) if !input.dims.is_empty() => None,
             Lowered::Record(fields) if !input.dims.is_empty() => {
-                self.known_records(fields, &input.value_type, settle)
+                self.known_records(fields, &input.value_type, evaluates)
             }
-            _ => self.known_value(argument, &input.value_type, settle),
+            _ => self.known_value(argument, &input.value_type, evaluates),
         }
     }
 
@@ -230,7 +231,7 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         argument: &Lowered<T::Scalar>,
         expected: &ValueType,
-        settle: bool,
+        evaluates: bool,
     ) -> Option<Value> {
         match argument {
             Lowered::Text(text) => {
@@ -241,7 +242,7 @@ impl<T: Target> Lowering<'_, T> {
                 let elements = Elements::String(strings.strings.to_vec());
                 is_known.then(|| Value::Array(ArrayValue { dims: strings.dims.clone(), elements }))
             }
-            Lowered::Record(fields) => self.known_record(fields, expected, settle),
+            Lowered::Record(fields) => self.known_record(fields, expected, evaluates),
             Lowered::Numbered(_) => None,
             Lowered::Array(array) if matches!(expected, ValueType::ExternalObject(_)) => {
                 self.known_object(array)
@@ -250,8 +251,8 @@ impl<T: Target> Lowering<'_, T> {
                 let mut numbers = Vec::with_capacity(array.elements.len());
                 for element in &array.elements {
                     let known = self.target.as_constant(*element);
-                    let known = match settle {
-                        true => known.or_else(|| self.target.settle(*element)),
+                    let known = match evaluates {
+                        true => known.or_else(|| self.target.structural_value(*element)),
                         false => known,
                     };
                     numbers.push(known?);
@@ -283,12 +284,12 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         fields: &[(Ident, Lowered<T::Scalar>)],
         expected: &ValueType,
-        settle: bool,
+        evaluates: bool,
     ) -> Option<Value> {
         let ValueType::Record(type_name, types) = expected else { return None };
         let mut known = IndexMap::with_capacity(fields.len());
         for (name, value) in fields {
-            let field = self.known_value(value, &types.get(name)?.value_type, settle)?;
+            let field = self.known_value(value, &types.get(name)?.value_type, evaluates)?;
             known.insert(*name, field);
         }
         Some(Value::Record(RecordValue { type_name: type_name.clone(), fields: known }))
@@ -299,9 +300,9 @@ impl<T: Target> Lowering<'_, T> {
         &mut self,
         fields: &[(Ident, Lowered<T::Scalar>)],
         expected: &ValueType,
-        settle: bool,
+        evaluates: bool,
     ) -> Option<Value> {
-        let Value::Record(of_arrays) = self.known_record(fields, expected, settle)? else {
+        let Value::Record(of_arrays) = self.known_record(fields, expected, evaluates)? else {
             return None;
         };
         let Value::Array(first) = of_arrays.fields.values().next()? else { return None };

@@ -51,7 +51,7 @@ impl<T: Target> Lowering<'_, T> {
             return made;
         }
         match self.with_string_parameters(|own| own.lower(e)) {
-            Some(settled) if !is_unknown(&settled) => settled,
+            Some(found) if !is_unknown(&found) => found,
             _ => made,
         }
     }

@@ -192,7 +192,7 @@ impl Body<'_, '_> {
                     )
                     .at(span));
                 }
-                // They stand in a row.
+                // They are contiguous.
                 let positions: Vec<u32> =
                     strings.strings.iter().map(|text| self.emitter.text(text.clone())).collect();
                 let first = positions.first().copied().unwrap_or(0);

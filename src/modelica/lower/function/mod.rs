@@ -108,7 +108,7 @@ fn inlined_or_compiled(
     builder.dae.warnings.truncate(warned);
     let mut result = compiled_call(builder, function, arguments.clone(), span);
     if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
-        && settle_whole_numbers(builder, function, &mut arguments)
+        && evaluate_whole_numbers(builder, function, &mut arguments)
     {
         result = compiled_call(builder, function, arguments.clone(), span);
     }
@@ -121,7 +121,7 @@ fn inlined_or_compiled(
         result = call_of_any_size(builder, function, arguments.clone(), span);
     }
     match result {
-        // What does not fit may stand in a branch that is never taken.
+        // What does not fit may be in a branch that is never taken.
         Err(_) if error.code == ARRAY_MISMATCH => Err(error),
         Err(_) if too_big => {
             builder.calls.inlined = MAX_STATEMENTS;
@@ -133,20 +133,20 @@ fn inlined_or_compiled(
 
 /// Gives Integer and Boolean arguments, which sizes may depend on, the values that parameters have
 /// when compiling; whether there are any.
-fn settle_whole_numbers(
+fn evaluate_whole_numbers(
     builder: &mut Builder<'_>,
     function: &Function,
     arguments: &mut [Lowered<Expr>],
 ) -> bool {
     let mut any = false;
     for (input, argument) in function.inputs.iter().zip(arguments) {
-        any |= settle_whole(builder, &input.value_type, argument);
+        any |= evaluate_whole(builder, &input.value_type, argument);
     }
     any
 }
 
-/// As [`settle_whole_numbers`], of one argument and the components of a record.
-fn settle_whole(
+/// As [`evaluate_whole_numbers`], of one argument and the components of a record.
+fn evaluate_whole(
     builder: &mut Builder<'_>,
     expected: &ValueType,
     value: &mut Lowered<Expr>,
@@ -155,7 +155,7 @@ fn settle_whole(
     if let (Lowered::Record(fields), ValueType::Record(_, types)) = (&mut *value, expected) {
         for (name, field) in fields {
             if let Some(component) = types.get(name) {
-                any |= settle_whole(builder, &component.value_type, field);
+                any |= evaluate_whole(builder, &component.value_type, field);
             }
         }
         return any;
@@ -168,7 +168,7 @@ fn settle_whole(
     if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
         return false;
     }
-    if let Ok(Some(known)) = builder.settled(*element) {
+    if let Ok(Some(known)) = builder.evaluate_structural(*element) {
         *value = Lowered::scalar(builder.dae.pool.constant(known));
         any = true;
     }
@@ -229,8 +229,8 @@ pub(super) fn compiled_call(
     call_of(builder, (function, instance), arguments, span)
 }
 
-/// Expressions that call a function which the interpreter carries out; `None` where it cannot, or where
-/// a call that writes does not stand in an event.
+/// Expressions that call a function which the interpreter carries out; `None` where it cannot, or
+/// where a call that writes is not in an event.
 pub(super) fn interpreted_call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
@@ -243,7 +243,7 @@ pub(super) fn interpreted_call(
     let mut arguments = arguments.to_vec();
     let mut found = interpreted_instance(builder, function, &arguments, span);
     if matches!(&found, Err(e) if e.code == NO_CONSTANT_VALUE)
-        && settle_whole_numbers(builder, function, &mut arguments)
+        && evaluate_whole_numbers(builder, function, &mut arguments)
     {
         found = interpreted_instance(builder, function, &arguments, span);
     }

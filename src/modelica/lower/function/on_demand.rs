@@ -130,7 +130,7 @@ impl OnDemand {
         }
         match self.instances.instance(&self.library, function, &known, Span::NONE) {
             Ok(instance) if instance.impure || instance.writes => State::Refused,
-            // A file may be written anew between two calls.
+            // A file may be rewritten between two calls.
             Ok(instance) if self.instances.reads_files(instance.code) => State::Refused,
             Ok(instance) => State::Compiled(instance),
             Err(e) if e.code == NO_CONSTANT_VALUE && !with_integers => State::NeedsIntegers,

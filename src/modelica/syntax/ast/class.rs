@@ -104,7 +104,7 @@ pub struct LongClass {
     /// The description string after the name.
     pub description: Option<Arc<str>>,
     /// Sections in the order written; the first is [`Section::Elements`] without a keyword, if
-    /// anything stands before the first keyword.
+    /// anything precedes the first keyword.
     pub sections: Sections,
     /// The name after `end`.
     pub end_name: Spanned<Ident>,
@@ -222,10 +222,11 @@ pub enum ImportKind {
 pub struct Extends {
     /// The base class.
     pub base: TypeSpecifier,
-    /// Its modification (no binding); `break` deselections are in [`Extends::deselected`].
+    /// Its modification (no binding); those excluded by `break` (selective model extension, MLS
+    /// §7.4) are in [`Extends::excluded`].
     pub modification: Vec<Argument>,
     /// `break name` and `break connect(a, b)` (MLS §7.4).
-    pub deselected: Vec<Deselection>,
+    pub excluded: Vec<Exclusion>,
     /// `annotation(…)`.
     pub annotation: Option<Annotation>,
     /// The whole clause.
@@ -234,7 +235,7 @@ pub struct Extends {
 
 /// Something that an extends clause leaves out.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Deselection {
+pub enum Exclusion {
     /// `break name`
     Component(Spanned<Ident>),
     /// `break connect(a, b)`
@@ -421,7 +422,7 @@ pub struct ComponentDeclaration {
 /// `(a = 1, b(c = 2)) = e`: arguments, a binding, or both.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modification {
-    /// What stands in the parentheses, in order.
+    /// The contents of the parentheses, in order.
     pub arguments: Vec<Argument>,
     /// What follows `=` or `:=`.
     pub binding: Option<Binding>,
@@ -469,7 +470,7 @@ pub struct ElementModification {
 pub struct ElementRedeclaration {
     /// `each`
     pub each: bool,
-    /// What is declared anew; its prefixes hold `redeclare`, `final` and `replaceable`.
+    /// What is redeclared; its prefixes contain `redeclare`, `final` and `replaceable`.
     pub element: RedeclaredElement,
     /// The whole argument.
     pub span: Span,

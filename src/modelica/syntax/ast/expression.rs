@@ -86,7 +86,7 @@ pub enum ExpressionKind {
     /// `{a, b}`
     Array(Vec<Expression>),
     /// `{e for i in r, j in s}`
-    Comprehension {
+    ArrayIteration {
         /// The element.
         element: Box<Expression>,
         /// Its iterators.
@@ -149,7 +149,7 @@ pub enum Subscript {
     Index(Expression),
 }
 
-/// What stands in the parentheses of a call.
+/// The contents of the parentheses of a call.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arguments {
     /// Positional arguments.

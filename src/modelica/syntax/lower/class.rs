@@ -9,11 +9,11 @@ use crate::name::{Ident, Name};
 use crate::source::Spanned;
 use crate::syntax::ast::{
     Argument, Binding, CausalityPrefix, ClassDefinition, ClassElement, ClassSpecifier,
-    ComponentClause, ComponentDeclaration, ConnectionPrefix, Constraint, DerivativeClass,
-    Deselection, Element, ElementModification, ElementPrefixes, ElementRedeclaration,
-    EnumerationClass, EnumerationLiteral, Extends, External, Import, ImportKind, LongClass,
-    Modification, Purity, RedeclaredElement, Restriction, Section, Sections, ShortClass,
-    StoredDefinition, Subscript, TypePrefixes, TypeSpecifier, VariabilityPrefix, Visibility,
+    ComponentClause, ComponentDeclaration, ConnectionPrefix, Constraint, DerivativeClass, Element,
+    ElementModification, ElementPrefixes, ElementRedeclaration, EnumerationClass,
+    EnumerationLiteral, Exclusion, Extends, External, Import, ImportKind, LongClass, Modification,
+    Purity, RedeclaredElement, Restriction, Section, Sections, ShortClass, StoredDefinition,
+    Subscript, TypePrefixes, TypeSpecifier, VariabilityPrefix, Visibility,
 };
 use crate::syntax::errors::SYNTAX_ERROR;
 use crate::syntax::parser::{Nodes, Rule};
@@ -303,11 +303,11 @@ pub(super) fn import(mut inside: Nodes<'_>) -> Lowered<Import> {
 
 fn extends(mut inside: Nodes<'_>) -> Lowered<Extends> {
     let base = type_specifier(&mut inside);
-    let (mut arguments, mut deselected) = (Vec::new(), Vec::new());
+    let (mut arguments, mut excluded) = (Vec::new(), Vec::new());
     if let Some(mut list) = inside.try_enter(Rule::class_or_inheritance_modification) {
         while list.peek().is_some() {
             match list.try_enter(Rule::inheritance_modification) {
-                Some(deselection) => deselected.push(self::deselection(deselection)?),
+                Some(exclusion) => excluded.push(self::exclusion(exclusion)?),
                 None => arguments.push(argument(&mut list)?),
             }
         }
@@ -315,19 +315,19 @@ fn extends(mut inside: Nodes<'_>) -> Lowered<Extends> {
     Ok(Extends {
         base,
         modification: arguments,
-        deselected,
+        excluded,
         annotation: annotation(&mut inside)?,
         span: inside.whole,
     })
 }
 
-fn deselection(mut inside: Nodes<'_>) -> Lowered<Deselection> {
+fn exclusion(mut inside: Nodes<'_>) -> Lowered<Exclusion> {
     inside.skip(Rule::kw_break);
     let Some(mut connect) = inside.try_enter(Rule::connect_equation) else {
-        return Ok(Deselection::Component(ident(&mut inside)));
+        return Ok(Exclusion::Component(ident(&mut inside)));
     };
     let left = expression::reference(&mut connect)?;
-    Ok(Deselection::Connection(left, expression::reference(&mut connect)?))
+    Ok(Exclusion::Connection(left, expression::reference(&mut connect)?))
 }
 
 /// The constraining clause that comes next, if one does.

@@ -101,7 +101,8 @@ fn binary(parts: &mut Nodes<'_>, least: u8) -> Lowered<Expression> {
         let right = binary(parts, precedence + 1)?;
         let span = left.span.to(right.span);
         left = Expression::operation(operator, left, right, span);
-        // Relations and powers do not associate: `a < b < c` and `a ^ b ^ c` are no Modelica.
+        // Relations and powers do not associate: `a < b < c` and `a ^ b ^ c` are not valid
+        // Modelica.
         ceiling = if matches!(precedence, RELATION | POWER) { precedence - 1 } else { precedence };
     }
     Ok(left)
@@ -308,7 +309,7 @@ fn array(mut inside: Nodes<'_>) -> Lowered<ExpressionKind> {
     }
     let Some(element) = elements.pop() else { panic!("the grammar promises an element") };
     let indices = for_indices(&mut inside)?;
-    Ok(ExpressionKind::Comprehension { element: Box::new(element), indices })
+    Ok(ExpressionKind::ArrayIteration { element: Box::new(element), indices })
 }
 
 fn matrix(mut inside: Nodes<'_>) -> Lowered<ExpressionKind> {

@@ -2,9 +2,9 @@
 
 use super::Printer;
 use crate::syntax::ast::{
-    ClassDefinition, ClassElement, ClassSpecifier, DerivativeClass, Deselection, Element,
-    EnumerationClass, Extends, External, Import, ImportKind, LongClass, Purity, Restriction,
-    Section, ShortClass, StoredDefinition, Visibility,
+    ClassDefinition, ClassElement, ClassSpecifier, DerivativeClass, Element, EnumerationClass,
+    Exclusion, Extends, External, Import, ImportKind, LongClass, Purity, Restriction, Section,
+    ShortClass, StoredDefinition, Visibility,
 };
 
 impl Printer {
@@ -217,13 +217,13 @@ impl Printer {
     fn extends(&mut self, extends: &Extends) {
         self.word("extends ");
         self.show(&extends.base.name);
-        if !extends.modification.is_empty() || !extends.deselected.is_empty() {
+        if !extends.modification.is_empty() || !extends.excluded.is_empty() {
             self.word("(");
             self.list(&extends.modification, Printer::argument);
-            if !extends.modification.is_empty() && !extends.deselected.is_empty() {
+            if !extends.modification.is_empty() && !extends.excluded.is_empty() {
                 self.word(", ");
             }
-            self.list(&extends.deselected, Printer::deselection);
+            self.list(&extends.excluded, Printer::exclusion);
             self.word(")");
         }
         if let Some(annotation) = &extends.annotation {
@@ -232,11 +232,11 @@ impl Printer {
         }
     }
 
-    fn deselection(&mut self, deselection: &Deselection) {
+    fn exclusion(&mut self, exclusion: &Exclusion) {
         self.word("break ");
-        match deselection {
-            Deselection::Component(name) => self.show(name.node),
-            Deselection::Connection(left, right) => {
+        match exclusion {
+            Exclusion::Component(name) => self.show(name.node),
+            Exclusion::Connection(left, right) => {
                 self.word("connect(");
                 self.reference(left);
                 self.word(", ");

@@ -112,7 +112,7 @@ impl Printer {
                 self.list(elements, Printer::expression);
                 self.word("}");
             }
-            ExpressionKind::Comprehension { element, indices } => {
+            ExpressionKind::ArrayIteration { element, indices } => {
                 self.word("{");
                 self.expression(element);
                 self.iterators(indices);

@@ -135,7 +135,7 @@ impl Printer {
         }
     }
 
-    /// `closed`: a semicolon stands before it, so that a sign cannot continue the line before.
+    /// `closed`: a semicolon precedes it, so that a sign cannot continue the line before.
     fn interactive(&mut self, kind: &InteractiveKind, closed: bool) {
         match kind {
             InteractiveKind::Statement(statement) => self.statement(statement),
@@ -161,7 +161,7 @@ impl Printer {
     }
 }
 
-/// Whether the text would read as a bare command, which is no call and no dotted name.
+/// Whether the text would read as a bare command, which is neither a call nor a dotted name.
 fn begins_with_command(text: &str) -> bool {
     ["clearlog", "clear", "exit", "cd"].iter().any(|command| {
         text.strip_prefix(command).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))

@@ -34,7 +34,7 @@ pub(super) enum Dialect {
     Modelica,
     /// Scripts: they do, outside classes.
     Script,
-    /// A piece of Modelica that is no statement: `if` is a conditional expression.
+    /// A piece of Modelica that is not a statement: `if` is a conditional expression.
     Fragment,
 }
 

@@ -21,7 +21,7 @@ pub(super) enum TokenKind {
     Command,
 }
 
-/// Where a bare command may stand.
+/// Where a bare command is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CommandPlace {
     /// The next token begins a statement.

@@ -1,6 +1,6 @@
 //! Walks over trees: [`Visit`] reads, [`Rewrite`] changes in place.
 //!
-//! A method's default goes on into the parts through the function `walk_…` or `rewrite_…` of the
+//! A method's default visits the parts through the function `walk_…` or `rewrite_…` of the
 //! same name; an implementation that overrides it calls that function to continue.
 
 mod read;

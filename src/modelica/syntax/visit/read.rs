@@ -70,7 +70,7 @@ pub fn walk_expression<V: Visit + ?Sized>(visitor: &mut V, expression: &Expressi
         ExpressionKind::Array(elements) => {
             elements.iter().for_each(|element| visitor.expression(element));
         }
-        ExpressionKind::Comprehension { element, indices } => {
+        ExpressionKind::ArrayIteration { element, indices } => {
             visitor.expression(element);
             walk_indices(visitor, indices);
         }

@@ -3,8 +3,8 @@
 use crate::source::Span;
 use crate::syntax::ast::{
     Annotation, Argument, Arguments, Binding, ClassDefinition, ClassElement, ClassSpecifier,
-    Comment, ComponentClause, ComponentDeclaration, ComponentReference, Constraint, Deselection,
-    Element, Equation, EquationKind, Expression, ExpressionKind, ForIndex, InteractiveKind,
+    Comment, ComponentClause, ComponentDeclaration, ComponentReference, Constraint, Element,
+    Equation, EquationKind, Exclusion, Expression, ExpressionKind, ForIndex, InteractiveKind,
     LongClass, Modification, NamedArgument, RedeclaredElement, Script, Section, Statement,
     StatementKind, StoredDefinition, Subscript,
 };
@@ -85,7 +85,7 @@ fn rewrite_operand<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mut Expre
             rewriter.expression(values);
         }
         ExpressionKind::Array(elements) => expressions(rewriter, elements),
-        ExpressionKind::Comprehension { element, indices } => {
+        ExpressionKind::ArrayIteration { element, indices } => {
             rewriter.expression(element);
             for_indices(rewriter, indices);
         }
@@ -369,7 +369,7 @@ fn element<R: Rewrite + ?Sized>(rewriter: &mut R, element: &mut Element) {
             rewriter.span(&mut extends.span);
             rewriter.span(&mut extends.base.span);
             rewrite_arguments(rewriter, &mut extends.modification);
-            extends.deselected.iter_mut().for_each(|one| deselection(rewriter, one));
+            extends.excluded.iter_mut().for_each(|one| exclusion(rewriter, one));
             extends.annotation.iter_mut().for_each(|one| annotation(rewriter, one));
         }
         Element::Class(class) => class_element(rewriter, class),
@@ -377,10 +377,10 @@ fn element<R: Rewrite + ?Sized>(rewriter: &mut R, element: &mut Element) {
     }
 }
 
-fn deselection<R: Rewrite + ?Sized>(rewriter: &mut R, deselection: &mut Deselection) {
-    match deselection {
-        Deselection::Component(name) => rewriter.span(&mut name.span),
-        Deselection::Connection(left, right) => {
+fn exclusion<R: Rewrite + ?Sized>(rewriter: &mut R, exclusion: &mut Exclusion) {
+    match exclusion {
+        Exclusion::Component(name) => rewriter.span(&mut name.span),
+        Exclusion::Connection(left, right) => {
             rewriter.reference(left);
             rewriter.reference(right);
         }

@@ -34,7 +34,7 @@ pub trait Crossover: Send + Sync {
     ///
     /// # Errors
     ///
-    /// A user's function that failed or returned what are no genes.
+    /// A user's function that failed or did not return genes.
     fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault>;
 
     /// The crossover of one run, for one that draws something once a run; `None` where each pair

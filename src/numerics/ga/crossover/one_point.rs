@@ -1,5 +1,4 @@
-//! One-point crossover: the genes after a point are exchanged. The point is drawn anew for every
-//! pair.
+//! One-point crossover: the genes after a point are exchanged. A new point is drawn for every pair.
 //!
 //! Reference: [Holland 1975](gapilib_base::bibliography#holland-1975).
 

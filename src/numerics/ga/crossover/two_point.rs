@@ -1,4 +1,4 @@
-//! Two-point crossover: the genes between two different points of the ring of genes change places,
+//! Two-point crossover: the genes between two different points of the ring of genes are exchanged,
 //! so that the last gene is a neighbour of the first.
 //!
 //! Reference: [De Jong 1975](gapilib_base::bibliography#de-jong-1975).

@@ -44,7 +44,7 @@ pub trait Mutation: Send + Sync {
     ///
     /// # Errors
     ///
-    /// A user's function that failed or returned what are no genes.
+    /// A user's function that failed or did not return genes.
     fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault>;
 }
 

@@ -24,8 +24,8 @@ const UNTESTED: usize = 8;
 /// A minimum that leaves more than this part of the squares of the measured values fits badly.
 const BAD: f64 = 0.1;
 /// Descents of which the best minimum must be the end at least, and the expected part of the search
-/// space that leads to minima not yet seen, above which a search goes on: one minimum needs 5 descents,
-/// two need 5, three 7, four 9, ten 20.
+/// space that leads to minima not yet seen, above which a search continues: one minimum needs 5
+/// descents, two need 5, three 7, four 9, ten 20.
 pub const FEWEST: usize = 5;
 const UNSEEN: f64 = 0.3;
 /// Where the best of so many descents has ended at no minimum, and the last ones have not improved on
@@ -34,7 +34,8 @@ const UNSEEN: f64 = 0.3;
 const STUCK: usize = 30;
 const LAST: usize = 15;
 const IMPROVED: f64 = 1e-3;
-/// The genetic search goes on where one in so many descents or fewer have reached the best minimum.
+/// The genetic search continues where one in this many descents or fewer have reached the best
+/// minimum.
 const SELDOM: usize = 5;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
 const STEPS: usize = 40;
@@ -74,9 +75,9 @@ impl Pool {
         }
     }
 
-    /// Begins a round: descends from these starts, goes on with the best of the descents whose steps
-    /// were used up, and makes the best minimum finer. The first `independent` starts owe nothing
-    /// to earlier descents.
+    /// Begins a round: descends from these starts, continues with the best of the descents whose
+    /// steps were used up, and refines the best minimum. The first `independent` starts owe
+    /// nothing to earlier descents.
     pub fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
@@ -95,7 +96,7 @@ impl Pool {
         self.shares = vec![0; self.active.len()];
     }
 
-    /// Goes on with the best descent where it can come nearer to its minimum.
+    /// Continues with the best descent where it can come nearer to its minimum.
     fn refine(&mut self) {
         if let Some(best) = self.best().filter(|best| self.descents[*best].can_be_refined()) {
             self.descents[best].grant(FINE_STEPS, FINE);
@@ -103,7 +104,7 @@ impl Pool {
         }
     }
 
-    /// Goes on with the best minimum alone; whether there is anything to do.
+    /// Continues with the best minimum alone; whether there is anything to do.
     pub fn finish(&mut self) -> bool {
         self.active.clear();
         self.refine();
@@ -258,7 +259,7 @@ impl Pool {
     }
 
     fn is_reached_often(&self) -> bool {
-        // Descents from beside others are no evidence.
+        // Descents that start beside others are not evidence.
         let all = self.reports().into_iter().zip(&self.independent);
         let reports: Vec<DescentReport> =
             all.filter(|(_, independent)| **independent).map(|(report, _)| report).collect();

@@ -129,7 +129,7 @@ mod tests {
         let found = exchanges.next(&best, is_same).unwrap();
         assert!((scales[0].value(found[0]) - 1.0).abs() < 1e-12, "{found:?}");
         assert!((scales[1].value(found[1]) - 10.0).abs() < 1e-12, "{found:?}");
-        // 1 lies below the range of the last, and metres are no seconds.
+        // 1 lies below the range of the last, and metres are not seconds.
         assert_eq!(exchanges.next(&best, is_same), None);
         assert!(exchanges.next(&[0.4, 0.5, 0.5, 0.5], is_same).is_some(), "another place");
     }

@@ -1,8 +1,8 @@
 //! Levenberg-Marquardt as a trust-region method with bounds: steps of Gauss and Newton within a
 //! region that grows and shrinks by how well the linear model predicts, Moré's scaling, genes held at
 //! a bound while the gradient points outwards, and geodesic acceleration where the residuals are
-//! strongly curved. A descent goes on until it ends by itself or its steps are used up; then it can
-//! be continued.
+//! strongly curved. A descent continues until it ends by itself or its steps are used up; then it
+//! can be continued.
 //!
 //! References: [Moré 1978](gapilib_base::bibliography#more-1978);
 //! [Transtrum & Sethna 2012](gapilib_base::bibliography#transtrum-sethna-2012) (acceleration);
@@ -163,8 +163,8 @@ impl Descent {
         self.end.is_some()
     }
 
-    /// Allows further steps, up to a relative offset; one that has ended at a minimum goes on where
-    /// it has not been as near.
+    /// Allows further steps, up to a relative offset; one that has ended at a minimum continues if
+    /// it was not that near to it.
     pub fn grant(&mut self, steps: usize, goal: f64) {
         self.left = steps;
         if goal < self.goal && self.end == Some(DescentEnd::Minimum) {

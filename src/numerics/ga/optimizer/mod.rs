@@ -2,7 +2,7 @@
 //! values. It keeps no clock, no file and no thread, so that the same seed and the same answers
 //! give the same questions: a run is replayed from its recorded answers.
 //!
-//! Genes lie in the unit cube; what they stand for (a range, its logarithm) is the asker's
+//! Genes lie in the unit cube; what they stand for (a range, its logarithm) is the caller's
 //! business. The method of the paper alone works in the ranges of the genes.
 
 mod breeding;
@@ -51,7 +51,7 @@ pub trait Optimizer: Send {
     }
     /// What it is doing, in one word.
     fn phase(&self) -> &'static str;
-    /// Changes a setting while the search goes on.
+    /// Changes a setting during the search.
     ///
     /// # Errors
     ///
@@ -59,7 +59,8 @@ pub trait Optimizer: Send {
     fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
         Err(fault!(BAD_OPTION, "`{setting}` cannot be changed to {value} during the run"))
     }
-    /// Why the search cannot go on: an operator of the user has failed. Nothing is asked any more.
+    /// Why the search cannot continue: an operator of the user has failed. Nothing is asked any
+    /// more.
     fn fault(&self) -> Option<&Fault> {
         None
     }

@@ -14,7 +14,7 @@ use crate::elementary;
 use crate::ga::sampling::latin_hypercube;
 use crate::ga::{Genomes, Mrg32k3a};
 
-/// Questions of the search between two rounds of descents; before the first there is none.
+/// Requests of the search between two rounds of descents; before the first there is none.
 const QUESTIONS: usize = 10;
 /// Points of a Latin hypercube: this many for each gene, within limits; first few, and many where the
 /// search has begun.
@@ -27,7 +27,7 @@ const SAMPLE: [usize; 2] = [30, 150];
 const FROM_SEARCH: usize = 1;
 const FROM_SAMPLE: usize = 2;
 const FROM_BEST: usize = 1;
-/// Genes of the best minimum that are drawn anew at most. Minima often differ in few: a frequency,
+/// Genes of the best minimum that are redrawn at most. Minima often differ in few: a frequency,
 /// the place of a peak (ENSO has 9 genes, and two periods decide).
 const REDRAWN: usize = 3;
 /// One of so many points of a hypercube has small values where a linear range begins at 0, down to this
@@ -146,8 +146,8 @@ impl Polished {
         self.exchanges.next(&best, |a, b| !is_far(a, b))
     }
 
-    /// The points of a sample: a Latin hypercube, and where the search has begun as many with some genes
-    /// of the best minimum drawn anew.
+    /// The points of a sample: a Latin hypercube, and where the search has begun as many with some
+    /// genes of the best minimum redrawn.
     fn sample(&mut self, batch: &mut Genomes) {
         let n = batch.n_genes();
         let is_wide = self.has_searched || self.search.is_none();

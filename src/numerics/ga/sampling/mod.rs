@@ -21,7 +21,7 @@ pub trait Sampling: Send + Sync {
     ///
     /// # Errors
     ///
-    /// A user's function that failed or returned what are no genes.
+    /// A user's function that failed or did not return genes.
     fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Result<Genomes, Fault>;
 }
 

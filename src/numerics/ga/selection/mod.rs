@@ -59,7 +59,7 @@ fn proportionate(fitness: &[f64]) -> Vec<f64> {
     let succeeded = || fitness.iter().copied().filter(|&fitness| !has_failed(fitness));
     let worst = succeeded().fold(f64::NEG_INFINITY, f64::max);
     let best = succeeded().fold(f64::INFINITY, f64::min);
-    // Also where the difference overflows: then the ratio would be no number.
+    // Also where the difference overflows: then the ratio would not be a number.
     let width = worst - best;
     if !(width > 0.0 && width.is_finite()) {
         let any = best.is_finite();

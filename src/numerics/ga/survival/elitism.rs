@@ -1,7 +1,7 @@
 //! Elitism: the best individuals pass on unaltered.
 //!
-//! In the paper's generation the elites stand before the offspring ([`elites_first`]). As a way of
-//! survival, the elites of the old generation and the offspring stand in order of their fitness; an
+//! In the paper's generation the elites precede the offspring ([`elites_first`]). As a way of
+//! survival, the elites of the old generation and the offspring are ordered by their fitness; an
 //! elite that a child has met bit by bit counts once. Without limit to the elites (as many as the
 //! population, or more) all parents compete with as many offspring.
 //!

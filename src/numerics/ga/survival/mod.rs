@@ -67,7 +67,7 @@ pub trait Survival: Send + Sync {
     ///
     /// # Errors
     ///
-    /// A user's function that failed or returned what is no number.
+    /// A user's function that failed or did not return numbers.
     fn survivors(&self, brood: &Brood<'_>, sizes: Sizes) -> Result<Vec<Survivor>, Fault>;
 
     /// Whether the number of elites counts.

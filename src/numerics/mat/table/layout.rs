@@ -96,7 +96,7 @@ fn has_value(record: &Record<'_>) -> bool {
     record.cells.iter().any(|cell| is_value(cell))
 }
 
-/// Finds out which rows are what; `text` is where the names may stand in a comment.
+/// Finds out which rows are what; `text` is the comment that may contain the names.
 pub fn layout<'a>(
     mut records: Vec<Record<'a>>,
     source: Option<(&'a str, Separator)>,
@@ -185,7 +185,7 @@ fn head_above(records: &[Record<'_>], block: &Range<usize>) -> Option<usize> {
     let above = || (0..block.start).rev().filter(|&at| has_no_number(&records[at].cells));
     let nearest = above().find(|&at| names_all(&records[at])).or_else(|| above().next())?;
     let nearest = fuller_head(records, nearest, block.start).unwrap_or(nearest);
-    // The same head stands before an earlier part where a file was continued.
+    // The same header precedes an earlier part where a file was continued.
     let nearest =
         records.iter().position(|record| record.cells == records[nearest].cells).unwrap_or(nearest);
     let Some(before) = nearest.checked_sub(1) else { return Some(nearest) };
@@ -327,7 +327,7 @@ fn checked<'a>(
     Ok(kept)
 }
 
-/// The name of a column of the head, without a comma that stands before blanks.
+/// The name of a column of the head, without a comma that precedes blanks.
 pub fn name(cell: &str) -> &str {
     without_brackets(cell.trim().trim_end_matches([',', ';']).trim())
 }

@@ -134,7 +134,7 @@ fn trim(text: &str) -> &str {
     text.trim_start_matches(' ')
 }
 
-/// What stands before the next separator and what after it.
+/// The text before the next separator and the text after it.
 fn next(text: &str, separator: Separator) -> Option<(&str, &str)> {
     match separator {
         Separator::Mark(mark) => text.split_once(mark),

@@ -5,8 +5,8 @@ use crate::units;
 /// What stands for a unit and is none that converts.
 const OTHER: [&str; 9] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH", "ppm"];
 
-/// The name and the unit of a column's head. The unit is one that is known; what else stands in
-/// brackets belongs to the head, but the name alone means the column, too.
+/// The name and the unit of a column's head. The unit is one that is known; any other text in
+/// brackets belongs to the header, but the name alone denotes the column, too.
 pub fn split(head: &str) -> (Option<&str>, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         let Some(inner) = head.strip_suffix(close) else { continue };

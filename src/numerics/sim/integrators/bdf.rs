@@ -444,8 +444,8 @@ fn binomials(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1]
 }
 
 impl Bdf {
-    /// Begins anew from where it is, with order 1 and the step at hand: what came before does not
-    /// tell what comes.
+    /// Restarts at the current point, with order 1 and the current step: the history does not
+    /// predict what follows.
     fn forget(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
         problem.rhs(self.t, &self.differences[0][..self.n], &mut self.rhs[..self.n])?;
         self.order = 1;

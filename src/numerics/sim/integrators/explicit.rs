@@ -35,7 +35,7 @@ pub(crate) struct Embedded {
     pub(super) dense: [f64; 7],
 }
 
-/// A step is at most so many times longer than the one before.
+/// A step is at most this many times longer than the one before.
 const MOST_FACTOR: f64 = 5.0;
 
 /// An explicit method with its workspace.

@@ -15,7 +15,7 @@
 
 use nalgebra::DMatrix;
 
-/// The series is used where the norm of A h is no larger: then this many terms leave less than
+/// The series is used where the norm of A h is not larger: then this many terms leave less than
 /// rounding.
 const LARGEST_NORM: f64 = 0.5;
 const TERMS: i32 = 15;

@@ -132,7 +132,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Asks before every attempt of a step whether to go on.
+    /// Asks before every attempt of a step whether to continue.
     fn may_continue(&self) -> Result<(), SimErrorKind> {
         if self.statistics.attempts() >= self.budget.allowed {
             return Err(SimErrorKind::StepBudget);

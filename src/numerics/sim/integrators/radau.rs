@@ -51,7 +51,7 @@ const NEWTON_TOLERANCE: f64 = 0.01;
 
 /// Order of the embedded method, which the error is measured against.
 const ERROR_ORDER: i32 = 3;
-/// A step is at most so many times longer than the one before; the choice of Hairer & Wanner.
+/// A step is at most this many times longer than the one before; the choice of Hairer & Wanner.
 const MOST_FACTOR: f64 = 8.0;
 /// Steps that are longer by such a factor are not worth new factors of the matrices; the choice of
 /// Hairer & Wanner.

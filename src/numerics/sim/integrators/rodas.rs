@@ -79,7 +79,7 @@ const ERROR_PART: f64 = 0.5;
 
 /// Order of the embedded method, which the error is measured against.
 const ERROR_ORDER: i32 = 3;
-/// A step is at most so many times longer than the one before; the choice of Hairer & Wanner.
+/// A step is at most this many times longer than the one before; the choice of Hairer & Wanner.
 const MOST_FACTOR: f64 = 6.0;
 
 /// The method with its workspace.

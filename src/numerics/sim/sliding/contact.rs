@@ -7,7 +7,7 @@
 //! |z| beyond its limit             the surface or the states were displaced: it is over
 //! dw/dt > 0                        nothing presses any more: it is over
 //! a flight with w would be seen    the states were thrown away from the surface, or at it: it is over
-//! else                             it goes on; the states are moved along d until w = 0
+//! else                             it continues; the states are moved along d until w = 0
 //! ```
 
 use super::Sliding;

@@ -47,7 +47,7 @@ impl Sliding<'_> {
         }
     }
 
-    /// Adds w_c ∂F_c/∂y of a column, which stands in `inner` of the system within.
+    /// Adds w_c ∂F_c/∂y of a column, which is `inner` in the system within.
     fn add_derivatives(
         &self,
         slide: &Slide,

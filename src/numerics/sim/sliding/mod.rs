@@ -88,7 +88,7 @@ impl<'a> Sliding<'a> {
         self.slide.as_ref().map_or(0, Slide::k)
     }
 
-    /// Where the shares stand in y.
+    /// Position of the shares in y.
     pub(super) fn place_of_shares(&self) -> usize {
         let inner = &self.inner;
         inner.n_differential() + inner.n_algebraic() - inner.n_auxiliary()

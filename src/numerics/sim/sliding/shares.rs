@@ -15,7 +15,7 @@ use crate::sim::DenseLu;
 
 /// Iterations for the shares; where one surface is concerned or the effects add up, one is enough.
 const MAX_ITERATIONS: usize = 50;
-/// Changes of the shares that end the iteration, and those that are no solution.
+/// Changes of the shares that end the iteration, and those that are not a solution.
 const CONVERGED: f64 = 1e-12;
 const FAR: f64 = 1e6;
 /// Iterations for the eigenvalues of a matrix of at most five rows, some of each are needed.

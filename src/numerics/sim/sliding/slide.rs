@@ -108,7 +108,7 @@ pub(crate) fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
     shares.iter().enumerate().map(factor).product()
 }
 
-/// Where a component of y stands in the y within.
+/// Position of a component of y in the y within.
 pub(crate) fn inner_place(place: usize, at: usize, k: usize) -> Option<usize> {
     match place {
         place if place < at => Some(place),

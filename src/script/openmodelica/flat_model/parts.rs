@@ -64,8 +64,8 @@ impl Apart<'_> {
             }
             ExpressionKind::If { branches, otherwise } => self.chosen(branches, otherwise, e),
             ExpressionKind::Call { function, arguments } => self.call(function, arguments, e),
-            ExpressionKind::Comprehension { element, indices } => {
-                self.comprehension(element, indices)
+            ExpressionKind::ArrayIteration { element, indices } => {
+                self.array_iteration(element, indices)
             }
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -167,12 +167,12 @@ impl Apart<'_> {
         parts.dims.is_empty().then(|| parts.scalars.pop()).flatten()
     }
 
-    fn comprehension(&self, element: &Expression, indices: &[ForIndex]) -> Option<Parts> {
+    fn array_iteration(&self, element: &Expression, indices: &[ForIndex]) -> Option<Parts> {
         let Some((outer, inner)) = indices.split_last() else { return self.parts(element) };
         let values = self.parts(outer.range.as_ref()?)?;
         let rows = values.scalars.iter().map(|value| {
             let element = with_value(element.clone(), outer.name.node, value);
-            self.comprehension(&element, inner)
+            self.array_iteration(&element, inner)
         });
         Parts::stacked(rows.collect::<Option<_>>()?)
     }

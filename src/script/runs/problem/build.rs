@@ -208,7 +208,7 @@ fn experiments(
     Ok(all)
 }
 
-/// The title as it may stand in files and on terminals.
+/// The title as it is allowed in files and on terminals.
 fn title(file: &ProblemFile) -> String {
     match &file.title {
         Some(title) => visible_line(title),

@@ -1,4 +1,4 @@
-//! Settings that are changed while a run goes on: a file `name = number` in each line, looked at
+//! Settings that are changed during a run: a file `name = number` in each line, looked at
 //! again whenever it changes.
 //!
 //! Names are those of the method (`mutation`, `elites`, …), `generations`, `evaluations` and

@@ -198,7 +198,7 @@ impl EnclosingClass {
         let extends = Element::Extends(Extends {
             base: TypeSpecifier { name: base.class.clone(), span: base.span },
             modification,
-            deselected: Vec::new(),
+            excluded: Vec::new(),
             annotation: None,
             span: place,
         });

@@ -41,7 +41,7 @@ pub(super) struct ProblemFile {
     /// Inequalities between parameters.
     #[serde(default)]
     pub constraints: Vec<String>,
-    /// Fits to data drawn anew.
+    /// Fits to resampled data.
     pub bootstrap: Option<BootstrapEntry>,
     /// Markov chains.
     pub posterior: Option<PosteriorEntry>,

@@ -1,4 +1,4 @@
-//! What the user sees of a run while it goes on, and what he may change then.
+//! What users see of a run in progress, and what they may change then.
 
 use crate::Session;
 use crate::identify::problem::Run;

@@ -81,7 +81,7 @@ pub struct RunOptions {
     pub resume: bool,
     /// Discard the checkpoint of an earlier run.
     pub fresh: bool,
-    /// A file with settings that may be changed while the run goes on.
+    /// A file with settings that may be changed during the run.
     pub watch: Option<PathBuf>,
     /// Folder for the results within that of the world.
     pub folder: PathBuf,
@@ -89,7 +89,7 @@ pub struct RunOptions {
     pub profile: bool,
     /// The next measurement after the fit.
     pub design: bool,
-    /// Fits to data drawn anew after the fit.
+    /// Fits to resampled data after the fit.
     pub bootstrap: bool,
     /// Markov chains after the fit.
     pub posterior: bool,
@@ -549,7 +549,8 @@ fn timing(seconds: f64, ranks: Option<Arc<Ranks>>) -> String {
     text + "\n}\n"
 }
 
-/// Writes the files of a solution. What differs between equal runs, the time, has a file of its own.
+/// Writes the files of a solution. What differs between equal runs, the time, is in a separate
+/// file.
 pub(super) fn write(
     session: &mut Session,
     folder: &Path,

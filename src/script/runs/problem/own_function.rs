@@ -1,4 +1,4 @@
-//! Functions written in Modelica that a run calls while it goes on: numbers in, numbers out.
+//! Functions written in Modelica that a run calls: numbers in, numbers out.
 //!
 //! A function is compiled as part of a model whose parameters are its inputs, so that it may use
 //! whatever functions of models may use, and runs on every thread.

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Seconds between two looks at the watched settings.
 const LOOK: f64 = 0.2;
 
-/// A search that goes on.
+/// A search in progress.
 pub(super) struct Search {
     pub run: Run,
     pub checkpoint: Checkpoint,
@@ -48,7 +48,7 @@ impl Ending {
 }
 
 impl Search {
-    /// Begins to search, or goes on where the run was resumed; `watch` is a file of settings.
+    /// Begins to search, or continues where the run was resumed; `watch` is a file of settings.
     pub(super) fn new(
         session: &Session,
         run: Run,

@@ -133,7 +133,7 @@ pub(super) fn search_on(
     }
 }
 
-/// Searches once, or goes on where the journal ends; `None` where the user has ended it.
+/// Searches once, or continues where the journal ends; `None` where the user has ended it.
 fn searched_to_end(
     session: &mut Session,
     mut run: Run,

@@ -335,7 +335,7 @@ fn what_is_changed_in_a_pause_is_recorded_and_done_again() {
     assert!(text.contains("mutation = 0.5 from generation 5 on"), "{text}");
     assert!(text.contains("`colour`") && text.contains("expected NAME = NUMBER"), "{text}");
     assert_eq!(whole.parameters[0].range, [0.2, 5.0]);
-    // Ended in a later pause, it goes on from there with the changes that were made.
+    // Ended in a later pause, it continues from there with the changes that were made.
     let twice = world(&files).paused_after(4, &lines);
     let (ended, text, session) = run(twice, false);
     assert!(ended.evaluations < whole.evaluations && text.contains("--resume"), "{text}");

@@ -111,7 +111,7 @@ impl Screen {
         }
     }
 
-    /// Answers a key; whether the learner goes on.
+    /// Answers a key; whether the learner continues.
     pub fn press(&mut self, key: Key) -> bool {
         self.message.clear();
         if self.is_asked(key) {
@@ -174,7 +174,7 @@ impl Screen {
         }
     }
 
-    /// The walk goes on in the other run.
+    /// The walk continues in the other run.
     fn exchange(&mut self) {
         let Some(branch) = &mut self.branch else { return };
         let number = self.walk.number();

@@ -228,7 +228,7 @@ fn genes_down(screen: &Screen, table: &Table) -> Vec<Line<'static>> {
     lines
 }
 
-/// One individual a line; what became of it stands before its genes, which may be many.
+/// One individual a line; its outcome precedes its genes, which may be many.
 fn rows_down(table: &Table) -> Vec<Line<'static>> {
     let wide = table.rows.iter().map(|row| row.note.chars().count()).max().unwrap_or(0);
     let line = |name: &str, cells: &[String], note: &str| {

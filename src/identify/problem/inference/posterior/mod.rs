@@ -5,8 +5,8 @@
 //! S^(−n/2), S being the sum of squares; the same for each output whose own is estimated. Parameters without a prior are uniform over their range on
 //! the scale that is searched. Chains start about the best point, spread twice as wide as the
 //! covariance says, and go on until R-hat and the effective sample size are good or the limit is
-//! reached. Each chain has random numbers and a simulator of its own: threads do not matter, and a
-//! resumed run draws the same chains anew.
+//! reached. Each chain has its own random numbers and simulator: threads do not matter, and a
+//! resumed run draws the same chains again.
 //!
 //! Reference: [Gelman et al. 2013](gapilib_base::bibliography#gelman-2013), chapters 3, 11 and 12.
 

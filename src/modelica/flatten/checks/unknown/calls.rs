@@ -126,7 +126,7 @@ fn is_record(class: Scope<'_>) -> bool {
         && class.lineage().all(|class| class.restriction() != Restriction::OperatorRecord)
 }
 
-/// A named argument of a constructor that is no component of the record.
+/// A named argument of a constructor that is not a component of the record.
 fn unknown_component(record: Scope<'_>, named: &[NamedArgument]) -> Option<Diagnostic> {
     let argument = named.iter().find(|one| record.component(one.name.node).is_none())?;
     let known = record.library.component_names(record.class);
@@ -155,7 +155,7 @@ impl<'a> Inputs<'a> {
                 ClassSpecifier::Derivative(_) => return None,
                 _ => {
                     let mut extends = class.library.class(class.class).extends.iter();
-                    extends.any(|one| !one.modification.is_empty() || !one.deselected.is_empty())
+                    extends.any(|one| !one.modification.is_empty() || !one.excluded.is_empty())
                 }
             };
             for component in class.components() {
@@ -178,7 +178,7 @@ impl<'a> Inputs<'a> {
         })
     }
 
-    /// A named argument that is no input.
+    /// A named argument that is not an input.
     fn unknown(&self, named: &[NamedArgument]) -> Option<Diagnostic> {
         let is_input = |name: Ident| self.inputs.iter().any(|input| input.name() == name);
         let argument = named.iter().find(|argument| !is_input(argument.name.node))?;

@@ -101,7 +101,7 @@ impl Visit for NameCheck<'_, '_> {
                 self.partial_application(function, named, expression.span);
                 walk_expression(self, expression);
             }
-            ExpressionKind::Comprehension { indices, .. } => {
+            ExpressionKind::ArrayIteration { indices, .. } => {
                 self.within(indices, |walk| walk_expression(walk, expression));
             }
             _ => walk_expression(self, expression),

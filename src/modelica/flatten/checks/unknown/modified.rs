@@ -78,7 +78,7 @@ impl<'a> Modified<'a> {
         }
     }
 
-    /// The same where another type may stand in its place.
+    /// The same where another type may replace it.
     pub fn replaceable_if(self, is_replaceable: bool) -> Modified<'a> {
         match self {
             Modified::Class { class, is_certain } => {

@@ -13,7 +13,7 @@ use crate::flatten::lookup::types::Type;
 use crate::name::Ident;
 use crate::source::Spanned;
 use crate::syntax::ast::{
-    ComponentReference, Deselection, Equation, EquationKind, Extends, Restriction, Section,
+    ComponentReference, Equation, EquationKind, Exclusion, Extends, Restriction, Section,
 };
 use crate::syntax::print;
 use crate::syntax::visit::{Visit, walk_equation};
@@ -30,7 +30,7 @@ impl Classes<'_> {
         let mut next = Some(context);
         while let Some(id) = next {
             let scope = self.scope(id);
-            if scope.deselected.iter().any(|one| matches(one, left, right)) {
+            if scope.excluded.iter().any(|one| matches(one, left, right)) {
                 return true;
             }
             next = scope.derived;
@@ -38,17 +38,17 @@ impl Classes<'_> {
         false
     }
 
-    /// Each deselection of an extends clause must match something of the base class.
+    /// Each exclusion (`break`) of an extends clause must match something of the base class.
     pub(crate) fn check_deselected(
         &mut self,
         derived: &Text,
         base: ScopeId,
         extends: &Extends,
     ) -> Result<(), Diagnostic> {
-        for deselected in &extends.deselected {
-            match deselected {
-                Deselection::Component(name) => self.check_component(base, name)?,
-                Deselection::Connection(left, right) => {
+        for excluded in &extends.excluded {
+            match excluded {
+                Exclusion::Component(name) => self.check_component(base, name)?,
+                Exclusion::Connection(left, right) => {
                     if !self.has_connection(base, left, right)? {
                         return Err(fault!(
                             UNKNOWN_ELEMENT,
@@ -121,7 +121,7 @@ impl Classes<'_> {
         right: &ComponentReference,
     ) -> Result<bool, Diagnostic> {
         let mut search = ElementSearch {
-            target: Deselection::Connection(left.clone(), right.clone()),
+            target: Exclusion::Connection(left.clone(), right.clone()),
             found: false,
         };
         for context in self.elements(base)?.lineage() {
@@ -137,7 +137,7 @@ impl Classes<'_> {
 
 /// Looks for a connection.
 struct ElementSearch {
-    target: Deselection,
+    target: Exclusion,
     found: bool,
 }
 
@@ -154,19 +154,15 @@ impl Visit for ElementSearch {
 
 /// Whether a connection is one with a component that is left out or with a part of it, or is
 /// written as the one that is left out, in either order.
-fn matches(
-    deselected: &Deselection,
-    left: &ComponentReference,
-    right: &ComponentReference,
-) -> bool {
-    match deselected {
-        Deselection::Component(out) => {
+fn matches(excluded: &Exclusion, left: &ComponentReference, right: &ComponentReference) -> bool {
+    match excluded {
+        Exclusion::Component(out) => {
             let is_part = |one: &ComponentReference| {
                 !one.global && one.parts.first().is_some_and(|part| part.name == out.node)
             };
             is_part(left) || is_part(right)
         }
-        Deselection::Connection(a, b) => {
+        Exclusion::Connection(a, b) => {
             let printed = [a, b, left, right].map(print::reference);
             let [a, b, left, right] = &printed;
             (a, b) == (left, right) || (a, b) == (right, left)

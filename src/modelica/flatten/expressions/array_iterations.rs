@@ -60,7 +60,7 @@ fn has_no_elements(e: &Expression) -> bool {
 
 impl Instantiation<'_> {
     /// `{element for i in range}`.
-    pub fn comprehension(
+    pub fn array_iteration(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -79,7 +79,7 @@ impl Instantiation<'_> {
                     return written;
                 }
                 let (element, indices) = (Box::new(resolved), iterators);
-                Ok(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
+                Ok(Expression::new(ExpressionKind::ArrayIteration { element, indices }, span))
             }
             Err(error) => self.unrolled(element, &indices, context, local).unwrap_or(Err(error)),
         }
