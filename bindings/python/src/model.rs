@@ -41,7 +41,7 @@ impl Model {
 }
 
 /// What a simulation is asked for.
-struct Wanted {
+struct SimulationRequest {
     options: SimulationOptions,
     parameters: Vec<(String, f64)>,
     from: Option<(Arc<ResultTable>, Option<f64>)>,
@@ -147,14 +147,14 @@ impl Model {
             only: None,
             ..SimulationOptions::default()
         };
-        let wanted = Wanted {
+        let request = SimulationRequest {
             options,
             parameters: parameters.into_iter().flatten().collect(),
             from: initial.map(|result| (result.table.clone(), initial_time)),
         };
         let model = self.translated.clone();
         let (answer, errors) =
-            self.worker.call_quietly(py, move |engine| simulated(engine, &model, wanted))?;
+            self.worker.call_quietly(py, move |engine| simulated(engine, &model, request))?;
         match answer {
             Ok((mut table, statistics)) => {
                 written(py, "stderr", &errors)?;
@@ -206,20 +206,20 @@ impl Model {
 fn simulated(
     engine: &mut Engine,
     model: &Arc<Translated>,
-    wanted: Wanted,
+    request: SimulationRequest,
 ) -> Answer<(ResultTable, Statistics)> {
     let fault = |fault: Fault| vec![Reported::fault(fault)];
     // Values that were set before do not count.
     let model = simulation::translate_anew(engine, &model.problem);
     let model = checked(engine, model)?;
-    let mut options = wanted.options;
-    if let Some((table, time)) = wanted.from {
+    let mut options = request.options;
+    if let Some((table, time)) = request.from {
         let time = time.or(table.time.last().copied()).unwrap_or(0.0);
         let state = FinalState::in_result(&model, &table, time).map_err(fault)?;
         engine.continue_from(&state, "the result").map_err(fault)?;
         options.start = options.start.or(Some(time));
     }
-    for (name, value) in &wanted.parameters {
+    for (name, value) in &request.parameters {
         engine.set_parameter(name, *value).map_err(fault)?;
     }
     let simulated = simulation::simulate(engine, &model, &options);
@@ -227,11 +227,11 @@ fn simulated(
     Ok((simulated.table, simulated.statistics))
 }
 
-/// Leaves out what is not wanted.
-fn keep_only(table: &mut ResultTable, wanted: Option<&[String]>) -> Result<(), Fault> {
-    let Some(wanted) = wanted else { return Ok(()) };
+/// Removes the variables that are not selected.
+fn keep_only(table: &mut ResultTable, selected: Option<&[String]>) -> Result<(), Fault> {
+    let Some(selected) = selected else { return Ok(()) };
     let mut kept = ResultTable { series: Vec::new(), ..ResultTable::new(table.time.clone()) };
-    for name in wanted.iter().filter(|name| *name != "time") {
+    for name in selected.iter().filter(|name| *name != "time") {
         let values = Values::Trajectory(table.column(name)?);
         let of = table.series.iter().find(|series| &series.name == name);
         let (unit, description) =

@@ -16,12 +16,12 @@ pub(crate) enum Event {
     Done,
 }
 
-/// Sends everything to whoever waits.
+/// Sends everything to the waiting call.
 pub(crate) struct Channel(pub(crate) Sender<Event>);
 
 impl Screen for Channel {
     fn print(&mut self, text: &str) {
-        // Nobody waits any more: nobody reads.
+        // No call waits any more: there is no reader.
         let _ = self.0.send(Event::Output(text.to_owned()));
     }
 

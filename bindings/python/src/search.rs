@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Relative error of what is told, where nothing else is known.
+/// Default relative error of the answers.
 const NOISE: f64 = 1e-9;
 
 /// A search: `ask()` gives the rows of genes to evaluate next, `tell(fitness)` how good they are;

@@ -145,8 +145,8 @@ impl Session {
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyAny>> {
-        let wanted = name.clone();
-        let value = self.worker.call(py, move |engine| engine.variable(&wanted).cloned())?;
+        let key = name.clone();
+        let value = self.worker.call(py, move |engine| engine.variable(&key).cloned())?;
         match value {
             Some(value) => values::to_python(py, value),
             None => Err(PyKeyError::new_err(name)),

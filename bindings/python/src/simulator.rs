@@ -187,7 +187,7 @@ impl Simulator {
         let run = move || {
             let alone = busy.lock().unwrap_or_else(PoisonError::into_inner);
             let answer = work(stopped);
-            // Before the answer: whoever has it may fork.
+            // Before the answer: the caller may fork after it.
             drop(alone);
             drop(at_work);
             drop(done.send(answer));
@@ -216,7 +216,7 @@ impl Simulator {
     }
 
     /// Works on the calling thread, where a call of another one would cost more than a short
-    /// simulation; what turns out to be long is begun again on another one, and Ctrl-C ends it.
+    /// simulation; a long one is restarted on another one, and Ctrl-C ends it.
     fn one<T: Send + 'static>(
         &self,
         py: Python<'_>,

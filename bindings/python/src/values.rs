@@ -77,8 +77,8 @@ fn nested<'py>(
 ///
 /// # Errors
 ///
-/// `TypeError` for another type, `ValueError` for an array without elements whose type cannot be
-/// told, or of lists of unequal lengths.
+/// `TypeError` for another type, `ValueError` for an array without elements whose type is not
+/// known, or of lists of unequal lengths.
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if value.is_instance_of::<PyBool>() {
         return Ok(Value::Boolean(value.extract()?));

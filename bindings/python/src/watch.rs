@@ -86,7 +86,7 @@ impl Watched {
         late
     }
 
-    /// A call that nobody watched has lasted so long.
+    /// A call that was not watched has lasted so long.
     pub(crate) fn lasted(&self, duration: Duration) {
         self.slow.store(duration >= Duration::from_millis(LONG), Ordering::Relaxed);
     }

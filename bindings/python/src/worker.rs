@@ -99,7 +99,7 @@ impl Worker {
         Ok(answer)
     }
 
-    /// The same, with the errors that would have been printed: for whoever raises them.
+    /// The same, with the errors that would have been printed: for callers that raise them.
     pub(crate) fn call_quietly<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -118,7 +118,7 @@ impl Worker {
         let (answer, answered) = mpsc::channel();
         let finished = link.finished.clone();
         let work: Work = Box::new(move |session| {
-            // Said also where the work panics, and last: whoever hears it may fork.
+            // Said also where the work panics, and last: the caller may fork then.
             let _done = Done(finished);
             let _at_work = at_work;
             drop(answer.send(job(session)));
@@ -209,7 +209,7 @@ fn locked(events: &Mutex<Receiver<Event>>) -> MutexGuard<'_, Receiver<Event>> {
 }
 
 /// What has been printed meanwhile, as one text: a notebook takes longer for a line than a script. And
-/// the event behind it.
+/// the event after it.
 fn more(events: &Mutex<Receiver<Event>>, mut text: String) -> (String, Option<Event>) {
     let events = locked(events);
     while text.len() < LARGE {
