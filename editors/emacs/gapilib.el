@@ -19,7 +19,7 @@
 
 (defconst gapilib-keywords
   '("algorithm" "and" "annotation" "block" "break" "class" "connect" "connector" "constant"
-    "constrainedby" "discrete" "each" "else" "elseif" "elsewhen" "encapsulated" "end" "enumeration"
+    "constrainedby" "der" "discrete" "each" "else" "elseif" "elsewhen" "encapsulated" "end" "enumeration"
     "equation" "expandable" "extends" "external" "false" "final" "flow" "for" "function" "if" "import"
     "impure" "in" "initial" "inner" "input" "loop" "model" "not" "operator" "or" "outer" "output"
     "package" "parameter" "partial" "protected" "public" "pure" "record" "redeclare" "replaceable"

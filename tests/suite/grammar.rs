@@ -1,5 +1,6 @@
 //! The grammar: corpora with their trees and errors, printing and reading again.
 
+use crate::shipped::project;
 use gapilib::Diagnostic;
 use gapilib::internals::diag::render::render;
 use gapilib::internals::source::{SourceId, SourceMap};
@@ -7,7 +8,9 @@ use gapilib::internals::syntax::ast::{
     InteractiveKind, InteractiveStatement, Script, StoredDefinition,
 };
 use gapilib::internals::syntax::visit::{WithoutSpans, rewrite_script, rewrite_stored_definition};
-use gapilib::internals::syntax::{self, print};
+use gapilib::internals::syntax::{self, is_keyword, keywords, print};
+use regex::Regex;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Every `.mo` file below the folder.
@@ -186,4 +189,42 @@ fn valid_texts_have_these_trees() {
         assert_eq!(tree.reads_back_differently(), None);
         assert_beside(path, &shown);
     });
+}
+
+/// The words that a pattern finds in a text.
+fn words_in(pattern: &str, text: &str) -> BTreeSet<String> {
+    let pattern = Regex::new(pattern).unwrap();
+    pattern.captures_iter(text).map(|found| found[1].to_owned()).collect()
+}
+
+/// The words of the grammar's rule, which share their beginnings: `"e" ~ ("ach" | "nd")`.
+fn keywords_of_the_grammar() -> BTreeSet<String> {
+    let grammar = std::fs::read_to_string(project("grammar/lexical.pest")).unwrap();
+    let begin = grammar.find("keyword_to_f = ").unwrap();
+    let rules = &grammar[begin..grammar.find("kw_algorithm").unwrap()];
+    let shared = Regex::new(r#""([a-z]+)"\s*~\s*\(([^)]*)\)"#).unwrap();
+    let word = r#""([a-z]+)""#;
+    let begun = shared.captures_iter(rules).flat_map(|found| {
+        let ends = words_in(word, &found[2]).into_iter();
+        ends.map(|end| format!("{}{end}", &found[1])).collect::<Vec<String>>()
+    });
+    begun.chain(words_in(word, &shared.replace_all(rules, ""))).collect()
+}
+
+/// One table of keywords: what the grammar and the modes of the editors spell for themselves is equal.
+#[test]
+fn keywords_are_the_same_everywhere() {
+    let all: BTreeSet<String> = keywords().map(str::to_owned).collect();
+    assert_eq!(keywords_of_the_grammar(), all);
+    assert!(all.iter().all(|word| is_keyword(word)) && !is_keyword("elsewhere"));
+    let read = |file: &str| std::fs::read_to_string(project(file)).unwrap();
+    let emacs = read("editors/emacs/gapilib.el");
+    let begin = emacs.find("(defconst gapilib-keywords").unwrap();
+    let list = emacs[begin..].split("))").next().unwrap();
+    assert_eq!(words_in(r#""([a-z]+)""#, list), all, "editors/emacs/gapilib.el");
+    let vscode = read("editors/vscode/syntaxes/modelica.tmLanguage.json");
+    let groups = words_in(r"\(\?:([a-z|]+)\)", &vscode);
+    let coloured = groups.iter().flat_map(|group| group.split('|')).map(str::to_owned).collect();
+    let missing: Vec<&String> = all.difference(&coloured).collect();
+    assert!(missing.is_empty(), "editors/vscode: {missing:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::commands::COMMANDS;
 use crate::script::{Session, builtins};
+use crate::syntax;
 use rustyline::completion::{Completer, FilenameCompleter, Pair};
 use rustyline::highlight::{CmdKind, Highlighter};
 use rustyline::hint::Hinter;
@@ -9,56 +10,6 @@ use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Context, Helper};
 use std::borrow::Cow;
 use std::cell::RefCell;
-
-/// Words of the language.
-const KEYWORDS: &[&str] = &[
-    "algorithm",
-    "and",
-    "annotation",
-    "block",
-    "break",
-    "class",
-    "connector",
-    "constant",
-    "each",
-    "else",
-    "elseif",
-    "elsewhen",
-    "end",
-    "equation",
-    "extends",
-    "external",
-    "false",
-    "final",
-    "flow",
-    "for",
-    "function",
-    "if",
-    "import",
-    "in",
-    "initial",
-    "input",
-    "loop",
-    "model",
-    "not",
-    "or",
-    "output",
-    "package",
-    "parameter",
-    "partial",
-    "protected",
-    "public",
-    "record",
-    "redeclare",
-    "replaceable",
-    "return",
-    "then",
-    "true",
-    "type",
-    "when",
-    "while",
-    "within",
-];
 
 /// What is known when a line is read. The session is asked when something is to be completed.
 pub(super) struct Assistance<'s, 'w> {
@@ -77,7 +28,7 @@ impl<'s, 'w> Assistance<'s, 'w> {
     fn names(&self, typed: &str) -> Vec<String> {
         let mut session = self.session.borrow_mut();
         let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
-        names.extend(KEYWORDS.iter().map(|word| (*word).to_owned()));
+        names.extend(syntax::keywords().map(str::to_owned));
         names.extend(session.names_to_complete());
         if let Some((parent, _)) = typed.rsplit_once('.') {
             names.extend(session.classes_in(parent));
@@ -315,7 +266,7 @@ impl Highlighter for Assistance<'_, '_> {
         let mut painted = String::with_capacity(line.len() * 2);
         for token in tokens(line) {
             let code = match token.kind {
-                TokenKind::Word if KEYWORDS.contains(&token.whole) => "1;34",
+                TokenKind::Word if syntax::is_keyword(token.whole) => "1;34",
                 TokenKind::Word if builtins::names().binary_search(&token.whole).is_ok() => "36",
                 TokenKind::Number => "35",
                 TokenKind::Text => "32",

@@ -44,6 +44,7 @@ pub use declared::{Declared, Member};
 pub use flat_expression::flat_reference;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
+pub use lookup::types::ATTRIBUTES;
 pub use recorded::RecordedInput;
 
 use crate::diag::{Diagnostic, Severity};

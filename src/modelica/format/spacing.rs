@@ -6,30 +6,7 @@
 use super::Lexed;
 use super::structure::Role;
 use crate::syntax::LexemeKind;
-
-/// Keywords before and after which a bracket is separated by a space.
-const SET_OFF: &[&str] = &[
-    "and",
-    "or",
-    "not",
-    "if",
-    "then",
-    "else",
-    "elseif",
-    "elsewhen",
-    "when",
-    "while",
-    "for",
-    "in",
-    "loop",
-    "annotation",
-    "extends",
-    "each",
-    "final",
-    "constrainedby",
-    "external",
-    "import",
-];
+use crate::syntax::keywords::{self, SET_OFF};
 
 /// The number of blanks before every lexeme, if it does not begin a line.
 pub(super) fn blanks(lexed: &Lexed<'_>, roles: &[Role]) -> Vec<usize> {
@@ -90,7 +67,7 @@ impl Gap<'_> {
         match self.kind(self.at - 1) {
             // `$annotation(` is one word.
             LexemeKind::Word if self.at > 1 && self.lexed.str(self.at - 2) == "$" => 0,
-            LexemeKind::Word => usize::from(SET_OFF.contains(&before)),
+            LexemeKind::Word => usize::from(keywords::has(before, SET_OFF)),
             LexemeKind::Quoted | LexemeKind::Close if self.lexed.str(self.at) != "{" => 0,
             _ => 1,
         }
@@ -126,7 +103,7 @@ impl Gap<'_> {
         match self.lexed.token_before(at) {
             None => true,
             Some(before) => match self.kind(before) {
-                LexemeKind::Word => SET_OFF.contains(&self.lexed.str(before)),
+                LexemeKind::Word => keywords::has(self.lexed.str(before), SET_OFF),
                 LexemeKind::Operator => true,
                 LexemeKind::Open | LexemeKind::Comma | LexemeKind::Semicolon => true,
                 _ => false,

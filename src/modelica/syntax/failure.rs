@@ -6,6 +6,7 @@
 
 use super::errors::{MISSING_SEMICOLON, NESTING_TOO_DEEP, SYNTAX_ERROR};
 use super::grammar::{self, Rule};
+use super::keywords::{is_keyword, keywords};
 use super::scan::Scanned;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
@@ -93,10 +94,10 @@ impl<'t> Stop<'t> {
     }
 
     fn misspelt(&self, word: &str, at: usize) -> Option<Diagnostic> {
-        if word.len() < 3 || KEYWORDS.contains(&word) {
+        if word.len() < 3 || is_keyword(word) {
             return None;
         }
-        let help = suggest::did_you_mean(word, KEYWORDS.iter().copied())?;
+        let help = suggest::did_you_mean(word, keywords())?;
         let line_start = self.text[..at].trim_end_matches([' ', '\t']);
         let begins = line_start.is_empty() || line_start.ends_with(['\n', ';', '\u{1e}']);
         let follows = self.text[at + word.len()..].trim_start_matches(is_blank);
@@ -181,7 +182,7 @@ impl<'t> Stop<'t> {
             "" => fault,
             words => fault.help(format!("expected: {words}")),
         };
-        match KEYWORDS.contains(&self.found_text()) && expected.contains("identifier") {
+        match is_keyword(self.found_text()) && expected.contains("identifier") {
             true => fault.help("a keyword is not a name; quote it to use it as one: `'...'`"),
             false => fault,
         }
@@ -207,69 +208,6 @@ const REPAIRS: &[Repair] = &[
     Repair { found: "", write: " then ", because: "" },
     Repair { found: "", write: " loop ", because: "" },
     Repair { found: "", write: " in ", because: "" },
-];
-
-/// The keywords that begin something (MLS §2.3.3), for suggestions.
-const KEYWORDS: &[&str] = &[
-    "algorithm",
-    "annotation",
-    "block",
-    "break",
-    "class",
-    "connect",
-    "connector",
-    "constant",
-    "constrainedby",
-    "discrete",
-    "else",
-    "elseif",
-    "elsewhen",
-    "encapsulated",
-    "end",
-    "enumeration",
-    "equation",
-    "expandable",
-    "extends",
-    "external",
-    "final",
-    "flow",
-    "for",
-    "function",
-    "if",
-    "import",
-    "impure",
-    "initial",
-    "inner",
-    "input",
-    "loop",
-    "model",
-    "operator",
-    "outer",
-    "output",
-    "package",
-    "parameter",
-    "partial",
-    "protected",
-    "public",
-    "pure",
-    "record",
-    "redeclare",
-    "replaceable",
-    "return",
-    "stream",
-    "then",
-    "type",
-    "when",
-    "while",
-    "within",
-    "and",
-    "or",
-    "not",
-    "in",
-    "der",
-    "each",
-    "true",
-    "false",
 ];
 
 fn is_blank(character: char) -> bool {

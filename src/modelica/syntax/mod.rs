@@ -13,6 +13,7 @@ mod decode;
 pub mod errors;
 mod failure;
 mod grammar;
+pub(crate) mod keywords;
 mod lazy;
 mod lower;
 mod outline;
@@ -26,6 +27,7 @@ pub mod visit;
 
 pub use ast::Sections;
 pub use decode::decode;
+pub use keywords::{is_keyword, keywords};
 pub use outline::{Outline, OutlinedClass};
 pub use scan::{Lexeme, LexemeKind};
 pub use script_parts::ScriptParts;
@@ -157,16 +159,6 @@ pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> 
 pub fn lexemes(source: SourceId, text: &str, is_script: bool) -> Result<Vec<Lexeme>, Diagnostic> {
     let dialect = if is_script { Dialect::Script } else { Dialect::Modelica };
     scan::lexemes(source, text, dialect)
-}
-
-/// Whether a word is a keyword (MLS §2.3.3).
-///
-/// ```
-/// assert!(gapilib_modelica::syntax::is_keyword("elsewhen") && !gapilib_modelica::syntax::is_keyword("elsewhere"));
-/// ```
-pub fn is_keyword(word: &str) -> bool {
-    let is_word = word.bytes().all(|byte| byte.is_ascii_lowercase());
-    is_word && !word.is_empty() && grammar::read(Rule::lone_keyword, word).is_ok()
 }
 
 /// Reads an expression.

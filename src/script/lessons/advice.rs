@@ -2,6 +2,7 @@
 //! the error.
 
 use super::shipped::Lesson;
+use crate::syntax::is_keyword;
 use regex::Regex;
 use std::sync::LazyLock;
 
@@ -10,10 +11,6 @@ struct Habit {
     pattern: LazyLock<Option<Regex>>,
     advice: &'static str,
 }
-
-/// Words that may follow a closing parenthesis or a number.
-const KEYWORDS: &[&str] =
-    &["and", "or", "then", "else", "elseif", "loop", "for", "in", "if", "end", "annotation"];
 
 static COMMA: Habit = Habit {
     pattern: LazyLock::new(|| Regex::new(r"^\s*\w+\s*:?=\s*-?\d+,\d+\s*;?\s*$").ok()),
@@ -61,7 +58,7 @@ fn of_line(line: &str, text: &str) -> Vec<String> {
 fn lacks_star(code: &str) -> bool {
     let Some(pattern) = PRODUCT.pattern.as_ref() else { return false };
     let followers = pattern.captures_iter(code).filter_map(|found| found.get(1));
-    followers.map(|word| word.as_str()).any(|word| !KEYWORDS.contains(&word))
+    followers.map(|word| word.as_str()).any(|word| !is_keyword(word))
 }
 
 /// The names that a pattern finds.

@@ -9,7 +9,7 @@ use super::document::Document;
 use super::occurrences::Entity;
 use super::parsed::Parsed;
 use super::workspace::{Documents, Workspace};
-use crate::flatten::{ClassId, Declared, Library, Member};
+use crate::flatten::{ATTRIBUTES, ClassId, Declared, Library, Member};
 use crate::functions;
 use crate::name::{Ident, Name};
 use crate::script::builtins;
@@ -18,76 +18,6 @@ use context::{Context, Open};
 use lsp_types::{CompletionItem, CompletionItemKind, CompletionTextEdit, Position, TextEdit};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// Attributes of predefined types (MLS §4.9.1).
-const ATTRIBUTES: &[&str] = &[
-    "start",
-    "fixed",
-    "unit",
-    "displayUnit",
-    "quantity",
-    "min",
-    "max",
-    "nominal",
-    "stateSelect",
-    "unbounded",
-];
-
-/// Keywords that are offered.
-const KEYWORDS: &[&str] = &[
-    "algorithm",
-    "and",
-    "annotation",
-    "block",
-    "class",
-    "connect",
-    "connector",
-    "constant",
-    "constrainedby",
-    "discrete",
-    "each",
-    "else",
-    "elseif",
-    "elsewhen",
-    "encapsulated",
-    "end",
-    "enumeration",
-    "equation",
-    "extends",
-    "external",
-    "false",
-    "final",
-    "flow",
-    "for",
-    "function",
-    "if",
-    "import",
-    "initial",
-    "inner",
-    "input",
-    "loop",
-    "model",
-    "not",
-    "or",
-    "outer",
-    "output",
-    "package",
-    "parameter",
-    "partial",
-    "protected",
-    "public",
-    "record",
-    "redeclare",
-    "replaceable",
-    "return",
-    "stream",
-    "then",
-    "true",
-    "type",
-    "when",
-    "while",
-    "within",
-];
 
 /// What can be written at a position of a document.
 pub fn items(
@@ -273,7 +203,9 @@ impl Completion<'_> {
         let types = ["Real", "Integer", "Boolean", "String"];
         found.extend(types.map(|name| plain(name, CompletionItemKind::STRUCT, '4')));
         found.extend(self.functions());
-        found.extend(KEYWORDS.iter().map(|word| plain(word, CompletionItemKind::KEYWORD, '6')));
+        found.extend(
+            crate::syntax::keywords().map(|word| plain(word, CompletionItemKind::KEYWORD, '6')),
+        );
         found
     }
 

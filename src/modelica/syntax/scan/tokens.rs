@@ -4,6 +4,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::{SourceId, Span};
 use crate::syntax::errors::{BAD_CHARACTER, UNCLOSED_STRING};
+use crate::syntax::keywords;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TokenKind {
@@ -42,64 +43,6 @@ pub(super) struct Token<'t> {
     pub(super) line_end: Option<usize>,
 }
 
-/// Words that neither begin a statement nor close one's block.
-const CONTINUING: &[&str] = &["and", "or", "then", "loop", "in", "constrainedby", "annotation"];
-
-/// Keywords after which a statement may be complete.
-const COMPLETING: &[&str] = &["true", "false", "end", "break", "return"];
-
-/// Keywords after which a statement is not complete.
-const INCOMPLETE: &[&str] = &[
-    "and",
-    "or",
-    "not",
-    "then",
-    "loop",
-    "else",
-    "elseif",
-    "elsewhen",
-    "in",
-    "equation",
-    "algorithm",
-    "public",
-    "protected",
-    "initial",
-    "import",
-    "input",
-    "output",
-    "parameter",
-    "constant",
-    "discrete",
-    "flow",
-    "stream",
-    "der",
-    "each",
-    "final",
-    "inner",
-    "outer",
-    "redeclare",
-    "replaceable",
-    "extends",
-    "within",
-    "function",
-    "model",
-    "block",
-    "record",
-    "type",
-    "package",
-    "class",
-    "connector",
-    "partial",
-    "encapsulated",
-    "operator",
-    "pure",
-    "impure",
-    "expandable",
-    "constrainedby",
-    "annotation",
-    "external",
-];
-
 impl Token<'_> {
     pub(super) fn is(&self, word: &str) -> bool {
         self.kind == TokenKind::Word && self.text == word
@@ -107,7 +50,7 @@ impl Token<'_> {
 
     pub(super) fn can_begin_statement(&self) -> bool {
         match self.kind {
-            TokenKind::Word => !CONTINUING.contains(&self.text),
+            TokenKind::Word => !keywords::has(self.text, keywords::CONTINUES),
             TokenKind::Quoted | TokenKind::Number | TokenKind::String | TokenKind::Open => true,
             TokenKind::Command => true,
             TokenKind::Close | TokenKind::Separator | TokenKind::Operator => false,
@@ -116,7 +59,7 @@ impl Token<'_> {
 
     pub(super) fn can_end_statement(&self) -> bool {
         match self.kind {
-            TokenKind::Word => COMPLETING.contains(&self.text) || !INCOMPLETE.contains(&self.text),
+            TokenKind::Word => !keywords::has(self.text, keywords::LEAVES_OPEN),
             TokenKind::Quoted | TokenKind::Number | TokenKind::String | TokenKind::Close => true,
             TokenKind::Command => true,
             TokenKind::Open | TokenKind::Separator | TokenKind::Operator => false,
