@@ -8,13 +8,15 @@ use crate::sim::Failure;
 impl System {
     /// Whether values of the past are needed.
     pub(super) fn has_past(&self) -> bool {
-        !self.histories.is_empty() || !self.program.events.transports.is_empty()
+        !self.delays.histories.is_empty() || !self.program.events.transports.is_empty()
     }
 
     /// Sets the delayed values at `t`.
     pub(super) fn load_delayed(&mut self, t: f64) {
         let delays = &self.program.events.delays;
-        for ((history, delay), time) in self.histories.iter().zip(delays).zip(&self.delay_times) {
+        for ((history, delay), time) in
+            self.delays.histories.iter().zip(delays).zip(&self.delays.delay_times)
+        {
             self.registers[delay.register as usize] = history.value(t - time);
         }
     }
@@ -26,10 +28,10 @@ impl System {
         let mut changed = false;
         for (at, delay) in program.events.delays.iter().enumerate() {
             let value = self.delayed_expression(delay)?;
-            changed |= self.histories[at].values.front() != Some(&value);
-            self.histories[at].start(t, value);
+            changed |= self.delays.histories[at].values.front() != Some(&value);
+            self.delays.histories[at].start(t, value);
             run(&delay.time.tape, &mut self.registers)?;
-            self.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
+            self.delays.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
         }
         Ok(changed)
     }
@@ -39,7 +41,7 @@ impl System {
         let program = self.program.clone();
         for (at, delay) in program.events.delays.iter().enumerate() {
             let value = self.delayed_expression(delay)?;
-            self.histories[at].push(t, value);
+            self.delays.histories[at].push(t, value);
         }
         Ok(())
     }
@@ -47,7 +49,7 @@ impl System {
     /// Goes beyond the jumps that arrive at `t`.
     pub(super) fn advance_histories(&mut self, t: f64) -> bool {
         let mut any = false;
-        for (history, time) in self.histories.iter_mut().zip(&self.delay_times) {
+        for (history, time) in self.delays.histories.iter_mut().zip(&self.delays.delay_times) {
             let before = history.next_jump();
             history.advance(t - time);
             any |= history.next_jump() != before;
@@ -60,7 +62,7 @@ impl System {
 
     /// When jumps arrive.
     pub(super) fn arriving_jumps(&self) -> impl Iterator<Item = f64> {
-        let pairs = self.histories.iter().zip(&self.delay_times);
+        let pairs = self.delays.histories.iter().zip(&self.delays.delay_times);
         pairs.filter_map(|(history, time)| Some(history.next_jump()? + time))
     }
 

@@ -48,13 +48,13 @@ impl System {
         let program = self.program.clone();
         let clocks = &program.events.clocks;
         run(&clocks.tape, &mut self.registers)?;
-        self.clocks.clear();
+        self.events.clocks.clear();
         let pairs = clocks.outputs.chunks_exact(2);
         for (pair, since_start) in pairs.zip(&program.events.since_start) {
             let (start, interval) =
                 (self.registers[pair[0] as usize], self.registers[pair[1] as usize]);
             let start = if *since_start { start + t } else { start };
-            self.clocks.push(Clock::at(start, interval, t));
+            self.events.clocks.push(Clock::at(start, interval, t));
         }
         Ok(())
     }
@@ -62,7 +62,7 @@ impl System {
     /// Sets the samples that are due; whether there are any.
     fn samples_due(&mut self, t: f64) -> bool {
         let mut any = false;
-        for (clock, variable) in self.clocks.iter_mut().zip(&self.program.events.samples) {
+        for (clock, variable) in self.events.clocks.iter_mut().zip(&self.program.events.samples) {
             let due = clock.is_due(t);
             self.registers[variable.0 as usize] = f64::from(u8::from(due));
             any |= due;
@@ -86,7 +86,7 @@ impl System {
                 if previous.exact { 0.0 } else { ROUNDING * value.abs().max(slot.abs()) };
             if previous.discrete && (*slot - value).abs() > rounding {
                 changed = true;
-                self.unstable = previous.of.0;
+                self.events.unstable = previous.of.0;
             }
             *slot = value;
         }
@@ -97,7 +97,7 @@ impl System {
     /// Previous values and signals as they are before the initial system is solved.
     pub(super) fn take_start_values_of_events(&mut self) {
         let program = self.program.clone();
-        self.sampled = false;
+        self.events.sampled = false;
         for previous in &program.events.previous {
             self.registers[previous.register as usize] = self.registers[previous.of.0 as usize];
         }
@@ -129,7 +129,7 @@ impl System {
             self.load_delayed(t);
             while self.event(t)? == EventOutcome::Again {}
         }
-        Err(Failure::EventIteration { variable: self.unstable })
+        Err(Failure::EventIteration { variable: self.events.unstable })
     }
 
     /// An event at `t`, the variables being those before it.
@@ -140,10 +140,10 @@ impl System {
             let y_changed = self.at_instant(t, |own| own.iterate_events(t, Stage::Event))?;
             return Ok(EventOutcome::Continue { y_changed: y_changed | jumps });
         }
-        for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
+        for (slot, variable) in self.events.before.iter_mut().zip(&program.events.discrete) {
             *slot = self.registers[variable.0 as usize];
         }
-        if std::mem::take(&mut self.sampled) {
+        if std::mem::take(&mut self.events.sampled) {
             self.clear_samples();
             return self.iterate(t).map(|outcome| self.with_discrete(outcome));
         }
@@ -157,7 +157,7 @@ impl System {
         let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
         match (sampled, outcome) {
             (true, EventOutcome::Continue { .. }) if program.events.shows_samples => {
-                self.sampled = true;
+                self.events.sampled = true;
                 Ok(EventOutcome::Again)
             }
             (true, _) => {
@@ -171,9 +171,9 @@ impl System {
 
     /// The outcome, with what happened to discrete variables.
     fn with_discrete(&mut self, outcome: EventOutcome) -> EventOutcome {
-        let mut pairs = self.before.iter().zip(&self.program.events.discrete);
+        let mut pairs = self.events.before.iter().zip(&self.program.events.discrete);
         let changed = pairs.any(|(old, variable)| *old != self.registers[variable.0 as usize]);
-        self.has_effect |= changed;
+        self.relations.has_effect |= changed;
         either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
@@ -183,10 +183,10 @@ impl System {
 
     /// Iterates; where that fails, once more with relations kept at their borders as they are.
     fn iterate_at_borders(&mut self, t: f64) -> Result<EventOutcome, Failure> {
-        if !self.held.contains(&true) {
+        if !self.relations.held.contains(&true) {
             return self.iterate_rounds(t);
         }
-        let (registers, changed) = (self.registers.clone(), self.has_changed.clone());
+        let (registers, changed) = (self.registers.clone(), self.relations.has_changed.clone());
         let first = self.iterate_rounds(t);
         let Err(Failure::Newton { .. } | Failure::Singular { .. } | Failure::EventIteration { .. }) =
             first
@@ -194,10 +194,10 @@ impl System {
             return first;
         };
         self.registers.copy_from_slice(&registers);
-        self.has_changed = changed;
-        self.keeps_held = true;
+        self.relations.has_changed = changed;
+        self.relations.keeps_held = true;
         let kept = self.iterate_rounds(t);
-        self.keeps_held = false;
+        self.relations.keeps_held = false;
         kept.or(first)
     }
 
@@ -239,7 +239,7 @@ impl System {
                 });
             }
         }
-        Err(Failure::EventIteration { variable: self.unstable })
+        Err(Failure::EventIteration { variable: self.events.unstable })
     }
 
     /// The state that determines how an event iteration continues, as bits.
@@ -263,7 +263,7 @@ impl System {
             };
         }
         let lag = self.changed_iterate();
-        self.unstable = lag.unwrap_or(self.unstable);
+        self.events.unstable = lag.unwrap_or(self.events.unstable);
         Ok(match (self.update_relations(t, change), lag) {
             (true, _) => Some(Moved::Relation),
             (false, Some(_)) => Some(Moved::Iterated),
@@ -284,7 +284,7 @@ impl System {
             }
             let change = if number < PASSES_AT_ONCE { Change::All } else { Change::First };
             if number == PASSES_AT_ONCE {
-                self.inconsistent.fill(false);
+                self.relations.inconsistent.fill(false);
             }
             match self.pass(t, stage, change) {
                 Ok(None) => return Ok(any),
@@ -296,23 +296,24 @@ impl System {
         if self.find_combination(t, stage) {
             return Ok(true);
         }
-        let (registers, inconsistent) = (self.registers.clone(), self.inconsistent.clone());
+        let (registers, inconsistent) =
+            (self.registers.clone(), self.relations.inconsistent.clone());
         let outcome = self.iterate_leniently(t, stage);
         if outcome == Ok(true) {
             return Ok(true);
         }
-        (self.registers, self.inconsistent) = (registers, inconsistent);
+        (self.registers, self.relations.inconsistent) = (registers, inconsistent);
         if self.find_lenient_combination(t, stage) {
             return Ok(true);
         }
         outcome?;
-        Err(Failure::EventIteration { variable: self.unstable })
+        Err(Failure::EventIteration { variable: self.events.unstable })
     }
 
     /// The same where relations are tolerated that hold but for what the tolerance makes of their
     /// sides; whether they then come to rest.
     fn iterate_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
-        self.is_lenient = true;
+        self.relations.is_lenient = true;
         let mut rests = Ok(false);
         for _ in 0..MAX_PASSES {
             match self.pass(t, stage, Change::First) {
@@ -327,13 +328,14 @@ impl System {
                 }
             }
         }
-        self.is_lenient = false;
+        self.relations.is_lenient = false;
         rests
     }
 
     /// Keeps the values of the variables of discrete loops.
     pub(super) fn note_iterate(&mut self) {
-        for (slot, variable) in self.previous_iterate.iter_mut().zip(&self.program.events.iterated)
+        for (slot, variable) in
+            self.events.previous_iterate.iter_mut().zip(&self.program.events.iterated)
         {
             *slot = self.registers[variable.0 as usize];
         }
@@ -341,7 +343,7 @@ impl System {
 
     /// One of them that has another value now.
     pub(super) fn changed_iterate(&self) -> Option<u32> {
-        let mut previous = self.previous_iterate.iter().zip(&self.program.events.iterated);
+        let mut previous = self.events.previous_iterate.iter().zip(&self.program.events.iterated);
         let moved = previous.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
         moved.map(|(_, variable)| variable.0)
     }
@@ -383,7 +385,7 @@ impl System {
                 let value = self.registers[pair[1] as usize];
                 self.registers[state.0 as usize] = if *negated { -value } else { value };
                 self.carry_through_reinit(number, *negated);
-                self.has_effect = true;
+                self.relations.has_effect = true;
                 any = true;
             }
         }
@@ -397,7 +399,7 @@ impl System {
         for (rounding, code) in program.events.roundings.iter().zip(&program.events.rounded) {
             let value = match rounding.time {
                 Some((rate, rest)) => {
-                    let direction = if self.is_at_start { 0.0 } else { rate };
+                    let direction = if self.relations.is_at_start { 0.0 } else { rate };
                     rounded_in_time(rate * t + self.registers[rest as usize], direction)
                 }
                 None => match code.tape.run(&mut self.registers) {
@@ -408,7 +410,7 @@ impl System {
             let slot = &mut self.registers[rounding.register as usize];
             if *slot != value {
                 changed = true;
-                self.unstable = rounding.register;
+                self.events.unstable = rounding.register;
             }
             *slot = value;
         }
@@ -427,7 +429,7 @@ impl System {
 
     /// Times at which a rounding of time jumps or a sample is due next.
     pub(super) fn scheduled(&self) -> impl Iterator<Item = f64> {
-        let samples = self.clocks.iter().map(Clock::time);
+        let samples = self.events.clocks.iter().map(Clock::time);
         self.jumps_of_roundings().flatten().chain(samples).filter(|time| time.is_finite())
     }
 

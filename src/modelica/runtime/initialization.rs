@@ -74,9 +74,9 @@ impl System {
     /// Solves the initial system, with what the events of the first instant do.
     pub(super) fn solve_for_start(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
-        self.treated.clear();
-        self.kept.clear();
-        self.transported.clear();
+        self.relations.treated.clear();
+        self.relations.kept.clear();
+        self.delays.transported.clear();
         self.solve_initial_system(t)?;
         self.note_open_at_start(t);
         self.check_initial_values()?;

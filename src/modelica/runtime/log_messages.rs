@@ -15,7 +15,7 @@ use crate::value::format::written;
 impl System {
     /// From now on what the model tells is kept.
     pub fn listen(&mut self) {
-        self.log = Some(SimulationLog::default());
+        self.messages.log = Some(SimulationLog::default());
     }
 
     /// What the model would have written in the last simulation, if there was a listener.
@@ -32,12 +32,12 @@ impl System {
 
     /// The log messages of the last simulation, and how many more there were.
     pub fn log_messages(&self) -> (Vec<LogMessage>, u64) {
-        let Some(log) = &self.log else { return (Vec::new(), 0) };
+        let Some(log) = &self.messages.log else { return (Vec::new(), 0) };
         (log.recorded.clone(), log.omitted)
     }
 
     pub(super) fn forget_notices(&mut self) {
-        if let Some(log) = &mut self.log {
+        if let Some(log) = &mut self.messages.log {
             let active = vec![false; self.program.log_assertions.len()];
             *log = SimulationLog { active, ..SimulationLog::default() };
         }
@@ -46,7 +46,7 @@ impl System {
 
     /// The warnings that begin to hold now.
     pub(super) fn log_assertions(&mut self, t: f64) -> Result<(), sim::Failure> {
-        let Some(mut log) = self.log.take() else { return Ok(()) };
+        let Some(mut log) = self.messages.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.log_assertions.iter().enumerate().try_for_each(|(at, assertion)| {
             let fails = self.fails(assertion)?;
@@ -58,13 +58,13 @@ impl System {
             }
             Ok(())
         });
-        self.log = Some(log);
+        self.messages.log = Some(log);
         done
     }
 
     /// The log messages of an event.
     pub(super) fn log_assertions_at_event(&mut self, t: f64) -> Result<(), sim::Failure> {
-        let Some(mut log) = self.log.take() else { return Ok(()) };
+        let Some(mut log) = self.messages.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.events.log_assertions.iter().try_for_each(|assertion| {
             match self.fails(assertion)? {
@@ -72,7 +72,7 @@ impl System {
                 false => Ok(()),
             }
         });
-        self.log = Some(log);
+        self.messages.log = Some(log);
         done
     }
 
@@ -105,7 +105,7 @@ impl System {
 
     /// An assertion that does not hold, whose text is kept with its values as they are.
     pub(super) fn failed_assertion(&mut self, assertion: u32, values: &Outputs) -> sim::Failure {
-        self.failed_message = Some((assertion, self.message_of(assertion, values)));
+        self.messages.failed_message = Some((assertion, self.message_of(assertion, values)));
         sim::Failure::Assertion { assertion }
     }
 
@@ -126,7 +126,8 @@ impl System {
         let dae = &self.program.sorted().dae;
         let strings = match failure {
             sim::Failure::Assertion { assertion } => {
-                let text = self.failed_message.as_ref().filter(|(known, _)| *known == assertion);
+                let text =
+                    self.messages.failed_message.as_ref().filter(|(known, _)| *known == assertion);
                 dae.assertion(assertion).map(|a| &*a.message).zip(text.map(|(_, text)| &**text))
             }
             sim::Failure::Function { .. } => {

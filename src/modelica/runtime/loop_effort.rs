@@ -22,9 +22,9 @@ impl System {
     pub fn loop_efforts(&self) -> Vec<LoopEffort> {
         let program = self.program();
         let parts = [
-            (&program.initial_steps, &self.initial_solvers),
-            (&program.steps, &self.solvers),
-            (&program.events.steps, &self.event_solvers),
+            (&program.initial_steps, &self.loops.initial_solvers),
+            (&program.steps, &self.loops.solvers),
+            (&program.events.steps, &self.loops.event_solvers),
         ];
         let mut found = Vec::new();
         for (steps, solvers) in parts {

@@ -47,6 +47,7 @@ mod sensitivity_state;
 mod simulation_log;
 mod singular_systems;
 mod sliding;
+mod state;
 mod state_selection;
 mod stuck_loops;
 mod system;

@@ -26,7 +26,7 @@ impl System {
         let before = self.registers.clone();
         let mut group: Vec<usize> = Vec::new();
         let inconsistent = |group: &[usize], system: &System| {
-            let all = system.inconsistent.iter().enumerate();
+            let all = system.relations.inconsistent.iter().enumerate();
             all.filter(|(at, inconsistent)| **inconsistent && !group.contains(at))
                 .map(|(at, _)| at)
                 .collect()
@@ -51,10 +51,10 @@ impl System {
     /// current, rounding errors decide which one conducts, and may contradict each of them.
     pub(super) fn find_lenient_combination(&mut self, t: f64, stage: Stage) -> bool {
         let rounding = ROUNDING * self.largest_side();
-        self.uncertainty.iter_mut().for_each(|error| *error = error.max(rounding));
-        self.is_lenient = true;
+        self.relations.uncertainty.iter_mut().for_each(|error| *error = error.max(rounding));
+        self.relations.is_lenient = true;
         let found = self.find_combination(t, stage);
-        self.is_lenient = false;
+        self.relations.is_lenient = false;
         found
     }
 
@@ -100,7 +100,7 @@ impl System {
         combinations.into_iter().any(|combination| {
             self.registers.copy_from_slice(before);
             for (bit, at) in group.iter().enumerate() {
-                self.has_changed[*at] = true;
+                self.relations.has_changed[*at] = true;
                 if combination >> bit & 1 == 1 {
                     let register = self.program.relations[*at].register as usize;
                     self.registers[register] = 1.0 - self.registers[register];
@@ -132,7 +132,7 @@ impl System {
         for at in 0..self.program.relations.len() {
             let value = self.registers[self.program.relations[at].register as usize] != 0.0;
             if self.relation_value(at, value, t) != value {
-                self.inconsistent[at] = true;
+                self.relations.inconsistent[at] = true;
                 any = true;
             }
         }

@@ -15,7 +15,7 @@ impl System {
         let program = self.program.clone();
         let Some(Differences { registers, code }) = program.differences() else { return Ok(()) };
         let made = || Box::new(Memory::new(registers));
-        let memory = self.literal.memory.get_or_insert_with(made);
+        let memory = self.relations.literal.memory.get_or_insert_with(made);
         let n = program.sorted.dae.variables.len();
         memory.registers[..n].copy_from_slice(&self.registers[..n]);
         run(&code.tape, memory)?;
@@ -34,13 +34,13 @@ impl System {
         let mut next = self.in_program(program);
         next.start_relations(self.program.relations.len(), t)?;
         let plain = std::mem::replace(self, next);
-        self.literal.plain = Some(Box::new(plain));
+        self.relations.literal.plain = Some(Box::new(plain));
         Ok(true)
     }
 
     /// Takes events of relations inside `noEvent` back: every simulation begins without.
     pub(super) fn restore_program(&mut self) {
-        let Some(plain) = self.literal.plain.take() else { return };
+        let Some(plain) = self.relations.literal.plain.take() else { return };
         let changed = std::mem::replace(self, *plain);
         self.take_settings(changed);
     }
@@ -50,28 +50,28 @@ impl System {
     /// This system in a program that has more relations, at the same point of the same simulation.
     fn in_program(&mut self, program: Arc<Program>) -> System {
         let mut next = System::new(program);
-        if let Some(variables) = &self.observed_variables {
+        if let Some(variables) = &self.outputs.observed_variables {
             next.observe_only(variables);
         }
         let n = self.program.sorted.dae.variables.len();
         next.registers[..n].copy_from_slice(&self.registers[..n]);
         next.registers.calls = self.registers.calls.clone();
         let m = self.program.relations.len();
-        next.held[..m].copy_from_slice(&self.held);
-        next.tolerated[..m].copy_from_slice(&self.tolerated);
-        next.postponed[..m].copy_from_slice(&self.postponed[..m]);
-        next.switches[..m].copy_from_slice(&self.switches[..m]);
-        next.switches[m..].fill(None);
-        next.choices = self.choices.clone();
-        next.clocks = self.clocks.clone();
-        next.knots_passed = self.knots_passed.clone();
-        next.before = self.before.clone();
-        next.previous_iterate = self.previous_iterate.clone();
-        next.sampled = self.sampled;
-        next.solves_loops = self.solves_loops;
+        next.relations.held[..m].copy_from_slice(&self.relations.held);
+        next.relations.tolerated[..m].copy_from_slice(&self.relations.tolerated);
+        next.relations.postponed[..m].copy_from_slice(&self.relations.postponed[..m]);
+        next.relations.switches[..m].copy_from_slice(&self.relations.switches[..m]);
+        next.relations.switches[m..].fill(None);
+        next.loops.choices = self.loops.choices.clone();
+        next.events.clocks = self.events.clocks.clone();
+        next.events.knots_passed = self.events.knots_passed.clone();
+        next.events.before = self.events.before.clone();
+        next.events.previous_iterate = self.events.previous_iterate.clone();
+        next.events.sampled = self.events.sampled;
+        next.loops.solves_loops = self.loops.solves_loops;
         next.set = self.set.clone();
-        next.log = self.log.take();
-        next.treated = std::mem::take(&mut self.treated);
+        next.messages.log = self.messages.log.take();
+        next.relations.treated = std::mem::take(&mut self.relations.treated);
         next
     }
 
@@ -93,6 +93,6 @@ impl System {
     /// What was asked of a system since its simulation began.
     fn take_settings(&mut self, changed: System) {
         self.set = changed.set;
-        self.log = changed.log;
+        self.messages.log = changed.messages.log;
     }
 }

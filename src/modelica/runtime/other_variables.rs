@@ -49,14 +49,14 @@ impl System {
 
     /// A simulation begins: the code stays.
     pub(super) fn forget_warnings_of_others(&mut self) {
-        self.others.warned.clear();
+        self.outputs.others.warned.clear();
     }
 
     /// The variable whose value has failed; warns of it once.
     fn without_value(&mut self, t: f64, failure: Failure) -> Result<VarId, Failure> {
         let program = self.program.clone();
         let (Failure::Domain { origin, operation: Operation::DIVISION }, Some(log)) =
-            (failure, &mut self.log)
+            (failure, &mut self.messages.log)
         else {
             return Err(failure);
         };
@@ -65,8 +65,8 @@ impl System {
         else {
             return Err(failure);
         };
-        if !self.others.warned.contains(&variable) {
-            self.others.warned.push(variable);
+        if !self.outputs.others.warned.contains(&variable) {
+            self.outputs.others.warned.push(variable);
             let value = program.failed_value(origin, Operation::DIVISION, "here");
             let text = format!("{value}; the simulation continues, as nothing depends on it");
             let (warning, span) = (Some(DOMAIN_ERROR), program.place(origin));
@@ -77,13 +77,14 @@ impl System {
 
     /// What does not depend on variables without value.
     fn others(&mut self, without_value: &[VarId]) -> Others {
-        let known = self.others.known.iter().find(|known| known.without_value == without_value);
+        let known =
+            self.outputs.others.known.iter().find(|known| known.without_value == without_value);
         if let Some(known) = known {
             return known.clone();
         }
         let program = self.program.clone();
         let mut pool = program.sorted().dae.pool.clone();
-        let all: Vec<Expr> = match &self.observed_variables {
+        let all: Vec<Expr> = match &self.outputs.observed_variables {
             Some(variables) => expressions(&program, &mut pool, variables),
             None => program.observed.iter().map(|v| pool.variable(*v)).collect(),
         };
@@ -99,7 +100,7 @@ impl System {
         let code = Arc::new(observing(&program, &pool, &outputs));
         let without_value = without_value.to_vec();
         let others = Others { without_value, code, places };
-        self.others.known.push(others.clone());
+        self.outputs.others.known.push(others.clone());
         others
     }
 }

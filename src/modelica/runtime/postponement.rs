@@ -29,14 +29,15 @@ impl System {
     /// The time at which a relation on time changes.
     pub(super) fn set_switch(&mut self, at: usize, time: Option<f64>) {
         let time = time.filter(|time| time.is_finite());
-        self.switches[at] = if self.postponed[at] { time.map(after) } else { time };
+        self.relations.switches[at] =
+            if self.relations.postponed[at] { time.map(after) } else { time };
     }
 
     /// The relations that change at `t` and do not have literally the value that they have after
     /// it.
     fn to_postpone(&self, t: f64) -> impl Iterator<Item = usize> + '_ {
         let relations = self.program.relations.iter().enumerate();
-        let switches = relations.zip(&self.switches).zip(&self.postponed);
+        let switches = relations.zip(&self.relations.switches).zip(&self.relations.postponed);
         switches.filter_map(move |(((at, relation), switch), postponed)| {
             let (factor, _) = relation.time?;
             let is_at_instant = switch.is_some_and(|switch| same_time(t, switch));
@@ -55,8 +56,8 @@ impl System {
     pub(super) fn postpone(&mut self, t: f64) -> bool {
         let found: Vec<usize> = self.to_postpone(t).collect();
         for at in &found {
-            self.postponed[*at] = true;
-            self.set_switch(*at, self.switches[*at]);
+            self.relations.postponed[*at] = true;
+            self.set_switch(*at, self.relations.switches[*at]);
         }
         !found.is_empty()
     }
@@ -72,15 +73,19 @@ impl System {
         }
         // Results that have had values before the event have some after it.
         let had_values = self.unread_have_values().is_ok();
-        let (registers, log) = (self.registers.clone(), self.log.clone());
-        let relations = (self.has_changed.clone(), self.held.clone(), self.tolerated.clone());
+        let (registers, log) = (self.registers.clone(), self.messages.log.clone());
+        let relations = (
+            self.relations.has_changed.clone(),
+            self.relations.held.clone(),
+            self.relations.tolerated.clone(),
+        );
         let mut first = attempt(self);
         if had_values && first.is_ok() {
             first = self.unread_have_values().and(first);
         }
         if first.is_err() {
-            (self.registers, self.log) = (registers, log);
-            (self.has_changed, self.held, self.tolerated) = relations;
+            (self.registers, self.messages.log) = (registers, log);
+            (self.relations.has_changed, self.relations.held, self.relations.tolerated) = relations;
             self.postpone(t);
             return attempt(self).or(first);
         }

@@ -10,10 +10,10 @@ impl System {
     pub(super) fn start_recordings(&mut self, t: f64) {
         let program = self.program.clone();
         let recordings = &program.sorted.dae.events.recordings;
-        self.knots_passed.clear();
+        self.events.knots_passed.clear();
         for recording in recordings {
             let passed = recording.passed(0, t);
-            self.knots_passed.push(passed);
+            self.events.knots_passed.push(passed);
             self.set_segment(recording, passed);
         }
     }
@@ -24,10 +24,10 @@ impl System {
         let program = self.program.clone();
         let mut jumps = false;
         for (at, recording) in program.sorted.dae.events.recordings.iter().enumerate() {
-            let before = self.knots_passed[at];
+            let before = self.events.knots_passed[at];
             let passed = recording.passed(before, t);
             if passed > before {
-                self.knots_passed[at] = passed;
+                self.events.knots_passed[at] = passed;
                 self.set_segment(recording, passed);
                 jumps |= program.reads_rates || recording.jumps((before, passed));
             }
@@ -38,7 +38,7 @@ impl System {
     /// The next knot of each recording.
     pub(super) fn next_knots(&self) -> impl Iterator<Item = f64> {
         let recordings = self.program.sorted.dae.events.recordings.iter();
-        let pairs = recordings.zip(&self.knots_passed);
+        let pairs = recordings.zip(&self.events.knots_passed);
         pairs.filter_map(|(recording, passed)| recording.knots.get(*passed).copied())
     }
 

@@ -58,10 +58,10 @@ impl System {
             let before = self.registers[register as usize] != 0.0;
             if self.relation_value(at, before, t) != before {
                 changed = true;
-                self.unstable = register;
-                self.has_changed[at] = true;
-                self.inconsistent[at] = true;
-                self.tolerated[at] = 0.0;
+                self.events.unstable = register;
+                self.relations.has_changed[at] = true;
+                self.relations.inconsistent[at] = true;
+                self.relations.tolerated[at] = 0.0;
                 self.registers[register as usize] = f64::from(u8::from(!before));
             }
         }
@@ -84,10 +84,10 @@ impl System {
     pub(super) fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {
         let relation = &self.program.relations[at];
         let operator = relation.operator;
-        if let (Some((factor, _)), Some(switch)) = (relation.time, self.switches[at]) {
+        if let (Some((factor, _)), Some(switch)) = (relation.time, self.relations.switches[at]) {
             // At the instant itself the value is that after it; at the start, which nothing comes
             // before, an event follows for that.
-            let difference = match (same_time(t, switch), self.is_at_start) {
+            let difference = match (same_time(t, switch), self.relations.is_at_start) {
                 (true, true) => 0.0,
                 (true, false) => factor,
                 (false, _) => factor * (t - switch),
@@ -104,23 +104,28 @@ impl System {
             // Which of two overflows is larger is not known.
             return before;
         }
-        let mut kept = self.kept.iter().filter(|(relation, _)| *relation == at);
+        let mut kept = self.relations.kept.iter().filter(|(relation, _)| *relation == at);
         if kept.any(|(_, limit)| (a - b).abs() <= *limit) {
             return before;
         }
         let exact = operator.holds(a, b);
-        let may_keep = self.has_changed[at] || (self.keeps_held && self.held[at]);
+        let may_keep = self.relations.has_changed[at]
+            || (self.relations.keeps_held && self.relations.held[at]);
         if exact == before || !may_keep {
             return exact;
         }
         if distance(operator, before, (a, b), 0.0) >= 0.0 {
-            self.held[at] = true;
+            self.relations.held[at] = true;
             return before;
         }
-        let tolerated = if self.is_lenient { self.uncertainty[at] } else { self.tolerated[at] };
+        let tolerated = if self.relations.is_lenient {
+            self.relations.uncertainty[at]
+        } else {
+            self.relations.tolerated[at]
+        };
         let keeps = tolerated > 0.0 && distance(operator, before, (a, b), tolerated) >= 0.0;
         if keeps {
-            (self.held[at], self.tolerated[at]) = (true, tolerated);
+            (self.relations.held[at], self.relations.tolerated[at]) = (true, tolerated);
             return before;
         }
         exact
@@ -129,7 +134,7 @@ impl System {
     /// Writes the crossing functions of relations and roundings; y is loaded and solved.
     pub(super) fn relation_crossings(&mut self, out: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
-        let mut values = std::mem::take(&mut self.crossing_values);
+        let mut values = std::mem::take(&mut self.relations.crossing_values);
         values.resize(program.crossings.outputs.len(), 0.0);
         let computed = read(&program.crossings, &mut self.registers, &mut values);
         let n = program.crossing_relations.len();
@@ -140,15 +145,15 @@ impl System {
             let relation = &program.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
             let (a, b) = (pair[0], pair[1]);
-            let tolerated = self.tolerated[*at];
-            *z = match self.held[*at] {
+            let tolerated = self.relations.tolerated[*at];
+            *z = match self.relations.held[*at] {
                 true if holds => distance(relation.operator, true, (a, b), tolerated),
                 true => -distance(relation.operator, false, (a, b), tolerated),
                 false => a - b,
             };
         }
         second.copy_from_slice(rest);
-        self.crossing_values = values;
+        self.relations.crossing_values = values;
         computed
     }
 }

@@ -158,7 +158,7 @@ impl System {
     /// Derivatives of the time of an event that parameters set; whether all that happens then
     /// agrees on them.
     fn time_of_switch(&mut self, t: f64, code: &SensitivityCode) -> bool {
-        let switches = self.switches.iter().zip(&code.switches);
+        let switches = self.relations.switches.iter().zip(&code.switches);
         let switches = switches.filter_map(|(time, of)| Some(((*time)?, of.as_deref()?)));
         let roundings = self.jumps_of_roundings().zip(&code.roundings);
         let roundings = roundings.filter_map(|(time, of)| Some((time?, of.as_deref()?)));
@@ -172,7 +172,7 @@ impl System {
             }
         }
         let zero = |of: &[Register]| of.iter().all(|register| value(register) == 0.0);
-        let sampled = self.clocks.iter().any(|clock| same_time(clock.time(), t));
+        let sampled = self.events.clocks.iter().any(|clock| same_time(clock.time(), t));
         agree &= !sampled || found.is_none_or(zero);
         for (column, time) in code.time.iter().enumerate() {
             let of = found.filter(|_| agree).map(|found| found[column]);

@@ -45,15 +45,15 @@ fn loops_of(steps: &[Step]) -> impl Iterator<Item = &CompiledLoop> {
 impl System {
     /// Notes linear systems and torn loops that had many solutions in the evaluation before.
     pub(super) fn note_open(&mut self, t: f64) {
-        let Some(log) = &mut self.log else { return };
+        let Some(log) = &mut self.messages.log else { return };
         for (system, solved) in (0..).zip(&self.registers.systems) {
             let places = solved.open_unknowns();
             if !places.is_empty() {
                 log.note_open(t, OpenLoop::Linear { system, places });
             }
         }
-        let between = loops_of(&self.program.steps).zip(&self.solvers);
-        let at_events = loops_of(&self.program.events.steps).zip(&self.event_solvers);
+        let between = loops_of(&self.program.steps).zip(&self.loops.solvers);
+        let at_events = loops_of(&self.program.events.steps).zip(&self.loops.event_solvers);
         for (torn, solver) in between.chain(at_events) {
             if solver.is_singular {
                 log.note_open(t, OpenLoop::Later { block: torn.block });
@@ -64,8 +64,9 @@ impl System {
     /// As [`System::note_open`], for the initial system with its torn loops.
     pub(super) fn note_open_at_start(&mut self, t: f64) {
         self.note_open(t);
-        let Some(log) = &mut self.log else { return };
-        for (torn, solver) in loops_of(&self.program.initial_steps).zip(&self.initial_solvers) {
+        let Some(log) = &mut self.messages.log else { return };
+        for (torn, solver) in loops_of(&self.program.initial_steps).zip(&self.loops.initial_solvers)
+        {
             if solver.is_singular {
                 log.note_open(t, OpenLoop::Initial { block: torn.block });
             }
@@ -74,7 +75,7 @@ impl System {
 
     /// What the equations did not determine in the last simulation, if there was a listener.
     pub fn undetermined(&self) -> Vec<Undetermined> {
-        let Some(log) = &self.log else { return Vec::new() };
+        let Some(log) = &self.messages.log else { return Vec::new() };
         let mut found: Vec<Undetermined> = Vec::new();
         for open in &log.open {
             let of = match &open.what {

@@ -58,11 +58,11 @@ impl System {
             return Ok(false);
         }
         let program = self.program.clone();
-        self.modes.registers.clear();
-        self.modes.values.clear();
+        self.relations.modes.registers.clear();
+        self.relations.modes.values.clear();
         let relations = sides.iter().map(|side| program.crossing_relations[side.crossing]);
-        self.modes.registers.extend(relations.map(|at| program.relations[at].register));
-        self.modes.registers.extend(program.events.discrete.iter().map(|v| v.0));
+        self.relations.modes.registers.extend(relations.map(|at| program.relations[at].register));
+        self.relations.modes.registers.extend(program.events.discrete.iter().map(|v| v.0));
         let before = self.registers.to_vec();
         let mut found = Ok(true);
         let surfaces = sides.iter().map(|side| side.surface + 1).max().unwrap_or(0);
@@ -75,8 +75,9 @@ impl System {
             if found != Ok(true) {
                 break;
             }
-            let values = self.modes.registers.iter().map(|at| self.registers[*at as usize]);
-            self.modes.values.extend(values);
+            let values =
+                self.relations.modes.registers.iter().map(|at| self.registers[*at as usize]);
+            self.relations.modes.values.extend(values);
             self.registers.copy_from_slice(&before);
         }
         self.registers.copy_from_slice(&before);
@@ -85,9 +86,9 @@ impl System {
     }
 
     pub(super) fn load_mode(&mut self, mode: usize) {
-        let n = self.modes.registers.len();
-        let values = self.modes.values.iter().skip(mode * n);
-        for (register, value) in self.modes.registers.iter().zip(values) {
+        let n = self.relations.modes.registers.len();
+        let values = self.relations.modes.values.iter().skip(mode * n);
+        for (register, value) in self.relations.modes.registers.iter().zip(values) {
             self.registers[*register as usize] = *value;
         }
     }
@@ -110,7 +111,7 @@ impl System {
         self.registers.copy_from_slice(&before);
         for (crossing, _) in sides {
             if let Some(at) = self.relation_of(*crossing) {
-                self.is_idle[at] = false;
+                self.relations.is_idle[at] = false;
             }
         }
         Ok(false)
@@ -118,9 +119,13 @@ impl System {
 
     /// Notes of the relations that have changed in the event at hand whether anything followed.
     pub(super) fn note_idle_relations(&mut self) {
-        let changed =
-            self.has_changed.iter().zip(&mut self.is_idle).filter(|(changed, _)| **changed);
-        changed.for_each(|(_, is_idle)| *is_idle = !self.has_effect);
+        let changed = self
+            .relations
+            .has_changed
+            .iter()
+            .zip(&mut self.relations.is_idle)
+            .filter(|(changed, _)| **changed);
+        changed.for_each(|(_, is_idle)| *is_idle = !self.relations.has_effect);
     }
 
     /// Whether the last event of a relation has changed nothing.
@@ -128,7 +133,7 @@ impl System {
         let Some(at) = self.relation_of(crossing) else { return false };
         let operator = self.program.relations[at].operator;
         let has_sides = !matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
-        has_sides && self.is_idle[at] && self.histories.is_empty()
+        has_sides && self.relations.is_idle[at] && self.delays.histories.is_empty()
     }
 
     /// Whether the condition of a `reinit` holds.
@@ -142,27 +147,32 @@ impl System {
 
     pub(super) fn keep_uncertainty(&mut self, crossings: &[f64]) {
         for (at, value) in self.program.crossing_relations.iter().zip(crossings) {
-            self.uncertainty[*at] = *value;
+            self.relations.uncertainty[*at] = *value;
         }
     }
 
     pub(super) fn keep_relations_of(&mut self, crossings: &[(usize, f64)]) {
-        self.kept.clear();
+        self.relations.kept.clear();
         for (crossing, limit) in crossings {
-            self.kept.extend(self.relation_of(*crossing).map(|at| (at, *limit)));
+            self.relations.kept.extend(self.relation_of(*crossing).map(|at| (at, *limit)));
         }
     }
 
     pub(super) fn note_treated(&mut self, time: f64, crossing: usize, treatment: Treatment) {
         let Some(relation) = self.relation_of(crossing) else { return };
         let span = self.program.sorted().dae.relations[relation].span;
-        if !self.treated.iter().any(|known| known.span == span && known.treatment == treatment) {
-            self.treated.push(Treated { time, treatment, span });
+        if !self
+            .relations
+            .treated
+            .iter()
+            .any(|known| known.span == span && known.treatment == treatment)
+        {
+            self.relations.treated.push(Treated { time, treatment, span });
         }
     }
 
     /// What was done about relations that chattered in the last simulation, once for each place.
     pub fn treated(&self) -> &[Treated] {
-        &self.treated
+        &self.relations.treated
     }
 }

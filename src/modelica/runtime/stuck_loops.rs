@@ -70,9 +70,12 @@ impl System {
     fn nearest(&self, block: u32, when: When) -> Option<(&[f64], &[f64])> {
         let program = self.program();
         let steps_and_solvers = match when {
-            When::Start => vec![(&program.initial_steps, &self.initial_solvers)],
+            When::Start => vec![(&program.initial_steps, &self.loops.initial_solvers)],
             When::Later => {
-                vec![(&program.steps, &self.solvers), (&program.events.steps, &self.event_solvers)]
+                vec![
+                    (&program.steps, &self.loops.solvers),
+                    (&program.events.steps, &self.loops.event_solvers),
+                ]
             }
         };
         steps_and_solvers.into_iter().find_map(|(steps, solvers)| {

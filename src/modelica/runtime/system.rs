@@ -1,16 +1,13 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
-use super::delay_buffer::History;
 use super::execution::{Operation, read, run, run_assignments, run_parameter, run_strictly};
-use super::instants::{Change, Clock, Stage, either, same_time};
-use super::modes::{Modes, Treated};
+use super::instants::{Change, Stage, either, same_time};
 use super::newton::LoopSolver;
 use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
-use super::simulation_log::SimulationLog;
+use super::state::{DelayState, EventState, LoopState, MessageState, OutputState, RelationState};
 use super::state_selection::Choice;
-use super::transport_record::Record;
-use crate::codegen::code::{LogAssertion, Outputs, Step};
+use crate::codegen::code::{LogAssertion, Step};
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Program, number_of_equations};
 use crate::codegen::sequence::{expressions, observing};
@@ -19,7 +16,7 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
 use crate::symbolic::VarId;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// A system whose relations inside `noEvent` are looked at, or have events.
 #[derive(Debug, Clone, Default)]
@@ -37,83 +34,15 @@ pub struct System {
     pub(super) registers: Memory,
     /// Values set from outside, by number of the parameter.
     pub(super) set: Vec<Option<f64>>,
-    observed: Option<Outputs>,
-    /// What is observed where variables that nothing reads have no value.
-    pub(super) others: OtherVariables,
-    /// What [`System::observe_only`] was asked for.
-    pub(super) observed_variables: Option<Vec<usize>>,
-    /// Times at which relations on time switch.
-    pub(super) switches: Vec<Option<f64>>,
-    /// Whether no event has followed the initialization yet: relations on time have literally the
-    /// values that they have at the start, not those after it.
-    pub(super) is_at_start: bool,
-    /// Relations on time that change after their instants.
-    pub(super) postponed: Vec<bool>,
-    /// What reads a parameter that a function has left without value fails with.
-    lacking: Option<Failure>,
-    /// Whether relations have changed in the event at hand.
-    pub(super) has_changed: Vec<bool>,
-    /// Relations that keep changing in the round at hand.
-    pub(super) inconsistent: Vec<bool>,
-    /// Whether the last event of each relation has changed no value of events.
-    pub(super) is_idle: Vec<bool>,
-    /// Whether the event at hand has changed values of events.
-    pub(super) has_effect: bool,
-    /// Whether relations have been kept at a value that their sides did not quite have.
-    pub(super) held: Vec<bool>,
-    /// Whether such relations are kept so from the beginning of the event at hand.
-    pub(super) keeps_held: bool,
-    /// What the tolerance makes of the sides of relations, and whether it tolerates relations that
-    /// do not hold, and by how much it has.
-    pub(super) uncertainty: Vec<f64>,
-    pub(super) is_lenient: bool,
-    pub(super) tolerated: Vec<f64>,
-    /// What the code of the crossing functions computes.
-    pub(super) crossing_values: Vec<f64>,
-    /// Relations that events keep as they are, as long as their sides differ by no more.
-    pub(super) kept: Vec<(usize, f64)>,
     nominal: Vec<f64>,
-    /// One for every loop of the initial system, of the system, and of that at events, in order.
-    pub(super) initial_solvers: Vec<LoopSolver>,
-    pub(super) solvers: Vec<LoopSolver>,
-    pub(super) event_solvers: Vec<LoopSolver>,
-    /// One for every selection of states.
-    pub(super) choices: Vec<Choice>,
-    /// Whether the iteration variables are solved for in every evaluation.
-    pub(super) solves_loops: bool,
-    /// That of the Jacobian of the states alone, where loops are solved inside: full.
-    full_pattern: OnceLock<Pattern>,
-    /// The samples.
-    pub(super) clocks: Vec<Clock>,
-    /// How many knots of each recording of inputs have been passed.
-    pub(super) knots_passed: Vec<usize>,
-    /// Values that discrete variables had before an event.
-    pub(super) before: Vec<f64>,
-    /// Values that variables of discrete loops had in the pass before.
-    pub(super) previous_iterate: Vec<f64>,
-    /// The past of delayed expressions, and by how much they are delayed.
-    pub(super) histories: Vec<History>,
-    pub(super) delay_times: Vec<f64>,
-    /// What variable delays and pipes have recorded.
-    pub(super) transported: Vec<Record>,
-    /// Whether samples are true that an event at the same time makes false.
-    pub(super) sampled: bool,
-    /// The variable that changed last in an event iteration.
-    pub(super) unstable: u32,
     /// Derivatives that are carried along, if any are.
     pub(super) sensitivity: Option<Box<Sensitivity>>,
-    /// The text of the assertion that failed last, with its values, and its number.
-    pub(super) failed_message: Option<(u32, String)>,
-    /// The log of a simulation, where there is a listener.
-    pub(super) log: Option<SimulationLog>,
-    /// The modes on both sides of relations.
-    pub(super) modes: Modes,
-    /// What was done about relations that chattered.
-    pub(super) treated: Vec<Treated>,
-    /// Of the observed variables those of which a mean is a value.
-    has_means: Vec<bool>,
-    /// Its relations inside `noEvent`.
-    pub(super) literal: LiteralRelations,
+    pub(super) relations: RelationState,
+    pub(super) loops: LoopState,
+    pub(super) delays: DelayState,
+    pub(super) events: EventState,
+    pub(super) outputs: OutputState,
+    pub(super) messages: MessageState,
 }
 
 impl Program {
@@ -131,47 +60,14 @@ impl System {
         let mut system = System {
             registers,
             set: vec![None; program.parameters().len()],
-            observed: None,
-            others: OtherVariables::default(),
-            observed_variables: None,
-            switches: vec![None; program.relations.len()],
-            is_at_start: false,
-            postponed: vec![false; program.relations.len()],
-            lacking: None,
-            has_changed: vec![false; program.relations.len()],
-            inconsistent: vec![false; program.relations.len()],
-            is_idle: vec![false; program.relations.len()],
-            has_effect: false,
-            held: vec![false; program.relations.len()],
-            keeps_held: false,
-            uncertainty: vec![0.0; program.relations.len()],
-            is_lenient: false,
-            tolerated: vec![0.0; program.relations.len()],
-            crossing_values: Vec::new(),
-            kept: Vec::new(),
             nominal: vec![1.0; n],
-            initial_solvers: Vec::new(),
-            solvers: Vec::new(),
-            event_solvers: Vec::new(),
-            choices: Vec::new(),
-            solves_loops: false,
-            full_pattern: OnceLock::new(),
-            clocks: Vec::with_capacity(program.events.samples.len()),
-            knots_passed: vec![0; program.sorted.dae.events.recordings.len()],
-            before: vec![0.0; program.events.discrete.len()],
-            previous_iterate: vec![0.0; program.events.iterated.len()],
-            histories: vec![History::default(); program.events.delays.len()],
-            delay_times: vec![0.0; program.events.delays.len()],
-            transported: Vec::new(),
-            sampled: false,
-            unstable: 0,
             sensitivity: None,
-            failed_message: None,
-            log: None,
-            modes: Modes::default(),
-            treated: Vec::new(),
-            has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
-            literal: LiteralRelations::default(),
+            relations: RelationState::new(&program),
+            loops: LoopState::default(),
+            delays: DelayState::new(&program),
+            events: EventState::new(&program),
+            outputs: OutputState::new(&program),
+            messages: MessageState::default(),
             program,
         };
         system.evaluate_nominals();
@@ -223,16 +119,16 @@ impl System {
     /// one column each in this order, and computes nothing that they do not need.
     pub fn observe_only(&mut self, variables: &[usize]) {
         self.restore_program();
-        self.observed_variables = Some(variables.to_vec());
+        self.outputs.observed_variables = Some(variables.to_vec());
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = expressions(&program, &mut pool, variables);
         let (registers, observed) = observing(&program, &pool, &outputs);
         self.registers.extend(&registers);
-        self.observed = Some(observed);
-        self.others = OtherVariables::default();
+        self.outputs.observed = Some(observed);
+        self.outputs.others = OtherVariables::default();
         let variables = variables.iter().map(|at| program.variables()[*at].variable);
-        self.has_means = variables.map(|v| program.has_means(v)).collect();
+        self.outputs.has_means = variables.map(|v| program.has_means(v)).collect();
     }
 
     /// The value of a parameter or constant (position in [`Program::variables`]) after
@@ -263,7 +159,7 @@ impl System {
         for (variable, value) in self.program.unknowns.iter().zip(y) {
             registers[variable.0 as usize] = *value;
         }
-        if !self.histories.is_empty() {
+        if !self.delays.histories.is_empty() {
             self.load_delayed(t);
         }
         self.load_transported(t, false);
@@ -274,7 +170,7 @@ impl System {
 
     /// Whether loops are solved inside, and there are some.
     fn has_inner_loops(&self) -> bool {
-        self.solves_loops && !self.program.iteration.is_empty()
+        self.loops.solves_loops && !self.program.iteration.is_empty()
     }
 
     /// Loads y, and solves for the iteration variables that it does not hold.
@@ -331,7 +227,7 @@ impl System {
 
     /// Whether a value is a number; it need not be where a parameter has no value.
     fn is_a_number(&self, value: f64) -> Result<(), Failure> {
-        match &self.lacking {
+        match &self.messages.lacking {
             Some(failure) if value.is_nan() => Err(*failure),
             _ => Ok(()),
         }
@@ -341,7 +237,7 @@ impl System {
     fn is_finite(&self, parameter: VarId) -> Result<(), Failure> {
         let value = self.registers[parameter.0 as usize];
         self.is_a_number(value)?;
-        if value.is_finite() || (value.is_nan() && self.lacking.is_some()) {
+        if value.is_finite() || (value.is_nan() && self.messages.lacking.is_some()) {
             return Ok(());
         }
         let origin = number_of_equations(&self.program.sorted) as u32 + parameter.0;
@@ -354,10 +250,10 @@ impl System {
     /// One of them cannot be computed.
     pub fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
-        self.lacking = None;
+        self.messages.lacking = None;
         self.registers.calls.restart();
-        let solvers = self.initial_solvers.iter_mut().chain(&mut self.solvers);
-        solvers.chain(&mut self.event_solvers).for_each(LoopSolver::forget);
+        let solvers = self.loops.initial_solvers.iter_mut().chain(&mut self.loops.solvers);
+        solvers.chain(&mut self.loops.event_solvers).for_each(LoopSolver::forget);
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();
@@ -375,7 +271,7 @@ impl System {
             match set {
                 Some((_, value)) => self.registers[parameter.0 as usize] = *value,
                 None => match run_parameter(*parameter, tape, &mut self.registers)? {
-                    Some(failure) => self.lacking = Some(failure),
+                    Some(failure) => self.messages.lacking = Some(failure),
                     None => self.is_finite(*parameter)?,
                 },
             }
@@ -405,13 +301,13 @@ impl System {
         for (at, variable) in program.unknowns.iter().enumerate() {
             self.nominal[at] = self.nominal_of(*variable);
         }
-        self.initial_solvers = self.solvers_of(&program.initial_steps);
-        self.solvers = self.solvers_of(&program.steps);
-        self.event_solvers = self.solvers_of(&program.events.steps);
+        self.loops.initial_solvers = self.solvers_of(&program.initial_steps);
+        self.loops.solvers = self.solvers_of(&program.steps);
+        self.loops.event_solvers = self.solvers_of(&program.events.steps);
         for selection in &program.selections {
             let candidates = selection.candidates.iter();
             let nominal = candidates.map(|c| self.nominal_of(VarId(*c))).collect();
-            self.choices.push(Choice::new(selection, nominal));
+            self.loops.choices.push(Choice::new(selection, nominal));
         }
     }
 
@@ -448,14 +344,14 @@ impl System {
     pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
         let program = self.program.clone();
         let (steps, solvers) = match stage {
-            Stage::Initial => (&program.initial_steps, &mut self.initial_solvers),
+            Stage::Initial => (&program.initial_steps, &mut self.loops.initial_solvers),
             Stage::Event if !program.events.steps.is_empty() => {
-                (&program.events.steps, &mut self.event_solvers)
+                (&program.events.steps, &mut self.loops.event_solvers)
             }
-            Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
+            Stage::Event | Stage::Continuous => (&program.steps, &mut self.loops.solvers),
         };
         let initial = stage == Stage::Initial;
-        if initial && self.log.is_some() {
+        if initial && self.messages.log.is_some() {
             self.registers.forget_solutions();
         }
         let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
@@ -495,14 +391,14 @@ impl System {
         }
         self.take_start_values_of_events();
         self.start_recordings(t);
-        self.has_changed.fill(false);
-        self.held.fill(false);
-        self.is_idle.fill(false);
-        self.uncertainty.fill(0.0);
-        self.tolerated.fill(0.0);
+        self.relations.has_changed.fill(false);
+        self.relations.held.fill(false);
+        self.relations.is_idle.fill(false);
+        self.relations.uncertainty.fill(0.0);
+        self.relations.tolerated.fill(0.0);
         self.update_relations(t, Change::All);
-        self.has_changed.fill(false);
-        for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
+        self.relations.has_changed.fill(false);
+        for (choice, selection) in self.loops.choices.iter_mut().zip(&program.selections) {
             choice.reset(selection, &mut self.registers);
         }
         Ok(())
@@ -511,7 +407,7 @@ impl System {
     /// Chooses better states where those at hand come to their end; whether it did.
     pub(super) fn improve_choices(&mut self) -> Result<bool, Failure> {
         let mut improved = false;
-        for (choice, selection) in self.choices.iter_mut().zip(&self.program.selections) {
+        for (choice, selection) in self.loops.choices.iter_mut().zip(&self.program.selections) {
             improved |= choice.improve(selection, &mut self.registers)?;
         }
         Ok(improved)
@@ -528,15 +424,15 @@ impl DaeSystem for System {
     }
 
     fn n_algebraic(&self) -> usize {
-        if self.solves_loops { 0 } else { self.program.iteration.len() }
+        if self.loops.solves_loops { 0 } else { self.program.iteration.len() }
     }
 
     fn n_auxiliary(&self) -> usize {
-        if self.solves_loops { 0 } else { self.program.n_auxiliary }
+        if self.loops.solves_loops { 0 } else { self.program.n_auxiliary }
     }
 
     fn solve_loops(&mut self, inside: bool) {
-        self.solves_loops = inside;
+        self.loops.solves_loops = inside;
     }
 
     fn nominal(&self, out: &mut [f64]) {
@@ -552,7 +448,7 @@ impl DaeSystem for System {
         if !self.has_inner_loops() {
             return &self.program.pattern;
         }
-        self.full_pattern.get_or_init(|| Pattern::full(self.n_differential()))
+        self.loops.full_pattern.get_or_init(|| Pattern::full(self.n_differential()))
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
@@ -580,17 +476,19 @@ impl DaeSystem for System {
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        self.postponed.fill(false);
-        self.is_at_start = true;
+        self.relations.postponed.fill(false);
+        self.relations.is_at_start = true;
         self.solve_for_start(t, y)
     }
 
     fn has_event_at_start(&self) -> bool {
-        self.is_at_start && self.changes_after(self.registers[0])
+        self.relations.is_at_start && self.changes_after(self.registers[0])
     }
 
     fn n_crossings(&self) -> usize {
-        self.program.n_crossings() + self.choices.len() + 2 * self.program.events.transports.len()
+        self.program.n_crossings()
+            + self.loops.choices.len()
+            + 2 * self.program.events.transports.len()
     }
 
     fn crossings_vary_in_time(&self) -> bool {
@@ -611,11 +509,11 @@ impl DaeSystem for System {
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
         let (first, others) = out.split_at_mut(self.program.n_crossings());
-        let (last, transported) = others.split_at_mut(self.choices.len());
+        let (last, transported) = others.split_at_mut(self.loops.choices.len());
         self.relation_crossings(first)?;
         self.transported_crossings(t, transported)?;
         for ((choice, selection), out) in
-            self.choices.iter_mut().zip(&self.program.selections).zip(last)
+            self.loops.choices.iter_mut().zip(&self.program.selections).zip(last)
         {
             *out = choice.quality(selection, &mut self.registers)?;
         }
@@ -625,6 +523,7 @@ impl DaeSystem for System {
     fn next_time_event(&self, t: f64) -> Option<f64> {
         let later = |time: &f64| *time > t && !same_time(*time, t);
         let all = self
+            .relations
             .switches
             .iter()
             .flatten()
@@ -637,15 +536,15 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         if self.program.acts_by_recordings_alone() {
-            self.is_at_start = false;
+            self.relations.is_at_start = false;
             self.registers.calls.next_instant();
             return Ok(EventOutcome::Continue { y_changed: self.advance_recordings(t) });
         }
         self.load(t, y);
-        self.is_at_start = false;
+        self.relations.is_at_start = false;
         self.registers.calls.next_instant();
-        self.has_changed.fill(false);
-        self.has_effect = false;
+        self.relations.has_changed.fill(false);
+        self.relations.has_effect = false;
         self.enter_event(t)?;
         let mut outcome = self.event(t)?;
         self.note_idle_relations();
@@ -674,7 +573,7 @@ impl DaeSystem for System {
     }
 
     fn longest_step(&self) -> f64 {
-        self.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
+        self.delays.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
     }
 
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
@@ -687,7 +586,7 @@ impl DaeSystem for System {
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let tells = self.log.is_some() && !self.program.log_assertions.is_empty();
+        let tells = self.messages.log.is_some() && !self.program.log_assertions.is_empty();
         if self.program.assertions.is_empty() && !tells {
             return Ok(());
         }
@@ -734,7 +633,7 @@ impl DaeSystem for System {
     }
 
     fn has_means(&self, observed: usize) -> bool {
-        self.has_means.get(observed).is_none_or(|has| *has)
+        self.outputs.has_means.get(observed).is_none_or(|has| *has)
     }
 
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
@@ -763,22 +662,22 @@ impl DaeSystem for System {
         if let Some(sensitivity) = &self.sensitivity {
             return sensitivity.code.observe.outputs.len();
         }
-        self.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
+        self.outputs.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        if self.solves_loops {
+        if self.loops.solves_loops {
             self.differentiate_algebraic()?;
         }
         if let Some(sensitivity) = &self.sensitivity {
             let code = &sensitivity.code.observe;
             return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
         }
-        if self.log.is_some() {
+        if self.messages.log.is_some() {
             self.registers.forget_solutions();
         }
-        let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
+        let observed = self.outputs.observed.as_ref().unwrap_or(&self.program.observe);
         if let Err(failure) = read(observed, &mut self.registers, out) {
             let failure = self.refine(failure);
             self.observe_others(t, failure, out)?;

@@ -34,13 +34,14 @@ impl System {
     /// Sets the values at `t`, in other pieces than before if `is_restart`; whether one has
     /// changed.
     pub(super) fn load_transported(&mut self, t: f64, is_restart: bool) -> bool {
-        if self.transported.is_empty() {
+        if self.delays.transported.is_empty() {
             return false;
         }
         let program = self.program.clone();
         for pass in 0..PASSES {
             let mut changed = false;
-            for (code, record) in program.events.transports.iter().zip(&mut self.transported) {
+            for (code, record) in program.events.transports.iter().zip(&mut self.delays.transported)
+            {
                 let Ok(place) = place(code, &mut self.registers, t) else { continue };
                 if is_restart {
                     record.profile.locate(place.at, place.from);
@@ -74,16 +75,16 @@ impl System {
     /// began with other values.
     pub(super) fn start_transported(&mut self, t: f64) -> Result<bool, Failure> {
         let program = self.program.clone();
-        let mut changed = self.transported.len() != program.events.transports.len();
+        let mut changed = self.delays.transported.len() != program.events.transports.len();
         let mut records = Vec::with_capacity(program.events.transports.len());
         for (at, code) in program.events.transports.iter().enumerate() {
             let start = values(&code.start, &mut self.registers)?;
             let inputs = values(&code.inputs, &mut self.registers)?;
             let place = place(code, &mut self.registers, t)?;
-            changed |= self.transported.get(at).is_none_or(|record| record.first != inputs);
+            changed |= self.delays.transported.get(at).is_none_or(|record| record.first != inputs);
             records.push(Record::start(&start, place, &inputs, t));
         }
-        self.transported = records;
+        self.delays.transported = records;
         Ok(changed)
     }
 
@@ -93,7 +94,7 @@ impl System {
         for (at, code) in program.events.transports.iter().enumerate() {
             let inputs = values(&code.inputs, &mut self.registers)?;
             let place = place(code, &mut self.registers, t)?;
-            self.transported[at].push(code.is_pipe(), place, &inputs, t);
+            self.delays.transported[at].push(code.is_pipe(), place, &inputs, t);
         }
         Ok(())
     }
@@ -101,7 +102,7 @@ impl System {
     /// Functions that cross zero where the piece that is read ends, two for every record.
     pub(super) fn transported_crossings(&mut self, t: f64, out: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
-        let codes = program.events.transports.iter().zip(&self.transported);
+        let codes = program.events.transports.iter().zip(&self.delays.transported);
         for ((code, record), out) in codes.zip(out.chunks_exact_mut(2)) {
             let place = place(code, &mut self.registers, t)?;
             let (below, above) = record.profile.borders();
@@ -113,7 +114,7 @@ impl System {
 
     /// The longest step for which what is read is recorded before it.
     pub(super) fn longest_transport(&self) -> f64 {
-        let codes = self.program.events.transports.iter().zip(&self.transported);
+        let codes = self.program.events.transports.iter().zip(&self.delays.transported);
         codes
             .map(|(code, record)| record.longest_step(code.is_pipe()))
             .fold(f64::INFINITY, f64::min)
