@@ -14,7 +14,8 @@ use super::linearity::linearity;
 use super::memory::Memory;
 use super::oscillations::oscillations;
 use super::program::{
-    Access, Literal, ParameterInfo, Program, Unread, VariableInfo, number_of_equations,
+    Access, Continuous, Literal, ParameterInfo, Program, Switching, Unread, Values, VariableInfo,
+    number_of_equations,
 };
 use super::registers::Registers;
 use super::relation_groups::{memoryless, relations_of_blocks};
@@ -31,7 +32,6 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::errors::PARAMETER_WITHOUT_VALUE;
 use crate::lower::{Dae, Level, Variable, VariableKind};
-use crate::sim::{Linearity, Pattern};
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -45,56 +45,36 @@ impl Program {
         let mut compilation = Compilation::new(causalized);
         let blocks = compilation.blocks();
         let continuous = compilation.continuous();
-        let relations = compilation.relations();
+        let (switching, roundings) = compilation.relations();
         let selections = compilation.selections();
         let observe = compilation.observation();
         let [assertions, log_assertions] = [true, false].map(|e| compilation.assertions(e));
         let initial_checks = compilation.initial_checks();
         let mut events = compilation.events();
-        (events.steps, events.roundings) = (blocks.at_events, relations.roundings);
+        (events.steps, events.roundings) = (blocks.at_events, roundings);
         let values = compilation.values();
         let unread = compilation.unread(blocks.unread);
         let Compilation { causalized, pool, registers, sequence, observed, .. } = compilation;
         let mut program = Program {
             variables: variables(&causalized, &observed),
             parameters: parameters(&causalized),
-            relations_of_blocks: relations_of_blocks(&pool, &causalized),
-            memoryless: memoryless(&pool, &causalized, &relations.relations),
             reads_rates: reads_rates(&pool, &causalized),
             sorted: CausalizedDae { dae: Dae { pool, ..causalized.dae }, ..causalized },
             registers,
             sequence,
-            integrated: continuous.sequence,
-            residuals: continuous.residuals,
-            unknowns: continuous.unknowns,
-            iteration: continuous.iteration,
-            n_auxiliary: continuous.n_auxiliary,
             observed,
             unread,
-            parameter_tapes: values.parameters,
-            starts: values.starts,
-            solved: values.solved,
-            nominals: values.nominals,
             initial_steps: blocks.initial,
             initial_checks,
             steps: blocks.between_events,
-            relations: relations.relations,
-            relation_sides: relations.sides,
-            time_rests: relations.time_rests,
-            rescheduled_rests: relations.rescheduled_rests,
-            rhs: continuous.rhs,
-            jacobian: continuous.jacobian,
-            pattern: continuous.pattern,
-            linearity: continuous.linearity,
-            crossing_relations: relations.crossing_relations,
-            crossings_vary_in_time: relations.crossings_vary_in_time,
-            crossings: relations.crossings,
-            oscillations: relations.oscillations,
             selections,
             observe,
             assertions,
             log_assertions,
             events,
+            continuous,
+            switching,
+            values,
             literal: Literal::default(),
         };
         program.fill_defaults();
@@ -137,40 +117,6 @@ struct Blocks {
     initial: Vec<Step>,
     at_events: Vec<Step>,
     unread: Vec<VarId>,
-}
-
-/// What the integrator evaluates: right sides, residuals, and their Jacobian.
-struct Continuous {
-    sequence: Vec<Assignment>,
-    residuals: Vec<Expr>,
-    unknowns: Vec<VarId>,
-    iteration: Vec<VarId>,
-    n_auxiliary: usize,
-    rhs: Outputs,
-    jacobian: Outputs,
-    pattern: Pattern,
-    linearity: Option<Linearity>,
-}
-
-/// Relations and roundings with their crossing functions.
-struct Relations {
-    relations: Vec<CompiledRelation>,
-    sides: Vec<Outputs>,
-    roundings: Vec<CompiledRounding>,
-    time_rests: Tape,
-    rescheduled_rests: Option<Tape>,
-    crossing_relations: Vec<usize>,
-    crossings_vary_in_time: bool,
-    crossings: Outputs,
-    oscillations: Outputs,
-}
-
-/// Code for single values: parameters, start values, nominal values.
-struct Values {
-    parameters: Vec<(VarId, Tape)>,
-    starts: Vec<(VarId, Tape)>,
-    nominals: Vec<(VarId, Tape, Register)>,
-    solved: Vec<VarId>,
 }
 
 impl Compilation {
@@ -245,7 +191,7 @@ impl Compilation {
         let extended = derivatives.sequence;
         let jacobian = compile_continuous(pool, registers, &extended, &entries, Hoisting::Total);
         Continuous {
-            sequence,
+            integrated: sequence,
             residuals,
             unknowns,
             iteration,
@@ -257,7 +203,7 @@ impl Compilation {
         }
     }
 
-    fn relations(&mut self) -> Relations {
+    fn relations(&mut self) -> (Switching, Vec<CompiledRounding>) {
         let Compilation { causalized, pool, registers, sequence, .. } = self;
         let mut relations = Vec::new();
         let mut sides = Vec::new();
@@ -332,17 +278,19 @@ impl Compilation {
         let rates = oscillations(pool, causalized, &needed, &differences);
         let oscillations = compile_outputs(pool, registers, &[], &rates);
         let time_rests = time_rests.tape;
-        Relations {
+        let switching = Switching {
+            relations_of_blocks: relations_of_blocks(pool, causalized),
+            memoryless: memoryless(pool, causalized, &relations),
             relations,
-            sides,
-            roundings,
+            relation_sides: sides,
             time_rests,
             rescheduled_rests,
             crossing_relations,
             crossings_vary_in_time,
             crossings,
             oscillations,
-        }
+        };
+        (switching, roundings)
     }
 
     fn selections(&mut self) -> Vec<CompiledSelection> {
@@ -464,7 +412,7 @@ impl Compilation {
                 nominals.push((id, builder.finish(), register));
             }
         }
-        Values { parameters, starts, nominals, solved }
+        Values { parameter_tapes: parameters, starts, nominals, solved }
     }
 }
 
@@ -526,7 +474,7 @@ fn default_values(program: &Program) -> (Vec<f64>, Vec<Diagnostic>) {
     let mut registers = Memory::new(&program.registers);
     registers.calls.keeps_unassigned = true;
     let mut warnings = Vec::new();
-    for (parameter, tape) in &program.parameter_tapes {
+    for (parameter, tape) in &program.values.parameter_tapes {
         if let Err(failed) = tape.run(&mut registers) {
             registers[parameter.0 as usize] = f64::NAN;
             if let Some(function) = tape.lacking(failed) {

@@ -158,8 +158,8 @@ impl Program {
                 return None;
             }
             let program = Program::compile(with_events(&self.sorted, &literal)).ok()?;
-            let is_alike = program.unknowns == self.unknowns
-                && program.n_auxiliary == self.n_auxiliary
+            let is_alike = program.continuous.unknowns == self.continuous.unknowns
+                && program.continuous.n_auxiliary == self.continuous.n_auxiliary
                 && program.observed == self.observed;
             is_alike.then_some(program)
         });

@@ -123,32 +123,54 @@ pub struct Program {
     pub(crate) registers: Registers,
     /// Everything in solving order, iteration variables of loops given.
     pub(crate) sequence: Vec<Assignment>,
-    /// The same where all algebraic unknowns of the integrator are given.
-    pub(crate) integrated: Vec<Assignment>,
-    /// What must be zero there.
-    pub(super) residuals: Vec<Expr>,
-    /// The unknowns of the integrator: states, then [`Program::iteration`].
-    pub(crate) unknowns: Vec<VarId>,
-    /// The algebraic ones.
-    pub(crate) iteration: Vec<VarId>,
-    /// Of these, how many at the end are in the sequence as well.
-    pub(crate) n_auxiliary: usize,
     pub(super) parameters: Vec<ParameterInfo>,
     pub(super) variables: Vec<VariableInfo>,
     pub(crate) observed: Vec<VarId>,
     /// Of these, those that are computed for results alone and may have no value.
     pub(crate) unread: Unread,
-    /// Every parameter's own tape, in order.
-    pub(crate) parameter_tapes: Vec<(VarId, Tape)>,
-    /// Start value of every unknown that has one.
-    pub(crate) starts: Vec<(VarId, Tape)>,
-    /// Parameters that the initial system determines.
-    pub(crate) solved: Vec<VarId>,
-    pub(crate) nominals: Vec<(VarId, Tape, Register)>,
     pub(crate) initial_steps: Vec<Step>,
     /// Both sides of what initial values must fulfil besides.
     pub(crate) initial_checks: Vec<Outputs>,
     pub(crate) steps: Vec<Step>,
+    pub(crate) selections: Vec<CompiledSelection>,
+    pub(crate) observe: Outputs,
+    pub(crate) assertions: Vec<LogAssertion>,
+    /// Warnings: they do not end a simulation.
+    pub(crate) log_assertions: Vec<LogAssertion>,
+    pub(crate) events: Events,
+    /// Whether equations contain the derivatives of recorded inputs, which jump at every knot.
+    pub(crate) reads_rates: bool,
+    pub(crate) continuous: Continuous,
+    pub(crate) switching: Switching,
+    pub(crate) values: Values,
+    /// What became of its relations inside `noEvent`.
+    #[serde(skip)]
+    pub(super) literal: Literal,
+}
+
+/// What the integrator evaluates: right-hand sides, residuals, and their Jacobian.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Continuous {
+    /// The same where all algebraic unknowns of the integrator are given.
+    pub(crate) integrated: Vec<Assignment>,
+    /// What must be zero there.
+    pub(crate) residuals: Vec<Expr>,
+    /// The unknowns of the integrator: states, then [`Continuous::iteration`].
+    pub(crate) unknowns: Vec<VarId>,
+    /// The algebraic ones.
+    pub(crate) iteration: Vec<VarId>,
+    /// Of these, how many at the end are in the sequence as well.
+    pub(crate) n_auxiliary: usize,
+    pub(crate) rhs: Outputs,
+    pub(crate) jacobian: Outputs,
+    pub(crate) pattern: Pattern,
+    /// What is known of the right-hand side if it is affine between events.
+    pub(crate) linearity: Option<Linearity>,
+}
+
+/// Relations with their crossing functions.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Switching {
     pub(crate) relations: Vec<CompiledRelation>,
     /// Both sides of every relation, from the registers of the variables.
     pub(crate) relation_sides: Vec<Outputs>,
@@ -156,11 +178,6 @@ pub struct Program {
     pub(crate) time_rests: Tape,
     /// The same for rests that change at events; `None` where there are none.
     pub(crate) rescheduled_rests: Option<Tape>,
-    pub(crate) rhs: Outputs,
-    pub(crate) jacobian: Outputs,
-    pub(crate) pattern: Pattern,
-    /// What is known of the right-hand side if it is affine between events.
-    pub(crate) linearity: Option<Linearity>,
     pub(crate) crossings: Outputs,
     /// Whether these depend on time otherwise than through states and unknowns of loops.
     pub(crate) crossings_vary_in_time: bool,
@@ -172,29 +189,30 @@ pub struct Program {
     pub(crate) relations_of_blocks: Vec<Vec<usize>>,
     /// For every relation, whether only functions of the relations follow from it at events.
     pub(crate) memoryless: Vec<bool>,
-    pub(crate) selections: Vec<CompiledSelection>,
-    pub(crate) observe: Outputs,
-    pub(crate) assertions: Vec<LogAssertion>,
-    /// Warnings: they do not end a simulation.
-    pub(crate) log_assertions: Vec<LogAssertion>,
-    pub(crate) events: Events,
-    /// Whether equations contain the derivatives of recorded inputs, which jump at every knot.
-    pub(crate) reads_rates: bool,
-    /// What became of its relations inside `noEvent`.
-    #[serde(skip)]
-    pub(super) literal: Literal,
+}
+
+/// Code for single values: parameters, start values, nominal values.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Values {
+    /// Every parameter's own tape, in order.
+    pub(crate) parameter_tapes: Vec<(VarId, Tape)>,
+    /// Start value of every unknown that has one.
+    pub(crate) starts: Vec<(VarId, Tape)>,
+    /// Parameters that the initial system determines.
+    pub(crate) solved: Vec<VarId>,
+    pub(crate) nominals: Vec<(VarId, Tape, Register)>,
 }
 
 impl Program {
     /// Number of crossing functions of relations and roundings.
     pub(crate) fn n_crossings(&self) -> usize {
-        self.crossings.outputs.len() - self.crossing_relations.len()
+        self.switching.crossings.outputs.len() - self.switching.crossing_relations.len()
     }
 
     /// Whether recorded inputs alone change at events: there is nothing to iterate.
     pub(crate) fn acts_by_recordings_alone(&self) -> bool {
         self.events.is_empty()
-            && self.relations.is_empty()
+            && self.switching.relations.is_empty()
             && self.events.roundings.is_empty()
             && self.steps.iter().all(|step| matches!(step, Step::Run(_)))
             && self.selections.is_empty()

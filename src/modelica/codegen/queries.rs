@@ -49,16 +49,16 @@ impl Program {
 
     /// The name of an unknown of the integrator.
     pub fn unknown_name(&self, unknown: usize) -> Option<&Arc<str>> {
-        self.unknowns.get(unknown).map(|v| &self.sorted.dae.variable(*v).name)
+        self.continuous.unknowns.get(unknown).map(|v| &self.sorted.dae.variable(*v).name)
     }
 
     /// Where the relation or rounding of a crossing function is written.
     pub fn crossing_place(&self, crossing: usize) -> Option<Span> {
         let dae = &self.sorted.dae;
-        match self.crossing_relations.get(crossing) {
+        match self.switching.crossing_relations.get(crossing) {
             Some(relation) => dae.relations.get(*relation).map(|relation| relation.span),
             None => {
-                let rounding = crossing.checked_sub(self.crossing_relations.len())?;
+                let rounding = crossing.checked_sub(self.switching.crossing_relations.len())?;
                 dae.events.roundings.get(rounding).map(|rounding| rounding.span)
             }
         }
@@ -150,7 +150,7 @@ impl Program {
             )
         };
         let found = |v: &VarId| needed.contains(v);
-        needed.iter().any(remembered) || self.unknowns.iter().any(found)
+        needed.iter().any(remembered) || self.continuous.unknowns.iter().any(found)
     }
 
     /// Whether a variable is computed from one of these parameters, other parameters between them

@@ -311,33 +311,36 @@ impl Program {
     }
 
     fn has_valid_unknowns(&self, limits: &Limits<'_>) -> bool {
-        let n = self.unknowns.len();
-        n == self.sorted.states.len() + self.iteration.len()
-            && self.n_auxiliary <= self.iteration.len()
-            && self.residuals.len() == self.iteration.len()
-            && self.rhs.has(n, limits)
-            && self.jacobian.is_valid(limits)
-            && fits(&self.pattern, n, self.jacobian.outputs.len())
+        let n = self.continuous.unknowns.len();
+        n == self.sorted.states.len() + self.continuous.iteration.len()
+            && self.continuous.n_auxiliary <= self.continuous.iteration.len()
+            && self.continuous.residuals.len() == self.continuous.iteration.len()
+            && self.continuous.rhs.has(n, limits)
+            && self.continuous.jacobian.is_valid(limits)
+            && fits(&self.continuous.pattern, n, self.continuous.jacobian.outputs.len())
             && self.selections.iter().all(|selection| selection.is_valid(limits))
             && self.steps.iter().chain(&self.initial_steps).all(|step| step.is_valid(limits))
             && self.initial_checks.iter().all(|check| check.has(2, limits))
     }
 
     fn has_valid_relations(&self, limits: &Limits<'_>) -> bool {
-        let n = self.relations.len();
+        let n = self.switching.relations.len();
         let roundings = self.events.roundings.iter().filter(|r| r.time.is_none()).count();
-        let rests = self.relations.iter().filter_map(|relation| relation.time);
-        let groups = self.relations_of_blocks.iter().flatten();
+        let rests = self.switching.relations.iter().filter_map(|relation| relation.time);
+        let groups = self.switching.relations_of_blocks.iter().flatten();
         n == self.sorted.dae.relations.len()
-            && (self.relation_sides.len(), self.memoryless.len()) == (n, n)
-            && self.relation_sides.iter().all(|sides| sides.has(2, limits))
-            && limits.has_all(self.relations.iter().map(|relation| &relation.register))
+            && (self.switching.relation_sides.len(), self.switching.memoryless.len()) == (n, n)
+            && self.switching.relation_sides.iter().all(|sides| sides.has(2, limits))
+            && limits.has_all(self.switching.relations.iter().map(|relation| &relation.register))
             && rests.into_iter().all(|(_, rest)| limits.has(rest, 1))
-            && self.time_rests.is_valid(limits)
-            && self.rescheduled_rests.iter().all(|tape| tape.is_valid(limits))
-            && self.crossing_relations.iter().chain(groups).all(|relation| *relation < n)
-            && self.crossings.has(2 * (self.crossing_relations.len() + roundings), limits)
-            && self.oscillations.is_valid(limits)
+            && self.switching.time_rests.is_valid(limits)
+            && self.switching.rescheduled_rests.iter().all(|tape| tape.is_valid(limits))
+            && self.switching.crossing_relations.iter().chain(groups).all(|relation| *relation < n)
+            && self
+                .switching
+                .crossings
+                .has(2 * (self.switching.crossing_relations.len() + roundings), limits)
+            && self.switching.oscillations.is_valid(limits)
     }
 
     fn has_valid_values(&self, limits: &Limits<'_>) -> bool {
@@ -350,9 +353,10 @@ impl Program {
         let equations = equations.chain(&self.sorted.dae.events.equations);
         self.observe.has(self.observed.len(), limits)
             && self.unread.values.has(self.unread.variables.len(), limits)
-            && self.parameter_tapes.iter().all(|(_, tape)| tape.is_valid(limits))
-            && self.starts.iter().all(|(_, tape)| tape.is_valid(limits))
+            && self.values.parameter_tapes.iter().all(|(_, tape)| tape.is_valid(limits))
+            && self.values.starts.iter().all(|(_, tape)| tape.is_valid(limits))
             && self
+                .values
                 .nominals
                 .iter()
                 .all(|(_, tape, register)| tape.is_valid(limits) && limits.has(*register, 1))
@@ -396,17 +400,17 @@ mod tests {
     #[test]
     fn what_refers_to_nothing_is_not_read() {
         let damages: [fn(&mut Program); 14] = [
-            |p| p.rhs.outputs[0] = u32::MAX,
-            |p| p.rhs.outputs.clear(),
-            |p| p.rhs.tape.code.push(Instruction::Jump { target: 0 }),
-            |p| p.rhs.tape.code.push(Instruction::Return { link: 0 }),
-            |p| p.rhs.tape.code.push(Instruction::Call { call: 1 << 20 }),
-            |p| p.pattern.n += 1,
-            |p| p.pattern.rows[0] = 1 << 40,
-            |p| p.memoryless.clear(),
-            |p| p.crossing_relations.push(1 << 20),
-            |p| p.relation_sides.clear(),
-            |p| p.unknowns.push(VarId(1)),
+            |p| p.continuous.rhs.outputs[0] = u32::MAX,
+            |p| p.continuous.rhs.outputs.clear(),
+            |p| p.continuous.rhs.tape.code.push(Instruction::Jump { target: 0 }),
+            |p| p.continuous.rhs.tape.code.push(Instruction::Return { link: 0 }),
+            |p| p.continuous.rhs.tape.code.push(Instruction::Call { call: 1 << 20 }),
+            |p| p.continuous.pattern.n += 1,
+            |p| p.continuous.pattern.rows[0] = 1 << 40,
+            |p| p.switching.memoryless.clear(),
+            |p| p.switching.crossing_relations.push(1 << 20),
+            |p| p.switching.relation_sides.clear(),
+            |p| p.continuous.unknowns.push(VarId(1)),
             |p| p.variables[1].access = Access::Observed { column: 1 << 20, negated: false },
             |p| p.events.clocks.outputs.truncate(1),
             |p| p.events.reinitialized.push((VarId(1), false)),

@@ -246,7 +246,7 @@ impl System {
     fn values_of_events(&self) -> Vec<u64> {
         let program = &self.program;
         let discrete = program.events.discrete.iter().chain(&program.sorted.states);
-        let relations = program.relations.iter().map(|relation| relation.register);
+        let relations = program.switching.relations.iter().map(|relation| relation.register);
         let previous = program.events.previous.iter().map(|previous| previous.register);
         let all = discrete.map(|v| v.0).chain(relations).chain(previous);
         all.map(|register| self.registers[register as usize].to_bits()).collect()

@@ -85,11 +85,12 @@ impl Program {
         let dae = &self.sorted.dae;
         match offending {
             Offending::Unknown(at) => {
-                let variable = dae.variable(*self.unknowns.get(at as usize)?);
+                let variable = dae.variable(*self.continuous.unknowns.get(at as usize)?);
                 Some((format!("`{}` changes fastest", variable.name), variable.span))
             }
             Offending::Crossing(at) => {
-                let relation = dae.relations.get(*self.crossing_relations.get(at as usize)?)?;
+                let relation =
+                    dae.relations.get(*self.switching.crossing_relations.get(at as usize)?)?;
                 Some(("this relation switches repeatedly".to_owned(), relation.span))
             }
         }
@@ -186,7 +187,7 @@ impl Program {
             return None;
         }
         let mut memory = Memory::new(&self.registers);
-        for (_, tape) in &self.parameter_tapes {
+        for (_, tape) in &self.values.parameter_tapes {
             if tape.run(&mut memory).is_err() && memory.calls.failure == Some(failure) {
                 return Some(memory.calls.message().to_owned());
             }

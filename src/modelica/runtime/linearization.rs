@@ -35,8 +35,8 @@ impl System {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = crate::codegen::sequence::expressions(&program, &mut pool, variables);
-        let columns = &program.unknowns;
-        let needed = slice(&pool, &program.integrated, &outputs);
+        let columns = &program.continuous.unknowns;
+        let needed = slice(&pool, &program.continuous.integrated, &outputs);
         let mut next = program.sorted.dae.variables.len() as u32;
         let derivatives = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
         let places: Vec<(usize, usize)> = derivatives

@@ -60,7 +60,8 @@ impl System {
 
     /// The largest number that relations compare.
     fn largest_side(&self) -> f64 {
-        let sides = self.program.relation_sides.iter().flat_map(|sides| sides.outputs.iter());
+        let sides =
+            self.program.switching.relation_sides.iter().flat_map(|sides| sides.outputs.iter());
         let values = sides.map(|register| self.registers[*register as usize].abs());
         values.filter(|value| value.is_finite()).fold(0.0, f64::max)
     }
@@ -72,7 +73,7 @@ impl System {
         let before = self.registers.clone();
         let program = self.program.clone();
         let mut tried = 0;
-        let groups = program.relations_of_blocks.iter();
+        let groups = program.switching.relations_of_blocks.iter();
         let found = groups.filter(|group| group.len() <= MOST_RELATIONS).any(|group| {
             tried += 1 << group.len();
             tried <= MOST_BRANCHES && self.try_combinations(group, &before, t, stage)
@@ -85,7 +86,7 @@ impl System {
 
     /// The relations that are in a block with one of a group.
     fn companions(&self, group: &[usize]) -> Vec<usize> {
-        let blocks = self.program.relations_of_blocks.iter();
+        let blocks = self.program.switching.relations_of_blocks.iter();
         let touched = blocks.filter(|block| block.iter().any(|at| group.contains(at)));
         let mut others: Vec<usize> =
             touched.flatten().copied().filter(|at| !group.contains(at)).collect();
@@ -102,7 +103,7 @@ impl System {
             for (bit, at) in group.iter().enumerate() {
                 self.relations.has_changed[*at] = true;
                 if combination >> bit & 1 == 1 {
-                    let register = self.program.relations[*at].register as usize;
+                    let register = self.program.switching.relations[*at].register as usize;
                     self.registers[register] = 1.0 - self.registers[register];
                 }
             }
@@ -129,8 +130,9 @@ impl System {
     fn note_inconsistent(&mut self, t: f64) -> bool {
         let mut any = false;
         self.reschedule();
-        for at in 0..self.program.relations.len() {
-            let value = self.registers[self.program.relations[at].register as usize] != 0.0;
+        for at in 0..self.program.switching.relations.len() {
+            let value =
+                self.registers[self.program.switching.relations[at].register as usize] != 0.0;
             if self.relation_value(at, value, t) != value {
                 self.relations.inconsistent[at] = true;
                 any = true;

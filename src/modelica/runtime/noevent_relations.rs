@@ -32,7 +32,7 @@ impl System {
         }
         let Some(program) = self.program.clone().with_events().cloned() else { return Ok(false) };
         let mut next = self.in_program(program);
-        next.start_relations(self.program.relations.len(), t)?;
+        next.start_relations(self.program.switching.relations.len(), t)?;
         let plain = std::mem::replace(self, next);
         self.relations.literal.plain = Some(Box::new(plain));
         Ok(true)
@@ -56,7 +56,7 @@ impl System {
         let n = self.program.sorted.dae.variables.len();
         next.registers[..n].copy_from_slice(&self.registers[..n]);
         next.registers.calls = self.registers.calls.clone();
-        let m = self.program.relations.len();
+        let m = self.program.switching.relations.len();
         next.relations.held[..m].copy_from_slice(&self.relations.held);
         next.relations.tolerated[..m].copy_from_slice(&self.relations.tolerated);
         next.relations.postponed[..m].copy_from_slice(&self.relations.postponed[..m]);
@@ -80,11 +80,11 @@ impl System {
     fn start_relations(&mut self, known: usize, t: f64) -> Result<(), Failure> {
         let program = self.program.clone();
         run(&program.registers.hoisted.tape, &mut self.registers)?;
-        run(&program.time_rests, &mut self.registers)?;
+        run(&program.switching.time_rests, &mut self.registers)?;
         self.reschedule();
-        for at in known..program.relations.len() {
+        for at in known..program.switching.relations.len() {
             let holds = self.relation_value(at, false, t);
-            let register = program.relations[at].register as usize;
+            let register = program.switching.relations[at].register as usize;
             self.registers[register] = f64::from(u8::from(holds));
         }
         Ok(())

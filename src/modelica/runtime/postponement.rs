@@ -36,7 +36,7 @@ impl System {
     /// The relations that change at `t` and do not have literally the value that they have after
     /// it.
     fn to_postpone(&self, t: f64) -> impl Iterator<Item = usize> + '_ {
-        let relations = self.program.relations.iter().enumerate();
+        let relations = self.program.switching.relations.iter().enumerate();
         let switches = relations.zip(&self.relations.switches).zip(&self.relations.postponed);
         switches.filter_map(move |(((at, relation), switch), postponed)| {
             let (factor, _) = relation.time?;

@@ -50,11 +50,11 @@ impl System {
         let program = self.program.clone();
         self.reschedule();
         let mut changed = self.update_roundings(t);
-        for at in 0..program.relations.len() {
+        for at in 0..program.switching.relations.len() {
             if changed && change == Change::First {
                 break;
             }
-            let register = program.relations[at].register;
+            let register = program.switching.relations[at].register;
             let before = self.registers[register as usize] != 0.0;
             if self.relation_value(at, before, t) != before {
                 changed = true;
@@ -71,9 +71,9 @@ impl System {
     /// The times of relations on time whose other terms change at events, with their values at hand.
     pub(super) fn reschedule(&mut self) {
         let program = self.program.clone();
-        let Some(rests) = &program.rescheduled_rests else { return };
+        let Some(rests) = &program.switching.rescheduled_rests else { return };
         let is_known = run(rests, &mut self.registers).is_ok();
-        for (at, relation) in program.relations.iter().enumerate() {
+        for (at, relation) in program.switching.relations.iter().enumerate() {
             if let (Some((factor, rest)), true) = (relation.time, relation.is_rescheduled) {
                 let time = -self.registers[rest as usize] / factor;
                 self.set_switch(at, is_known.then_some(time));
@@ -82,7 +82,7 @@ impl System {
     }
 
     pub(super) fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {
-        let relation = &self.program.relations[at];
+        let relation = &self.program.switching.relations[at];
         let operator = relation.operator;
         if let (Some((factor, _)), Some(switch)) = (relation.time, self.relations.switches[at]) {
             // At the instant itself the value is that after it; at the start, which nothing comes
@@ -94,7 +94,7 @@ impl System {
             };
             return operator.holds(difference, 0.0);
         }
-        let sides = &self.program.relation_sides[at];
+        let sides = &self.program.switching.relation_sides[at];
         if sides.tape.run(&mut self.registers).is_err() {
             return before;
         }
@@ -135,14 +135,14 @@ impl System {
     pub(super) fn relation_crossings(&mut self, out: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
         let mut values = std::mem::take(&mut self.relations.crossing_values);
-        values.resize(program.crossings.outputs.len(), 0.0);
-        let computed = read(&program.crossings, &mut self.registers, &mut values);
-        let n = program.crossing_relations.len();
+        values.resize(program.switching.crossings.outputs.len(), 0.0);
+        let computed = read(&program.switching.crossings, &mut self.registers, &mut values);
+        let n = program.switching.crossing_relations.len();
         let (sides, rest) = values.split_at(2 * n);
         let (first, second) = out.split_at_mut(n);
-        let pairs = sides.chunks_exact(2).zip(&program.crossing_relations);
+        let pairs = sides.chunks_exact(2).zip(&program.switching.crossing_relations);
         for (z, (pair, at)) in first.iter_mut().zip(pairs) {
-            let relation = &program.relations[*at];
+            let relation = &program.switching.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
             let (a, b) = (pair[0], pair[1]);
             let tolerated = self.relations.tolerated[*at];

@@ -243,7 +243,7 @@ impl System {
     /// Derivatives of the algebraic unknowns, those of the states given.
     pub(super) fn differentiate_algebraic(&mut self) -> Result<(), Failure> {
         let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
-        if self.program.iteration.is_empty() {
+        if self.program.continuous.iteration.is_empty() {
             return Ok(());
         }
         let code = sensitivity.code.clone();

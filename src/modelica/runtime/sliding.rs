@@ -20,18 +20,18 @@ const PASSES: usize = 10;
 impl System {
     /// The relation of a crossing function.
     fn relation_of(&self, crossing: usize) -> Option<usize> {
-        self.program.crossing_relations.get(crossing).copied()
+        self.program.switching.crossing_relations.get(crossing).copied()
     }
 
     pub(super) fn is_memoryless(&self, crossing: usize) -> bool {
         let relation = self.relation_of(crossing);
-        relation.is_some_and(|at| self.program.memoryless[at]) && !self.has_past()
+        relation.is_some_and(|at| self.program.switching.memoryless[at]) && !self.has_past()
     }
 
     /// Sets the relation of a crossing function to its value on one side.
     fn set_side(&mut self, crossing: usize, is_positive: bool) {
         let Some(at) = self.relation_of(crossing) else { return };
-        let relation = &self.program.relations[at];
+        let relation = &self.program.switching.relations[at];
         let side = if is_positive { 1.0 } else { -1.0 };
         let holds = relation.operator.holds(side, 0.0);
         let register = relation.register as usize;
@@ -60,8 +60,12 @@ impl System {
         let program = self.program.clone();
         self.relations.modes.registers.clear();
         self.relations.modes.values.clear();
-        let relations = sides.iter().map(|side| program.crossing_relations[side.crossing]);
-        self.relations.modes.registers.extend(relations.map(|at| program.relations[at].register));
+        let relations =
+            sides.iter().map(|side| program.switching.crossing_relations[side.crossing]);
+        self.relations
+            .modes
+            .registers
+            .extend(relations.map(|at| program.switching.relations[at].register));
         self.relations.modes.registers.extend(program.events.discrete.iter().map(|v| v.0));
         let before = self.registers.to_vec();
         let mut found = Ok(true);
@@ -131,7 +135,7 @@ impl System {
     /// Whether the last event of a relation has changed nothing.
     pub(super) fn is_idle_now(&self, crossing: usize) -> bool {
         let Some(at) = self.relation_of(crossing) else { return false };
-        let operator = self.program.relations[at].operator;
+        let operator = self.program.switching.relations[at].operator;
         let has_sides = !matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
         has_sides && self.relations.is_idle[at] && self.delays.histories.is_empty()
     }
@@ -146,7 +150,7 @@ impl System {
     }
 
     pub(super) fn keep_uncertainty(&mut self, crossings: &[f64]) {
-        for (at, value) in self.program.crossing_relations.iter().zip(crossings) {
+        for (at, value) in self.program.switching.crossing_relations.iter().zip(crossings) {
             self.relations.uncertainty[*at] = *value;
         }
     }

@@ -56,7 +56,7 @@ impl System {
     /// An independent system, one for every thread.
     pub fn new(program: Arc<Program>) -> System {
         let registers = Memory::new(&program.registers);
-        let n = program.unknowns.len();
+        let n = program.continuous.unknowns.len();
         let mut system = System {
             registers,
             set: vec![None; program.parameters().len()],
@@ -156,7 +156,7 @@ impl System {
     pub(super) fn load(&mut self, t: f64, y: &[f64]) {
         self.registers[0] = t;
         let registers = &mut self.registers[..];
-        for (variable, value) in self.program.unknowns.iter().zip(y) {
+        for (variable, value) in self.program.continuous.unknowns.iter().zip(y) {
             registers[variable.0 as usize] = *value;
         }
         if !self.delays.histories.is_empty() {
@@ -170,7 +170,7 @@ impl System {
 
     /// Whether loops are solved inside, and there are some.
     fn has_inner_loops(&self) -> bool {
-        self.loops.solves_loops && !self.program.iteration.is_empty()
+        self.loops.solves_loops && !self.program.continuous.iteration.is_empty()
     }
 
     /// Loads y, and solves for the iteration variables that it does not hold.
@@ -184,7 +184,7 @@ impl System {
     }
 
     pub(super) fn unload(&self, y: &mut [f64]) {
-        for (variable, value) in self.program.unknowns.iter().zip(y.iter_mut()) {
+        for (variable, value) in self.program.continuous.unknowns.iter().zip(y.iter_mut()) {
             *value = self.registers[variable.0 as usize];
         }
         if self.sensitivity.is_some() {
@@ -263,7 +263,7 @@ impl System {
                 tunable += 1;
             }
         }
-        for (parameter, tape) in &program.parameter_tapes {
+        for (parameter, tape) in &program.values.parameter_tapes {
             let set = match tunable {
                 0 => None,
                 _ => given.iter().find(|(v, _)| v == parameter),
@@ -277,8 +277,8 @@ impl System {
             }
         }
         run_strictly(&program.registers.hoisted.tape, &mut self.registers)?;
-        run(&program.time_rests, &mut self.registers)?;
-        for (at, relation) in program.relations.iter().enumerate() {
+        run(&program.switching.time_rests, &mut self.registers)?;
+        for (at, relation) in program.switching.relations.iter().enumerate() {
             let time = relation
                 .time
                 .filter(|_| !relation.is_rescheduled)
@@ -292,13 +292,13 @@ impl System {
     /// `nominal`, else the start value, else 1.
     fn evaluate_nominals(&mut self) {
         let program = self.program.clone();
-        let tapes = program.parameter_tapes.iter().chain(&program.starts);
+        let tapes = program.values.parameter_tapes.iter().chain(&program.values.starts);
         for (variable, tape) in tapes {
             if tape.run(&mut self.registers).is_err() {
                 self.registers[variable.0 as usize] = 1.0;
             }
         }
-        for (at, variable) in program.unknowns.iter().enumerate() {
+        for (at, variable) in program.continuous.unknowns.iter().enumerate() {
             self.nominal[at] = self.nominal_of(*variable);
         }
         self.loops.initial_solvers = self.solvers_of(&program.initial_steps);
@@ -328,8 +328,8 @@ impl System {
     fn nominal_of(&mut self, variable: VarId) -> f64 {
         let program = self.program.clone();
         // They are in the order of the variables.
-        let known = program.nominals.binary_search_by_key(&variable, |(v, ..)| *v);
-        let value = match known.ok().map(|at| &program.nominals[at]) {
+        let known = program.values.nominals.binary_search_by_key(&variable, |(v, ..)| *v);
+        let value = match known.ok().map(|at| &program.values.nominals[at]) {
             Some((_, tape, register)) => match tape.run(&mut self.registers) {
                 Ok(()) => self.registers[*register as usize],
                 Err(_) => 1.0,
@@ -379,14 +379,14 @@ impl System {
     pub(super) fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
         let program = self.program.clone();
         self.registers[0] = t;
-        for variable in program.observed.iter().chain(&program.solved) {
+        for variable in program.observed.iter().chain(&program.values.solved) {
             self.registers[variable.0 as usize] = 0.0;
         }
-        for relation in &program.relations {
+        for relation in &program.switching.relations {
             self.registers[relation.register as usize] = 0.0;
         }
         self.evaluate_parameters()?;
-        for (_, tape) in &program.starts {
+        for (_, tape) in &program.values.starts {
             run(tape, &mut self.registers)?;
         }
         self.take_start_values_of_events();
@@ -424,11 +424,11 @@ impl DaeSystem for System {
     }
 
     fn n_algebraic(&self) -> usize {
-        if self.loops.solves_loops { 0 } else { self.program.iteration.len() }
+        if self.loops.solves_loops { 0 } else { self.program.continuous.iteration.len() }
     }
 
     fn n_auxiliary(&self) -> usize {
-        if self.loops.solves_loops { 0 } else { self.program.n_auxiliary }
+        if self.loops.solves_loops { 0 } else { self.program.continuous.n_auxiliary }
     }
 
     fn solve_loops(&mut self, inside: bool) {
@@ -441,12 +441,12 @@ impl DaeSystem for System {
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        read(&self.program.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+        read(&self.program.continuous.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
     }
 
     fn pattern(&self) -> &Pattern {
         if !self.has_inner_loops() {
-            return &self.program.pattern;
+            return &self.program.continuous.pattern;
         }
         self.loops.full_pattern.get_or_init(|| Pattern::full(self.n_differential()))
     }
@@ -456,7 +456,7 @@ impl DaeSystem for System {
             return self.difference_jacobian(t, y, values);
         }
         self.load(t, y);
-        match read(&self.program.jacobian, &mut self.registers, values) {
+        match read(&self.program.continuous.jacobian, &mut self.registers, values) {
             // A derivative may have no value where the right-hand side has one.
             Err(Failure::Domain { .. }) if self.sensitivity.is_none() => {
                 self.difference_jacobian(t, y, values)
@@ -472,7 +472,7 @@ impl DaeSystem for System {
         }
         let has_assertions = !program.assertions.is_empty() || !program.log_assertions.is_empty();
         let is_watched = has_assertions || self.n_crossings() > 0;
-        program.linearity.map(|linearity| Linearity { is_watched, ..linearity })
+        program.continuous.linearity.map(|linearity| Linearity { is_watched, ..linearity })
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
@@ -492,12 +492,12 @@ impl DaeSystem for System {
     }
 
     fn crossings_vary_in_time(&self) -> bool {
-        self.program.crossings_vary_in_time
+        self.program.switching.crossings_vary_in_time
     }
 
     fn oscillation(&mut self, t: f64) -> f64 {
         let program = self.program.clone();
-        let rates = &program.oscillations;
+        let rates = &program.switching.oscillations;
         self.registers[0] = t;
         if rates.outputs.is_empty() || rates.tape.run(&mut self.registers).is_err() {
             return 0.0;

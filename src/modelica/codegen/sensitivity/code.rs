@@ -114,10 +114,10 @@ fn refuse(program: &Program, parameters: &[usize]) -> Result<(), String> {
     if program.events.need_left_limits() {
         return Err("the model uses `pre` of a variable that is not discrete".to_owned());
     }
-    if program.unknowns.len() * parameters.len() > LARGEST {
+    if program.continuous.unknowns.len() * parameters.len() > LARGEST {
         return Err(format!(
             "{} unknowns times {} parameters are more than {LARGEST}",
-            program.unknowns.len(),
+            program.continuous.unknowns.len(),
             parameters.len()
         ));
     }
@@ -180,7 +180,7 @@ impl<'a> Compiler<'a> {
             variable,
             registers: parameters.iter().map(|_| registers.fresh()).collect(),
         };
-        let unknowns = program.unknowns.iter().map(|v| keep(*v)).collect();
+        let unknowns = program.continuous.unknowns.iter().map(|v| keep(*v)).collect();
         let is_kept = |v: &VarId| {
             let variable = dae.variable(*v);
             let kind = matches!(
@@ -232,7 +232,7 @@ impl<'a> Compiler<'a> {
             reinits,
             algebraic,
             crossings,
-            n_crossing_relations: self.program.crossing_relations.len(),
+            n_crossing_relations: self.program.switching.crossing_relations.len(),
             speeds,
             rhs,
             observe,
@@ -466,7 +466,7 @@ impl<'a> Compiler<'a> {
     fn crossings(&mut self) -> Outputs {
         let sorted = &self.program.sorted;
         let mut compared = Vec::new();
-        for at in &self.program.crossing_relations {
+        for at in &self.program.switching.crossing_relations {
             let relation = &sorted.dae.relations[*at];
             compared.push(self.pool.sub(relation.left, relation.right));
         }
@@ -499,8 +499,8 @@ impl<'a> Compiler<'a> {
     fn rhs(&mut self) -> Outputs {
         let program = self.program;
         let mut outputs = self.state_derivatives();
-        outputs.extend(&program.residuals);
-        let needed = slice(&self.pool, &program.integrated, &outputs);
+        outputs.extend(&program.continuous.residuals);
+        let needed = slice(&self.pool, &program.continuous.integrated, &outputs);
         self.differentiated(&needed, &outputs, false)
     }
 
