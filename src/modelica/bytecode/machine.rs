@@ -31,9 +31,6 @@ pub struct Machine {
     memos: Option<Box<Memos>>,
     /// For each function whether its calls are kept; found when the first is called.
     kept: Option<Box<[bool]>>,
-    /// How many calls had the results of the one before.
-    #[cfg(test)]
-    recalled: u64,
     /// Whether variables that nothing was assigned to are zero.
     has_defaults: bool,
     /// Functions that were called, and where variables were used that nothing was assigned to, once for
@@ -73,7 +70,7 @@ impl Machine {
     /// How many calls between functions had the results of the call before.
     #[cfg(test)]
     pub(crate) fn recalled(&self) -> u64 {
-        self.recalled
+        self.memos.as_ref().map_or(0, |memos| memos.recalled)
     }
 
     /// What the external function said that failed last.
@@ -387,11 +384,8 @@ impl Machine {
         let Some((known, cost)) = found else { return false };
         let Some(left) = self.budget.checked_sub(cost) else { return false };
         self.budget = left;
-        #[cfg(test)]
-        {
-            self.recalled += 1;
-        }
         stack[results..results + known.len()].copy_from_slice(known);
+        memos.recalled += 1;
         true
     }
 

@@ -16,6 +16,8 @@ pub(crate) struct Memos {
     pub(super) values: Memo<f64>,
     pub(super) first: Memo<Dual<f64>>,
     pub(super) second: Memo<Dual<Dual<f64>>>,
+    /// How many calls had the results of the one before.
+    pub(super) recalled: u64,
 }
 
 /// The last call of each function.

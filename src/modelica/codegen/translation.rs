@@ -60,7 +60,7 @@ pub(super) fn translate(
     builder.switch_to_block(start);
     let parameters = builder.block_params(start);
     let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
-    let (functions, elimination, asking) = signatures(&mut builder, target);
+    let signatures = signatures(&mut builder, target);
     let array = (upcalls.room() > 0).then(|| array_of(upcalls.room(), &mut builder));
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
     let zero = builder.ins().f64const(0.0);
@@ -82,9 +82,7 @@ pub(super) fn translate(
         blocks: FxHashMap::default(),
         matrices,
         places: FxHashMap::default(),
-        functions,
-        elimination,
-        asking,
+        signatures,
         checks,
         next_check: 0,
     };
@@ -108,10 +106,7 @@ fn array_of(length: usize, builder: &mut FunctionBuilder) -> StackSlot {
 }
 
 /// The signatures of functions with one and two arguments, of [`small_system`], and of the upcalls.
-fn signatures(
-    builder: &mut FunctionBuilder,
-    target: TargetFrontendConfig,
-) -> ([SigRef; 2], SigRef, [SigRef; 2]) {
+fn signatures(builder: &mut FunctionBuilder, target: TargetFrontendConfig) -> Signatures {
     let pointer = target.pointer_type();
     let functions = [1, 2].map(|arity| {
         let mut signature = Signature::new(target.default_call_conv);
@@ -129,7 +124,7 @@ fn signatures(
         signature.returns.push(AbiParam::new(types::F64));
         builder.import_signature(signature)
     });
-    (functions, elimination, asking)
+    Signatures { functions, elimination, asking }
 }
 
 /// Room for A by rows and b after it.
@@ -171,14 +166,20 @@ struct Translation<'a> {
     matrices: &'a mut Matrices,
     /// Where registers are written to that are outputs.
     places: FxHashMap<Register, Vec<usize>>,
+    signatures: Signatures,
+    checks: [Variable; CHECKS],
+    next_check: usize,
+}
+
+/// Signatures of the functions that code calls.
+
+struct Signatures {
     /// Signatures of functions with one and two arguments.
     functions: [SigRef; 2],
     /// The signature of [`small_system`].
     elimination: SigRef,
     /// The signatures of the upcalls: of linear systems, of functions.
     asking: [SigRef; 2],
-    checks: [Variable; CHECKS],
-    next_check: usize,
 }
 
 impl Translation<'_> {
@@ -392,8 +393,11 @@ impl Translation<'_> {
             _ => {
                 let callee = self.address(unary as *const () as usize);
                 let function = self.address(function as usize);
-                let call =
-                    self.builder.ins().call_indirect(self.functions[0], callee, &[function, a]);
+                let call = self.builder.ins().call_indirect(
+                    self.signatures.functions[0],
+                    callee,
+                    &[function, a],
+                );
                 self.builder.inst_results(call)[0]
             }
         };
@@ -410,7 +414,11 @@ impl Translation<'_> {
         let (a, b) = (self.get(a), self.get(b));
         let callee = self.address(binary as *const () as usize);
         let function = self.address(function as usize);
-        let call = self.builder.ins().call_indirect(self.functions[1], callee, &[function, a, b]);
+        let call = self.builder.ins().call_indirect(
+            self.signatures.functions[1],
+            callee,
+            &[function, a, b],
+        );
         let value = self.builder.inst_results(call)[0];
         self.set_checked(d, value);
     }
@@ -470,7 +478,7 @@ impl Translation<'_> {
         let system = self.builder.ins().stack_addr(self.pointer, slot, 0);
         let n = self.builder.ins().iconst(self.pointer, right.len() as i64);
         let callee = self.address(small_system as *const () as usize);
-        self.builder.ins().call_indirect(self.elimination, callee, &[system, n]);
+        self.builder.ins().call_indirect(self.signatures.elimination, callee, &[system, n]);
         for (at, register) in (0..right.len()).zip(d..) {
             let place = 8 * (entries.len() + at) as i32;
             let x = self.builder.ins().stack_load(self.pointer, types::F64, slot, place);
@@ -505,7 +513,7 @@ impl Translation<'_> {
     fn ask_for_solution(&mut self, number: u32) {
         let upcalls = self.upcalls;
         let Some((solve, operands)) = upcalls.solve(number) else { return };
-        let entry = (upcalls::solve as *const () as usize, self.asking[0]);
+        let entry = (upcalls::solve as *const () as usize, self.signatures.asking[0]);
         let subject = std::ptr::from_ref(solve) as usize;
         let rest = (solve.right.len(), solve.d, self.tape.solves[number as usize].d);
         self.ask(entry, &[subject], operands, rest);
@@ -515,7 +523,7 @@ impl Translation<'_> {
         let (upcalls, tape) = (self.upcalls, self.tape);
         let (call, results) = upcalls.call(number);
         let known = &tape.calls[number as usize];
-        let entry = (upcalls::call as *const () as usize, self.asking[1]);
+        let entry = (upcalls::call as *const () as usize, self.signatures.asking[1]);
         let subject = std::ptr::from_ref(call) as usize;
         self.ask(entry, &[subject, *results], &known.arguments, (*results, call.d, known.d));
     }

@@ -165,13 +165,17 @@ impl Simulator {
             effort: &mut self.effort,
             out,
             t: settings.start,
-            output_number: 0,
-            next_output: settings.output.point(settings.start, settings.stop, 0),
-            ends_at_points: n == 0 || linearity.is_some(),
-            last_event: f64::NEG_INFINITY,
-            last_jump: f64::NEG_INFINITY,
-            last_solved: f64::NEG_INFINITY,
-            events_at_once: 0,
+            outputs: OutputPoints {
+                output_number: 0,
+                next_output: settings.output.point(settings.start, settings.stop, 0),
+                ends_at_points: n == 0 || linearity.is_some(),
+            },
+            jumps: Jumps {
+                last_event: f64::NEG_INFINITY,
+                last_jump: f64::NEG_INFINITY,
+                last_solved: f64::NEG_INFINITY,
+                events_at_once: 0,
+            },
             progress: Progress::default(),
         };
         let ended = run.run();
@@ -281,17 +285,29 @@ pub struct Run<'a> {
     effort: &'a mut Effort,
     out: &'a mut Trajectory,
     pub(super) t: f64,
+    outputs: OutputPoints,
+    jumps: Jumps,
+    pub(super) progress: Progress,
+}
+
+/// The output points of a run.
+
+struct OutputPoints {
     /// The next output point and its number.
     next_output: Option<f64>,
     output_number: usize,
     /// Whether a step ends at every output point: nothing is interpolated.
     ends_at_points: bool,
+}
+
+/// When events and jumps were the last time.
+
+struct Jumps {
     last_event: f64,
     last_jump: f64,
     /// When algebraic unknowns were solved for because no step could be made.
     last_solved: f64,
     events_at_once: u32,
-    pub(super) progress: Progress,
 }
 
 impl Run<'_> {
@@ -334,7 +350,7 @@ impl Run<'_> {
             return Err(SimErrorKind::StepBudget);
         }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
-        if self.next_output == Some(self.t) {
+        if self.outputs.next_output == Some(self.t) {
             self.record()?;
             self.advance_output();
         }
@@ -373,8 +389,8 @@ impl Run<'_> {
         let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         limit = limit.min(self.t + self.problem.system.longest_step());
-        if self.ends_at_points {
-            limit = self.next_output.map_or(limit, |point| limit.min(point));
+        if self.outputs.ends_at_points {
+            limit = self.outputs.next_output.map_or(limit, |point| limit.min(point));
         }
         self.integrator.step(&mut self.problem, limit)?;
         let Some(event) = event else { return Ok(false) };
@@ -406,10 +422,12 @@ impl Run<'_> {
     /// as near the zero of a root: an event here solves for them. `None` if that was not the reason.
     fn solve_again(&mut self) -> Option<After> {
         let span = self.problem.settings.stop - self.problem.settings.start;
-        if self.problem.system.n_algebraic() == 0 || self.t - self.last_solved <= LEAPS[0] * span {
+        if self.problem.system.n_algebraic() == 0
+            || self.t - self.jumps.last_solved <= LEAPS[0] * span
+        {
             return None;
         }
-        self.last_solved = self.t;
+        self.jumps.last_solved = self.t;
         let before = self.y.to_vec();
         self.problem.system.crossed(None, span);
         let outcome = self.whole_event(self.t);
@@ -428,7 +446,7 @@ impl Run<'_> {
     /// branch just past it, to which an event leads.
     fn switch_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let span = self.problem.settings.stop - self.problem.settings.start;
-        if self.t - self.last_jump <= FARTHER * LEAPS[0] * span {
+        if self.t - self.jumps.last_jump <= FARTHER * LEAPS[0] * span {
             return Err(kind);
         }
         let (begin, before) = (self.t, self.y.to_vec());
@@ -438,7 +456,7 @@ impl Run<'_> {
                 break;
             }
             self.move_along(&before, &derivatives, ahead - begin);
-            self.last_jump = ahead;
+            self.jumps.last_jump = ahead;
             self.problem.statistics.state_events += 1;
             let after = self.handle_event(ahead, false).map_err(|_| kind)?;
             if self.has_jumped(&before) {
@@ -459,7 +477,7 @@ impl Run<'_> {
     fn leave_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
-        let distance = self.t - self.last_jump;
+        let distance = self.t - self.jumps.last_jump;
         if distance <= 0.0 {
             return Err(kind);
         }
@@ -473,7 +491,7 @@ impl Run<'_> {
             if self.t > settings.stop {
                 break;
             }
-            self.last_jump = self.t;
+            self.jumps.last_jump = self.t;
             self.move_along(&before, &derivatives, ahead);
             self.problem.system.crossed(None, span);
             let Ok(outcome) = self.whole_event(self.t) else { continue };
@@ -548,7 +566,7 @@ impl Run<'_> {
                     self.y.copy_from_slice(self.integrator.state());
                     self.look_between_steps()?;
                     self.check_step(begin)?;
-                    if self.next_output == Some(end) {
+                    if self.outputs.next_output == Some(end) {
                         self.record()?;
                         self.advance_output();
                     }
@@ -597,7 +615,7 @@ impl Run<'_> {
         if share <= part {
             return end;
         }
-        let numbers = self.output_number..;
+        let numbers = self.outputs.output_number..;
         let mut points =
             numbers.map_while(|n| settings.output.point(settings.start, settings.stop, n));
         let point = points.find(|point| *point > part).unwrap_or(end);
@@ -607,7 +625,7 @@ impl Run<'_> {
     /// Records the output points before `end`; y is y(`end`) afterwards as before.
     fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
         let mut moved = false;
-        while let Some(point) = self.next_output.filter(|point| *point < end) {
+        while let Some(point) = self.outputs.next_output.filter(|point| *point < end) {
             self.integrator.interpolate(point, self.y);
             self.t = point;
             self.record()?;
@@ -662,7 +680,7 @@ impl Run<'_> {
         if was_constrained && outcome != EventOutcome::Terminate {
             outcome = self.continue_after_event(surfaces, contacts)?;
         }
-        while self.next_output.is_some_and(|point| point <= t) {
+        while self.outputs.next_output.is_some_and(|point| point <= t) {
             self.advance_output();
         }
         match outcome {
@@ -738,10 +756,10 @@ impl Run<'_> {
 
     fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {
         let settings = self.problem.settings;
-        let near = self.t - self.last_event <= AT_ONCE * (settings.stop - settings.start);
-        self.events_at_once = if near { self.events_at_once + 1 } else { 0 };
-        self.last_event = self.t;
-        if self.events_at_once > MOST_EVENTS_AT_ONCE {
+        let near = self.t - self.jumps.last_event <= AT_ONCE * (settings.stop - settings.start);
+        self.jumps.events_at_once = if near { self.jumps.events_at_once + 1 } else { 0 };
+        self.jumps.last_event = self.t;
+        if self.jumps.events_at_once > MOST_EVENTS_AT_ONCE {
             return Err(SimErrorKind::Chattering);
         }
         Ok(())
@@ -775,8 +793,9 @@ impl Run<'_> {
 
     fn advance_output(&mut self) {
         let settings = self.problem.settings;
-        self.output_number += 1;
-        self.next_output = settings.output.point(settings.start, settings.stop, self.output_number);
+        self.outputs.output_number += 1;
+        self.outputs.next_output =
+            settings.output.point(settings.start, settings.stop, self.outputs.output_number);
     }
 
     pub fn record(&mut self) -> Result<(), SimErrorKind> {

@@ -81,9 +81,7 @@ struct Bdf {
     equal_steps: usize,
     /// Whether no step has been made since the restart.
     fresh: bool,
-    /// Relative error of the last step and the safety factor of its iterations.
-    error: f64,
-    safety: f64,
+    convergence: Convergence,
     /// Backward differences D⁰ … of n numbers each.
     differences: Vec<Vec<f64>>,
     predicted: Vec<f64>,
@@ -92,15 +90,29 @@ struct Bdf {
     correction: Vec<f64>,
     rhs: Vec<f64>,
     delta: Vec<f64>,
+    norms: Norms,
+    iteration: IterationMatrix,
+}
+
+/// How the corrector converges, and what is left of the error.
+#[derive(Default)]
+struct Convergence {
+    /// Relative error of the last step and the safety factor of its iterations.
+    error: f64,
+    safety: f64,
+    /// How fast the corrector converged lately, and after how many iterations.
+    rate: f64,
+    iterations: usize,
+}
+
+/// Weights of the norms.
+#[derive(Default)]
+struct Norms {
     /// Of the tested unknowns.
     weights: Vec<f64>,
     /// Of their derivatives, and the magnitudes of the directions.
     direction_weights: Vec<f64>,
     magnitudes: Vec<f64>,
-    iteration: IterationMatrix,
-    /// How fast the corrector converged lately, and after how many iterations.
-    rate: f64,
-    iterations: usize,
 }
 
 /// The matrix of the corrector.
@@ -230,8 +242,9 @@ impl Bdf {
         }
         let order = self.order;
         let gain = |error: f64, order: usize| elementary::powf(error, -1.0 / (order as f64 + 1.0));
-        let norm = |difference: usize| self.norm(&self.differences[difference], self.weights.len());
-        let mut best = (gain(self.error, order), order);
+        let norm =
+            |difference: usize| self.norm(&self.differences[difference], self.norms.weights.len());
+        let mut best = (gain(self.convergence.error, order), order);
         if order > 1 {
             let lower = gain(error_constant(order - 1) * norm(order), order - 1);
             best = if lower > best.0 { (lower, order - 1) } else { best };
@@ -240,7 +253,7 @@ impl Bdf {
             let higher = gain(error_constant(order + 1).abs() * norm(order + 2), order + 1);
             best = if higher > best.0 { (higher, order + 1) } else { best };
         }
-        let factor = (self.safety * best.0).min(10.0);
+        let factor = (self.convergence.safety * best.0).min(10.0);
         let h_new = (self.h * factor).min(problem.settings.max_step);
         let ratio = h_new / self.h;
         if best.1 == order && (0.8..1.2).contains(&ratio) {
@@ -298,12 +311,12 @@ impl Bdf {
                 *delta = c * *delta - psi - correction;
             }
             self.iteration.solve(problem.nominal, &mut self.delta[..n]);
-            let norm = weighted_rms(&self.delta, &self.weights);
+            let norm = weighted_rms(&self.delta, &self.norms.weights);
             if !norm.is_finite() || (norm > 2.0 * last && norm > ROUNDING && !full) {
                 return Ok(Corrected::Slow);
             }
             if iteration > 1 {
-                self.rate = (norm / last).max(0.3 * self.rate);
+                self.convergence.rate = (norm / last).max(0.3 * self.convergence.rate);
             }
             let delta = &self.delta[..n];
             self.y.iter_mut().zip(delta).for_each(|(y, delta)| *y += delta);
@@ -311,7 +324,7 @@ impl Bdf {
             // With an old Jacobian a small first step tells nothing about stiff and algebraic
             // equations.
             let is_trusted = iteration > 1 || self.iteration.is_current;
-            if is_trusted && norm * self.rate.min(1.0) <= NEWTON_TOLERANCE {
+            if is_trusted && norm * self.convergence.rate.min(1.0) <= NEWTON_TOLERANCE {
                 return Ok(Corrected::Converged(iteration));
             }
             last = norm;
@@ -332,7 +345,7 @@ impl Bdf {
         full: bool,
     ) -> Result<usize, SimErrorKind> {
         let c = self.h / alpha(self.order);
-        if self.iterations > 2 && self.iteration.factorized_for != Some(c) {
+        if self.convergence.iterations > 2 && self.iteration.factorized_for != Some(c) {
             self.iteration.is_evaluated = false;
         }
         loop {
@@ -341,11 +354,11 @@ impl Bdf {
             }
             if self.iteration.factorized_for != Some(c) {
                 self.iteration.factorize(problem, c)?;
-                self.rate = 1.0;
+                self.convergence.rate = 1.0;
             }
             match self.iterate(problem, t_new, c, full)? {
                 Corrected::Converged(iterations) => {
-                    self.iterations = iterations;
+                    self.convergence.iterations = iterations;
                     return Ok(iterations);
                 }
                 Corrected::Slow if self.iteration.is_current => {
@@ -364,29 +377,29 @@ impl Bdf {
         full: bool,
     ) -> Result<usize, SimErrorKind> {
         let iterations = self.correct(problem, t_new, full)?;
-        self.error = self.error_of_attempt();
-        if self.error <= 1.0 && self.y.len() > self.n {
+        self.convergence.error = self.error_of_attempt();
+        if self.convergence.error <= 1.0 && self.y.len() > self.n {
             self.correct_directions(problem, t_new)?;
-            self.error = self.error_with_directions();
+            self.convergence.error = self.error_with_directions();
         }
         Ok(iterations)
     }
 
     /// The error of the attempt relative to the tolerance.
     fn error_of_attempt(&self) -> f64 {
-        let tested = if self.fresh { self.n_differential } else { self.weights.len() };
-        error_constant(self.order) * weighted_rms(&self.correction, &self.weights[..tested])
+        let tested = if self.fresh { self.n_differential } else { self.norms.weights.len() };
+        error_constant(self.order) * weighted_rms(&self.correction, &self.norms.weights[..tested])
     }
 
     /// The same with the derivatives along all directions.
     fn error_with_directions(&self) -> f64 {
-        let tested = if self.fresh { self.n_differential } else { self.weights.len() };
+        let tested = if self.fresh { self.n_differential } else { self.norms.weights.len() };
         error_constant(self.order) * self.norm(&self.correction, tested)
     }
 
     /// The norm of a vector of all unknowns, of each direction the first `tested`.
     fn norm(&self, vector: &[f64], tested: usize) -> f64 {
-        let norm = weighted_rms(vector, &self.weights[..tested]);
+        let norm = weighted_rms(vector, &self.norms.weights[..tested]);
         if vector.len() == self.n {
             norm
         } else {
@@ -466,7 +479,7 @@ impl Integrator for Bdf {
 
     fn dominant(&self) -> Option<usize> {
         let shares =
-            self.correction.iter().zip(&self.weights).map(|(e, weight)| (e / weight).abs());
+            self.correction.iter().zip(&self.norms.weights).map(|(e, weight)| (e / weight).abs());
         let largest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         largest.map(|(at, _)| at)
     }
@@ -475,7 +488,7 @@ impl Integrator for Bdf {
         self.resize(y.len());
         self.n = problem.nominal.len();
         self.n_differential = problem.system.n_differential();
-        self.weights.resize(problem.n_tested(), 0.0);
+        self.norms.weights.resize(problem.n_tested(), 0.0);
         self.iteration.prepare(problem);
         self.t = t;
         problem.rhs(t, &y[..self.n], &mut self.rhs[..self.n])?;
@@ -483,8 +496,8 @@ impl Integrator for Bdf {
         self.order = 1;
         self.equal_steps = 0;
         self.fresh = true;
-        self.rate = 1.0;
-        self.iterations = 0;
+        self.convergence.rate = 1.0;
+        self.convergence.iterations = 0;
         self.differences.iter_mut().for_each(|difference| difference.fill(0.0));
         self.differences[0].copy_from_slice(y);
         for i in 0..self.n_differential {
@@ -496,7 +509,7 @@ impl Integrator for Bdf {
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         let smallest = problem.smallest_step(self.t);
         let tolerance = SAFETY * problem.settings.tolerance;
-        set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.weights);
+        set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.norms.weights);
         self.set_direction_weights(problem, tolerance);
         self.adapt(problem);
         let mut failures = 0;
@@ -507,14 +520,19 @@ impl Integrator for Bdf {
             let corrected = self.attempt(problem, t_new, failures >= MOST_FAILURES);
             let (failure, factor) = match corrected {
                 Ok(iterations) => {
-                    self.safety = newton_safety(iterations, MAX_ITERATIONS);
-                    if self.error <= 1.0 {
+                    self.convergence.safety = newton_safety(iterations, MAX_ITERATIONS);
+                    if self.convergence.error <= 1.0 {
                         self.accept(t_new);
                         problem.statistics.steps += 1;
                         return Ok(());
                     }
                     problem.statistics.error_failures += 1;
-                    let factor = error_factor(self.error, self.order as i32, self.safety, 1.0);
+                    let factor = error_factor(
+                        self.convergence.error,
+                        self.order as i32,
+                        self.convergence.safety,
+                        1.0,
+                    );
                     (SimErrorKind::StepSize, factor)
                 }
                 Err(failure) => {

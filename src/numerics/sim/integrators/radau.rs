@@ -73,21 +73,27 @@ struct Radau {
     z_old: Vec<f64>,
     /// Whether there is a last step to start from.
     has_past: bool,
-    delta: Vec<f64>,
-    point: Vec<f64>,
-    rhs: Vec<f64>,
+    work: Work,
     /// F at the start of the step, and whether it is known.
     first: Vec<f64>,
     knows_first: bool,
     /// F at the end of an attempt that meets the tolerance.
     end: Vec<f64>,
-    error: Vec<f64>,
-    weights: Vec<f64>,
     /// Whether the Jacobian is that of this step, and whether it need not be evaluated again.
     is_current: bool,
     is_good: bool,
     matrix: ShiftedMatrix,
     stages: StageMatrix,
+}
+
+/// Vectors of a step that outlive none.
+#[derive(Default)]
+struct Work {
+    delta: Vec<f64>,
+    point: Vec<f64>,
+    rhs: Vec<f64>,
+    error: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 /// The matrix B ⊗ M / h − I ⊗ J of all stages.
@@ -180,17 +186,17 @@ impl StageMatrix {
 impl Radau {
     fn resize(&mut self, n: usize) {
         self.n = n;
-        for vector in [&mut self.z, &mut self.z_old, &mut self.delta] {
+        for vector in [&mut self.z, &mut self.z_old, &mut self.work.delta] {
             vector.resize(STAGES * n, 0.0);
         }
         let single = [
             &mut self.y,
             &mut self.y_old,
-            &mut self.point,
-            &mut self.rhs,
+            &mut self.work.point,
+            &mut self.work.rhs,
             &mut self.first,
             &mut self.end,
-            &mut self.error,
+            &mut self.work.error,
         ];
         single.into_iter().for_each(|vector| vector.resize(n, 0.0));
     }
@@ -218,23 +224,24 @@ impl Radau {
         for iteration in 1..=MAX_ITERATIONS {
             for (stage, c) in C.iter().enumerate() {
                 for k in 0..n {
-                    self.point[k] = self.y[k] + self.z[stage * n + k];
+                    self.work.point[k] = self.y[k] + self.z[stage * n + k];
                 }
-                problem.rhs(self.t + c * h, &self.point, &mut self.rhs)?;
+                problem.rhs(self.t + c * h, &self.work.point, &mut self.work.rhs)?;
                 for k in 0..n {
-                    let mut residual = self.rhs[k];
+                    let mut residual = self.work.rhs[k];
                     if k < self.n_differential {
                         let sum: f64 = (0..STAGES).map(|j| B[stage][j] * self.z[j * n + k]).sum();
                         residual -= sum / h;
                     }
-                    self.delta[stage * n + k] = residual;
+                    self.work.delta[stage * n + k] = residual;
                 }
             }
-            self.stages.solve(problem.nominal, &mut self.delta);
+            self.stages.solve(problem.nominal, &mut self.work.delta);
             let norms = self
+                .work
                 .delta
                 .chunks_exact(n)
-                .map(|d| elementary::powi(weighted_rms(d, &self.weights), 2));
+                .map(|d| elementary::powi(weighted_rms(d, &self.work.weights), 2));
             let norm = (norms.sum::<f64>() / STAGES as f64).sqrt();
             if !norm.is_finite() || norm > 2.0 * last {
                 return Err(SimErrorKind::StepSize);
@@ -247,7 +254,7 @@ impl Radau {
                     return Err(SimErrorKind::StepSize);
                 }
             }
-            self.z.iter_mut().zip(&self.delta).for_each(|(z, delta)| *z += delta);
+            self.z.iter_mut().zip(&self.work.delta).for_each(|(z, delta)| *z += delta);
             let ahead = if iteration > 1 { (rate / (1.0 - rate).max(1e-3)).min(1.0) } else { 1.0 };
             if ahead * norm <= NEWTON_TOLERANCE {
                 self.is_good = iteration <= 3;
@@ -267,20 +274,20 @@ impl Radau {
             if k < radau.n_differential { terms.sum::<f64>() / h } else { 0.0 }
         };
         for k in 0..n {
-            self.error[k] = self.first[k] + sum(self, k);
+            self.work.error[k] = self.first[k] + sum(self, k);
         }
-        self.matrix.solve(problem.nominal, &mut self.error);
-        let mut norm = weighted_rms(&self.error, &self.weights);
+        self.matrix.solve(problem.nominal, &mut self.work.error);
+        let mut norm = weighted_rms(&self.work.error, &self.work.weights);
         if norm >= 1.0 && self.control.is_cautious() {
             for k in 0..n {
-                self.point[k] = self.y[k] + self.error[k];
+                self.work.point[k] = self.y[k] + self.work.error[k];
             }
-            problem.rhs(self.t, &self.point, &mut self.rhs)?;
+            problem.rhs(self.t, &self.work.point, &mut self.work.rhs)?;
             for k in 0..n {
-                self.error[k] = self.rhs[k] + sum(self, k);
+                self.work.error[k] = self.work.rhs[k] + sum(self, k);
             }
-            self.matrix.solve(problem.nominal, &mut self.error);
-            norm = weighted_rms(&self.error, &self.weights);
+            self.matrix.solve(problem.nominal, &mut self.work.error);
+            norm = weighted_rms(&self.work.error, &self.work.weights);
         }
         Ok(norm)
     }
@@ -316,10 +323,10 @@ impl Radau {
 
     fn evaluate_end(&mut self, problem: &mut Problem, t: f64) -> Result<(), SimErrorKind> {
         let last = &self.z[2 * self.n..];
-        for ((point, y), z) in self.point.iter_mut().zip(&self.y).zip(last) {
+        for ((point, y), z) in self.work.point.iter_mut().zip(&self.y).zip(last) {
             *point = y + z;
         }
-        problem.rhs(t, &self.point, &mut self.end)?;
+        problem.rhs(t, &self.work.point, &mut self.end)?;
         // The value of a delay at the end is known only after it.
         self.knows_first = !problem.system.remembers();
         Ok(())
@@ -354,7 +361,7 @@ impl Integrator for Radau {
 
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
-        self.weights.resize(problem.n_tested(), 0.0);
+        self.work.weights.resize(problem.n_tested(), 0.0);
         self.n_differential = problem.system.n_differential();
         self.matrix.prepare(problem);
         self.stages.prepare(problem);
@@ -375,7 +382,7 @@ impl Integrator for Radau {
         if !self.has_past {
             self.control.be_cautious();
         }
-        set_weights(problem.settings.tolerance, &self.y, problem.nominal, &mut self.weights);
+        set_weights(problem.settings.tolerance, &self.y, problem.nominal, &mut self.work.weights);
         if !std::mem::take(&mut self.knows_first) {
             problem.rhs(self.t, &self.y, &mut self.first)?;
         }

@@ -29,15 +29,15 @@ const SLOWEST: f64 = 0.7;
 impl Bdf {
     /// Weights of the tested derivatives, direction by direction.
     pub(crate) fn set_direction_weights(&mut self, problem: &Problem, tolerance: f64) {
-        let (n, tested) = (self.n, self.weights.len());
-        self.magnitudes.resize(problem.system.n_directions(), 1.0);
-        if self.magnitudes.is_empty() {
+        let (n, tested) = (self.n, self.norms.weights.len());
+        self.norms.magnitudes.resize(problem.system.n_directions(), 1.0);
+        if self.norms.magnitudes.is_empty() {
             return;
         }
-        problem.system.directions(&mut self.magnitudes);
-        self.direction_weights.resize(self.magnitudes.len() * tested, 0.0);
-        let blocks = self.differences[0][n..].chunks_exact(n).zip(&self.magnitudes);
-        let weights = self.direction_weights.chunks_exact_mut(tested.max(1));
+        problem.system.directions(&mut self.norms.magnitudes);
+        self.norms.direction_weights.resize(self.norms.magnitudes.len() * tested, 0.0);
+        let blocks = self.differences[0][n..].chunks_exact(n).zip(&self.norms.magnitudes);
+        let weights = self.norms.direction_weights.chunks_exact_mut(tested.max(1));
         for ((s, magnitude), weights) in blocks.zip(weights) {
             for ((weight, s), nominal) in weights.iter_mut().zip(s).zip(problem.nominal) {
                 *weight = tolerance * s.abs().max(nominal / magnitude);
@@ -48,7 +48,7 @@ impl Bdf {
     /// The largest norm of the derivatives along one direction in a vector of all unknowns, of each
     /// the first `tested`.
     pub(crate) fn norm_of_directions(&self, vector: &[f64], tested: usize) -> f64 {
-        let weights = self.direction_weights.chunks_exact(self.weights.len().max(1));
+        let weights = self.norms.direction_weights.chunks_exact(self.norms.weights.len().max(1));
         let blocks = vector[self.n..].chunks_exact(self.n.max(1)).zip(weights);
         blocks.map(|(s, weights)| weighted_rms(s, &weights[..tested])).fold(0.0, f64::max)
     }
@@ -85,7 +85,7 @@ impl Bdf {
         let c = self.h / alpha(self.order);
         self.iteration.evaluate(problem, t_new, &self.y[..self.n])?;
         self.iteration.factorize(problem, c)?;
-        self.rate = 1.0;
+        self.convergence.rate = 1.0;
         match self.iterate_directions(problem, t_new, true)? {
             true => Ok(()),
             false => Err(SimErrorKind::StepSize),
@@ -113,7 +113,7 @@ impl Bdf {
                 }
                 self.iteration.solve(problem.nominal, delta);
             }
-            let norm = self.norm_of_directions(&self.delta, self.weights.len());
+            let norm = self.norm_of_directions(&self.delta, self.norms.weights.len());
             if !norm.is_finite() {
                 return Ok(false);
             }
