@@ -172,7 +172,6 @@ struct Translation<'a> {
 }
 
 /// Signatures of the functions that code calls.
-
 struct Signatures {
     /// Signatures of functions with one and two arguments.
     functions: [SigRef; 2],

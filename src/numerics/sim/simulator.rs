@@ -291,7 +291,6 @@ pub struct Run<'a> {
 }
 
 /// The output points of a run.
-
 struct OutputPoints {
     /// The next output point and its number.
     next_output: Option<f64>,
@@ -301,7 +300,6 @@ struct OutputPoints {
 }
 
 /// When events and jumps were the last time.
-
 struct Jumps {
     last_event: f64,
     last_jump: f64,
