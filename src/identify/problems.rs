@@ -2,7 +2,10 @@
 
 use super::{Instance, Model, Parameter};
 use crate::diag::Fault;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Settings, SimError};
+use crate::sim::{
+    DaeSystem, EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive, Settings,
+    SimError,
+};
 
 /// dv/dt = −a v, v(0) = b, with the ramp i = 2 t and the sum s = i + v. Fails for a > 10.
 pub(super) struct Decay;
@@ -61,49 +64,46 @@ impl Instance for DecaySystem {
     }
 }
 
-impl DaeSystem for DecaySystem {
+impl Residual for DecaySystem {
     fn n_differential(&self) -> usize {
         1
     }
+
     fn n_algebraic(&self) -> usize {
         0
     }
+
     fn nominal(&self, out: &mut [f64]) {
         out.fill(1.0);
     }
+
     fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         out[0] = -self.a * y[0];
         Ok(())
     }
+
     fn pattern(&self) -> &Pattern {
         &self.pattern
     }
+
     fn jacobian(&mut self, _: f64, _: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         values[0] = -self.a;
         Ok(())
     }
+
     fn initialize(&mut self, _: f64, y: &mut [f64]) -> Result<(), Failure> {
         y[0] = self.b;
         if self.a > 10.0 { Err(Failure::Assertion { assertion: 0 }) } else { Ok(()) }
     }
-    fn n_crossings(&self) -> usize {
-        0
-    }
-    fn crossings(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
-        Ok(())
-    }
-    fn next_time_event(&self, _: f64) -> Option<f64> {
-        None
-    }
-    fn handle_event(&mut self, _: f64, _: &mut [f64]) -> Result<EventOutcome, Failure> {
-        Ok(EventOutcome::Continue { y_changed: false })
-    }
+
     fn check(&mut self, _: f64, _: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
+
     fn n_observed(&self) -> usize {
         self.observed.len()
     }
+
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         for (value, name) in out.iter_mut().zip(&self.observed) {
             *value = match name.as_str() {
@@ -115,3 +115,25 @@ impl DaeSystem for DecaySystem {
         Ok(())
     }
 }
+
+impl Sensitive for DecaySystem {}
+
+impl Events for DecaySystem {
+    fn n_crossings(&self) -> usize {
+        0
+    }
+
+    fn crossings(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn next_time_event(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn handle_event(&mut self, _: f64, _: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok(EventOutcome::Continue { y_changed: false })
+    }
+}
+
+impl Modes for DecaySystem {}

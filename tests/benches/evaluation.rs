@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::Program;
-use gapilib::internals::sim::DaeSystem;
+use gapilib::internals::sim::Residual;
 use std::hint::black_box;
 
 #[path = "../suite/flat_class.rs"]

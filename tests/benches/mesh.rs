@@ -12,7 +12,7 @@ use gapilib::internals::codegen::Program;
 use gapilib::internals::flatten::{self, Library, LibraryFiles};
 use gapilib::internals::name::Name;
 use gapilib::internals::plot::{Axis, Figure, Mark, Panel, Series};
-use gapilib::internals::sim::{DaeSystem, OutputGrid, Settings, Simulator, Trajectory};
+use gapilib::internals::sim::{OutputGrid, Residual, Settings, Simulator, Trajectory};
 use gapilib::internals::source::SourceMap;
 use gapilib::internals::syntax;
 use std::path::Path;

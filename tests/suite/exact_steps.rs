@@ -4,7 +4,7 @@
 use super::recorded_inputs::{Recorded, program};
 use gapilib::internals::codegen::{Program, SensitivityCode};
 use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{DaeSystem, OutputGrid, Settings, Simulator, Statistics, Trajectory};
+use gapilib::internals::sim::{OutputGrid, Residual, Settings, Simulator, Statistics, Trajectory};
 use proptest::prelude::*;
 use std::sync::Arc;
 

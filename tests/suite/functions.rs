@@ -11,7 +11,7 @@ use gapilib::internals::eval::{Arguments, Callee, Function, Host, call_function}
 use gapilib::internals::flatten::{Library, flatten};
 use gapilib::internals::name::Name;
 use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{DaeSystem, Failure, Settings, simulate};
+use gapilib::internals::sim::{Failure, Residual, Settings, simulate};
 use gapilib::internals::source::{SourceId, Span};
 use gapilib::internals::syntax::{ast::ComponentReference, parse_stored_definition};
 use gapilib::world::MemoryWorld;

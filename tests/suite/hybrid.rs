@@ -5,7 +5,7 @@ use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::{Access, Program};
 use gapilib::internals::flatten::{FlatModel, Library, flatten};
 use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Trajectory};
+use gapilib::internals::sim::{Events, OutputGrid, Settings, SimError, Simulator, Trajectory};
 use gapilib::internals::source::SourceMap;
 use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;

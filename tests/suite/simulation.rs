@@ -4,7 +4,7 @@ use super::flat_class::flat;
 use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::{Access, Program};
 use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{DaeSystem, Settings, Trajectory, simulate};
+use gapilib::internals::sim::{Residual, Settings, Trajectory, simulate};
 use std::sync::Arc;
 
 fn compiled(text: &str) -> Arc<Program> {

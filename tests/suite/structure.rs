@@ -8,7 +8,7 @@ use gapilib::internals::causalize::{PASSES, Pass, causalize, check, dump, report
 use gapilib::internals::codegen::Program;
 use gapilib::internals::flatten::FlatModel;
 use gapilib::internals::script::models::simulation::flat_model;
-use gapilib::internals::sim::{DaeSystem, Settings, Simulator, Trajectory};
+use gapilib::internals::sim::{Residual, Settings, Simulator, Trajectory};
 use std::path::Path;
 
 #[test]

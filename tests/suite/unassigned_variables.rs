@@ -6,7 +6,7 @@ use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::Program;
 use gapilib::internals::flatten::{Library, flatten};
 use gapilib::internals::name::Name;
-use gapilib::internals::sim::{DaeSystem, Settings, simulate};
+use gapilib::internals::sim::{Residual, Settings, simulate};
 use gapilib::internals::source::SourceId;
 use gapilib::internals::syntax::parse_stored_definition;
 use std::sync::Arc;

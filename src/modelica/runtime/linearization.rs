@@ -5,7 +5,7 @@ use super::execution::read;
 use super::system::System;
 use crate::codegen::jacobian::differentiate_sequence;
 use crate::codegen::sequence::{compile_outputs, slice};
-use crate::sim::{DaeSystem, Failure};
+use crate::sim::{Failure, Residual};
 use nalgebra::DMatrix;
 
 impl System {

@@ -5,7 +5,7 @@ use super::execution::run;
 use super::system::System;
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Differences, Program};
-use crate::sim::{DaeSystem, Failure};
+use crate::sim::{Failure, Sensitive};
 use std::sync::Arc;
 
 impl System {

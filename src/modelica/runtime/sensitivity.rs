@@ -7,7 +7,7 @@ use super::system::System;
 use crate::codegen::code::Outputs;
 use crate::codegen::instruction::Register;
 use crate::codegen::sensitivity::SensitivityCode;
-use crate::sim::{DaeSystem, EventOutcome, Failure};
+use crate::sim::{EventOutcome, Failure, Residual};
 use std::sync::Arc;
 
 /// An event whose time moves by more than so many lengths of the simulation when a parameter changes

@@ -14,7 +14,9 @@ use crate::codegen::sequence::{expressions, observing};
 use crate::diag::Fault;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
+use crate::sim::{
+    EventOutcome, Events, Failure, Linearity, Modes, Pattern, Residual, Sensitive, Side, Treatment,
+};
 use crate::symbolic::VarId;
 use std::sync::Arc;
 
@@ -414,7 +416,7 @@ impl System {
     }
 }
 
-impl DaeSystem for System {
+impl Residual for System {
     fn begin(&mut self) {
         self.restore_program();
     }
@@ -481,6 +483,72 @@ impl DaeSystem for System {
         self.solve_for_start(t, y)
     }
 
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let Some(terminal) = self.program.events.terminal else { return Ok(false) };
+        self.load(t, y);
+        self.final_event(t, terminal)?;
+        self.unload(y);
+        // Continuous variables may depend on `terminal()`, too.
+        Ok(true)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let tells = self.messages.log.is_some() && !self.program.log_assertions.is_empty();
+        if self.program.assertions.is_empty() && !tells {
+            return Ok(());
+        }
+        self.load_solved(t, y)?;
+        self.assert_all()?;
+        self.log_assertions(t)
+    }
+
+    fn n_observed(&self) -> usize {
+        if let Some(sensitivity) = &self.sensitivity {
+            return sensitivity.code.observe.outputs.len();
+        }
+        self.outputs.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        if self.loops.solves_loops {
+            self.differentiate_algebraic()?;
+        }
+        if let Some(sensitivity) = &self.sensitivity {
+            let code = &sensitivity.code.observe;
+            return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
+        }
+        if self.messages.log.is_some() {
+            self.registers.forget_solutions();
+        }
+        let observed = self.outputs.observed.as_ref().unwrap_or(&self.program.observe);
+        if let Err(failure) = read(observed, &mut self.registers, out) {
+            let failure = self.refine(failure);
+            self.observe_others(t, failure, out)?;
+        }
+        out.iter().try_for_each(|value| self.is_a_number(*value))?;
+        self.note_open(t);
+        Ok(())
+    }
+}
+
+impl Sensitive for System {
+    fn n_directions(&self) -> usize {
+        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        self.magnitudes_of_parameters(out);
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
+        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+}
+
+impl Events for System {
     fn has_event_at_start(&self) -> bool {
         self.relations.is_at_start && self.changes_after(self.registers[0])
     }
@@ -576,29 +644,16 @@ impl DaeSystem for System {
         self.delays.delay_times.iter().copied().fold(self.longest_transport(), f64::min)
     }
 
-    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
-        let Some(terminal) = self.program.events.terminal else { return Ok(false) };
-        self.load(t, y);
-        self.final_event(t, terminal)?;
-        self.unload(y);
-        // Continuous variables may depend on `terminal()`, too.
-        Ok(true)
-    }
-
-    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let tells = self.messages.log.is_some() && !self.program.log_assertions.is_empty();
-        if self.program.assertions.is_empty() && !tells {
-            return Ok(());
-        }
-        self.load_solved(t, y)?;
-        self.assert_all()?;
-        self.log_assertions(t)
-    }
-
     fn set_uncertainty(&mut self, crossings: &[f64]) {
         self.keep_uncertainty(crossings);
     }
 
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.note_cause(crossing, span);
+    }
+}
+
+impl Modes for System {
     fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
         self.load(t, y);
         self.compute_modes(sides)
@@ -638,52 +693,5 @@ impl DaeSystem for System {
 
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
         self.note_treated(t, crossing, treatment);
-    }
-
-    fn n_directions(&self) -> usize {
-        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
-    }
-
-    fn directions(&self, out: &mut [f64]) {
-        self.magnitudes_of_parameters(out);
-    }
-
-    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
-        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
-        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
-    }
-
-    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
-        self.note_cause(crossing, span);
-    }
-
-    fn n_observed(&self) -> usize {
-        if let Some(sensitivity) = &self.sensitivity {
-            return sensitivity.code.observe.outputs.len();
-        }
-        self.outputs.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
-    }
-
-    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load_solved(t, y)?;
-        if self.loops.solves_loops {
-            self.differentiate_algebraic()?;
-        }
-        if let Some(sensitivity) = &self.sensitivity {
-            let code = &sensitivity.code.observe;
-            return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
-        }
-        if self.messages.log.is_some() {
-            self.registers.forget_solutions();
-        }
-        let observed = self.outputs.observed.as_ref().unwrap_or(&self.program.observe);
-        if let Err(failure) = read(observed, &mut self.registers, out) {
-            let failure = self.refine(failure);
-            self.observe_others(t, failure, out)?;
-        }
-        out.iter().try_for_each(|value| self.is_a_number(*value))?;
-        self.note_open(t);
-        Ok(())
     }
 }

@@ -16,7 +16,7 @@ use super::displacement::HEIGHT;
 use super::simulator::Run;
 use super::sliding::Contact;
 use super::switches::ROW;
-use super::{DaeSystem, SimErrorKind, Treatment};
+use super::{Modes, SimErrorKind, Treatment};
 
 /// Half the length of the difference that gives w, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-4;

@@ -19,7 +19,7 @@ use super::event::sign;
 use super::simulator::Run;
 use super::sliding::{Contact, MOST_SURFACES, Surface, attract, balanced};
 use super::switches::ROW;
-use super::{DaeSystem, Side, SimErrorKind, Treatment};
+use super::{Events, Modes, Residual, Sensitive, Side, SimErrorKind, Treatment};
 
 /// Steps without a switch after which a relation is not followed any more.
 const QUIET: u32 = 20;

@@ -9,7 +9,7 @@
 
 use super::simulator::Run;
 use super::sliding::Contact;
-use super::{DaeSystem, EventOutcome, Failure, SimErrorKind};
+use super::{EventOutcome, Events, Failure, SimErrorKind};
 
 /// How far from a surface a solution may be that is on it, relative to the uncertainty: layers are as
 /// wide as that, and begin where it arrived.

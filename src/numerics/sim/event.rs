@@ -13,7 +13,7 @@
 //! After an event a function that is at zero has no such values: it is evaluated nearer and nearer
 //! to the event, until the sign of its derivative there is clear.
 
-use super::{DaeSystem, Failure, Integrator, Problem};
+use super::{Events, Failure, Integrator, Problem};
 
 /// The width to which an event is located, relative to the step.
 const WIDTH: f64 = 1e-10;

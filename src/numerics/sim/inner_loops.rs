@@ -7,7 +7,7 @@
 //! difference quotients.
 
 use super::simulator::{After, Run};
-use super::{DaeSystem, SimErrorKind};
+use super::{Residual, Sensitive, SimErrorKind};
 
 /// A full Jacobian of more states takes too long.
 const MOST_STATES: usize = 400;

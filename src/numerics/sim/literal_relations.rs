@@ -2,7 +2,7 @@
 //! ([`progress`](super::progress)).
 
 use super::simulator::Run;
-use super::{DaeSystem, SimErrorKind};
+use super::{Events, Modes, SimErrorKind};
 
 /// Attempts of steps whose lengths tell how far the end is.
 const WINDOW: u64 = 500;

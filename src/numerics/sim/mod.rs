@@ -11,12 +11,12 @@
 //! ```
 //!
 //! ```
-//! use gapilib_numerics::sim::{DaeSystem, Failure, Pattern, Settings, simulate};
+//! use gapilib_numerics::sim::{Events, Failure, Modes, Pattern, Residual, Sensitive, Settings, simulate};
 //!
 //! /// x' = −x, x(0) = 1
 //! struct Decay(Pattern);
 //!
-//! impl DaeSystem for Decay {
+//! impl Residual for Decay {
 //!     fn n_differential(&self) -> usize { 1 }
 //!     fn n_algebraic(&self) -> usize { 0 }
 //!     fn nominal(&self, out: &mut [f64]) { out[0] = 1.0; }
@@ -39,6 +39,10 @@
 //!         Ok(())
 //!     }
 //! }
+//! // Neither parameters nor events.
+//! impl Sensitive for Decay {}
+//! impl Events for Decay {}
+//! impl Modes for Decay {}
 //!
 //! let pattern = Pattern { n: 1, column_starts: vec![0, 1], rows: vec![0] };
 //! let (trajectory, _) = simulate(&mut Decay(pattern), &Settings::default())?;
@@ -90,5 +94,8 @@ pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;
-pub use system::{DaeSystem, EventOutcome, Linearity, Pattern, Side, Treatment};
+pub use system::{
+    DaeSystem, EventOutcome, Events, Linearity, Modes, Pattern, Residual, Sensitive, Side,
+    Treatment,
+};
 pub use trajectory::Trajectory;

@@ -1,6 +1,6 @@
 //! Systems with known solutions.
 
-use super::{DaeSystem, EventOutcome, Failure, Pattern};
+use super::{EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive};
 use crate::elementary;
 
 /// A system given by closures over (t, y), all of y observed; Jacobian by differences.
@@ -74,7 +74,7 @@ impl TestProblem {
     }
 }
 
-impl DaeSystem for TestProblem {
+impl Residual for TestProblem {
     fn n_differential(&self) -> usize {
         self.n_differential
     }
@@ -120,23 +120,6 @@ impl DaeSystem for TestProblem {
         Ok(())
     }
 
-    fn n_crossings(&self) -> usize {
-        self.n_crossings
-    }
-
-    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        (self.crossings)(t, y, &self.discrete, out);
-        Ok(())
-    }
-
-    fn next_time_event(&self, t: f64) -> Option<f64> {
-        self.time_events.iter().copied().find(|event| *event > t)
-    }
-
-    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
-        Ok((self.event)(t, y, &mut self.discrete))
-    }
-
     fn check(&mut self, _: f64, y: &[f64]) -> Result<(), Failure> {
         if (self.assertion)(y) { Ok(()) } else { Err(Failure::Assertion { assertion: 0 }) }
     }
@@ -153,6 +136,29 @@ impl DaeSystem for TestProblem {
         Ok(())
     }
 }
+
+impl Sensitive for TestProblem {}
+
+impl Events for TestProblem {
+    fn n_crossings(&self) -> usize {
+        self.n_crossings
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        (self.crossings)(t, y, &self.discrete, out);
+        Ok(())
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        self.time_events.iter().copied().find(|event| *event > t)
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok((self.event)(t, y, &mut self.discrete))
+    }
+}
+
+impl Modes for TestProblem {}
 
 /// x' = −x, x(0) = 1: x = exp(−t).
 pub fn decay() -> TestProblem {
@@ -368,7 +374,7 @@ impl HeatRod {
     }
 }
 
-impl DaeSystem for HeatRod {
+impl Residual for HeatRod {
     fn n_differential(&self) -> usize {
         self.n
     }
@@ -417,3 +423,9 @@ impl DaeSystem for HeatRod {
         Ok(())
     }
 }
+
+impl Sensitive for HeatRod {}
+
+impl Events for HeatRod {}
+
+impl Modes for HeatRod {}

@@ -9,8 +9,8 @@ use super::sliding::{MOST_SURFACES, Sliding};
 use super::step_budget::StepBudget;
 use super::switches::Watch;
 use super::{
-    DaeSystem, Effort, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind,
-    Statistics, Trajectory,
+    DaeSystem, Effort, EventOutcome, Events, Failure, Offending, Residual, Sensitive, Settings,
+    SimError, SimErrorKind, Statistics, Trajectory,
 };
 use crate::registry::Options;
 use std::cell::OnceCell;

@@ -12,9 +12,14 @@ use super::Failure;
 /// with y = (x, v), zero crossings, and observed variables. Methods take `&mut self` because a
 /// system owns its workspace; one compiled program gives any number of independent systems.
 /// Discrete state (frozen relations, `pre` values) lives in the system and changes only in
-/// [`DaeSystem::initialize`] and [`DaeSystem::handle_event`]. Systems without events and assertions
+/// [`Residual::initialize`] and [`Events::handle_event`]. Systems without events and assertions
 /// leave the methods for these as they are.
-pub trait DaeSystem {
+pub trait DaeSystem: Residual + Sensitive + Events + Modes {}
+
+impl<T: Residual + Sensitive + Events + Modes + ?Sized> DaeSystem for T {}
+
+/// The equations of a [`DaeSystem`], its initial values, and what is observed.
+pub trait Residual {
     /// A simulation begins: nothing is left of the one before.
     fn begin(&mut self) {}
     /// Number of differential variables x; they come first in y.
@@ -28,7 +33,7 @@ pub trait DaeSystem {
         0
     }
     /// Asks the system to solve for v itself whenever it is evaluated, so that
-    /// [`n_algebraic`](DaeSystem::n_algebraic) is 0, or to stop doing so. A system that cannot leaves
+    /// [`n_algebraic`](Residual::n_algebraic) is 0, or to stop doing so. A system that cannot leaves
     /// everything as it is; it cannot be simulated with explicit methods.
     fn solve_loops(&mut self, _inside: bool) {}
     /// Typical magnitude of every y; what is not positive and finite counts as 1.
@@ -46,6 +51,22 @@ pub trait DaeSystem {
     }
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// The event at the end of a simulation (`terminal()`); whether there is one.
+    fn finish(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
+        Ok(false)
+    }
+    /// Checks at an accepted step what must hold there (assertions).
+    fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// Number of observed variables.
+    fn n_observed(&self) -> usize;
+    /// Writes the observed variables at (t, y).
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+}
+
+/// Derivatives of a [`DaeSystem`] along directions, such as parameters.
+pub trait Sensitive {
     /// Number of directions along which derivatives are carried. Where there are any, the n values
     /// of y are followed by n derivatives for each direction, and observed variables are followed
     /// by their derivatives, direction by direction.
@@ -59,7 +80,11 @@ pub trait DaeSystem {
     fn sensitivity_rhs(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }
-    /// What leads to the event that [`DaeSystem::handle_event`] is going to handle: the crossing
+}
+
+/// The events of a [`DaeSystem`]; without any, all methods are as they are.
+pub trait Events {
+    /// What leads to the event that [`Events::handle_event`] is going to handle: the crossing
     /// function that has changed its sign, or `None` if its time has come. `span` is the length of
     /// the simulation.
     fn crossed(&mut self, _crossing: Option<usize>, _span: f64) {}
@@ -99,7 +124,7 @@ pub trait DaeSystem {
     /// Asks events from here on to keep the relations of these crossing functions as they are, as long as
     /// the function is not larger than the number beside it.
     fn keep_relations(&mut self, _crossings: &[(usize, f64)]) {}
-    /// Whether it needs to see its past: then it is shown every step by [`DaeSystem::remember`].
+    /// Whether it needs to see its past: then it is shown every step by [`Events::remember`].
     fn remembers(&self) -> bool {
         false
     }
@@ -112,17 +137,14 @@ pub trait DaeSystem {
     fn longest_step(&self) -> f64 {
         f64::INFINITY
     }
-    /// The event at the end of a simulation (`terminal()`); whether there is one.
-    fn finish(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
-        Ok(false)
-    }
-    /// Checks at an accepted step what must hold there (assertions).
-    fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
-        Ok(())
-    }
     /// Notes what errors of y as large as the tolerance, at least 1e-6, make of the crossing
     /// functions.
     fn set_uncertainty(&mut self, _crossings: &[f64]) {}
+}
+
+/// How a [`DaeSystem`] goes on where its events are chattering; a system that cannot leaves all methods
+/// as they are.
+pub trait Modes {
     /// Prepares to be evaluated on either side of surfaces, in all combinations;
     /// whether it can: not where values of events remember on which side they were before.
     fn prepare_modes(&mut self, _t: f64, _y: &[f64], _sides: &[Side]) -> Result<bool, Failure> {
@@ -131,13 +153,13 @@ pub trait DaeSystem {
     /// From here on it is evaluated in one of the combinations prepared: bit i of `mode` is set on
     /// the positive side of surface i.
     fn enter_mode(&mut self, _mode: usize) {}
-    /// Whether [`DaeSystem::follow`] works for a crossing function: nothing happens at its events
+    /// Whether [`Modes::follow`] works for a crossing function: nothing happens at its events
     /// but that equations have other branches.
     fn can_follow(&self, _crossing: usize) -> bool {
         false
     }
     /// The same where it works for the values of events at hand only: as the last event of this
-    /// function has shown, nothing follows from it but what [`DaeSystem::can_follow`] allows.
+    /// function has shown, nothing follows from it but what [`Modes::can_follow`] allows.
     fn can_follow_now(&self, crossing: usize) -> bool {
         self.can_follow(crossing)
     }
@@ -167,10 +189,6 @@ pub trait DaeSystem {
     }
     /// Reports how the simulation continued at a crossing function, for messages to the user.
     fn note_treatment(&mut self, _t: f64, _crossing: usize, _treatment: Treatment) {}
-    /// Number of observed variables.
-    fn n_observed(&self) -> usize;
-    /// Writes the observed variables at (t, y).
-    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
 }
 
 /// What an event did.

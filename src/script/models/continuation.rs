@@ -1,7 +1,9 @@
 //! Simulations that begin where another one ended.
 
 use crate::runtime::System;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
+use crate::sim::{
+    EventOutcome, Events, Failure, Linearity, Modes, Pattern, Residual, Sensitive, Side, Treatment,
+};
 
 /// A system whose states and discrete variables have given values at the start, whatever its initial
 /// equations say; all other variables follow from them.
@@ -23,7 +25,7 @@ impl Continued {
     }
 }
 
-impl DaeSystem for Continued {
+impl Residual for Continued {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.system.initialize(t, y)?;
         if self.states.is_empty() && self.discrete.is_empty() {
@@ -72,6 +74,30 @@ impl DaeSystem for Continued {
         self.system.linearity()
     }
 
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        self.system.finish(t, y)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.system.check(t, y)
+    }
+
+    fn begin(&mut self) {
+        self.system.begin();
+    }
+
+    fn n_observed(&self) -> usize {
+        self.system.n_observed()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.system.observe(t, y, out)
+    }
+}
+
+impl Sensitive for Continued {}
+
+impl Events for Continued {
     fn n_crossings(&self) -> usize {
         self.system.n_crossings()
     }
@@ -112,18 +138,12 @@ impl DaeSystem for Continued {
         self.system.longest_step()
     }
 
-    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
-        self.system.finish(t, y)
-    }
-
-    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        self.system.check(t, y)
-    }
-
     fn set_uncertainty(&mut self, crossings: &[f64]) {
         self.system.set_uncertainty(crossings);
     }
+}
 
+impl Modes for Continued {
     fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
         self.system.prepare_modes(t, y, sides)
     }
@@ -148,10 +168,6 @@ impl DaeSystem for Continued {
         self.system.has_means(observed)
     }
 
-    fn begin(&mut self) {
-        self.system.begin();
-    }
-
     fn literal_relations(&mut self, t: f64, y: &[f64], out: &mut Vec<f64>) -> Result<(), Failure> {
         self.system.literal_relations(t, y, out)
     }
@@ -162,13 +178,5 @@ impl DaeSystem for Continued {
 
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
         self.system.note_treatment(t, crossing, treatment);
-    }
-
-    fn n_observed(&self) -> usize {
-        self.system.n_observed()
-    }
-
-    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.system.observe(t, y, out)
     }
 }

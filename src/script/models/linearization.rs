@@ -19,7 +19,7 @@ use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
 use crate::results::ResultTable;
-use crate::sim::{DaeSystem, Failure};
+use crate::sim::{Events, Failure, Residual};
 use crate::source::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::{

@@ -29,7 +29,7 @@ use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{DaeSystem, Pattern, SimErrorKind};
+use crate::sim::{Pattern, Residual, SimErrorKind};
 
 pub(in crate::sim) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "dassl",

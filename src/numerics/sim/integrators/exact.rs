@@ -8,7 +8,7 @@
 
 use super::exponential::{Blocks, Propagator, norm};
 use super::{Integrator, Problem};
-use crate::sim::{DaeSystem, Linearity, SimErrorKind};
+use crate::sim::{Linearity, Residual, Sensitive, SimErrorKind};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
 

@@ -2,7 +2,7 @@
 
 use super::Problem;
 use crate::sim::linear::Factorization;
-use crate::sim::{DaeSystem, Pattern, SimErrorKind};
+use crate::sim::{Pattern, Residual, SimErrorKind};
 
 /// s M − J for a Jacobian that is kept, columns scaled by nominal values.
 #[derive(Default)]

@@ -15,7 +15,7 @@ mod without_unknowns;
 
 use super::sliding::Sliding;
 use super::step_budget::StepBudget;
-use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
+use super::{Residual, Sensitive, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
 pub(super) use exact::Exact;

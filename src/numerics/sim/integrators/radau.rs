@@ -22,7 +22,7 @@ use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{DaeSystem, Pattern, SimErrorKind};
+use crate::sim::{Events, Pattern, Residual, SimErrorKind};
 
 pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "radau",

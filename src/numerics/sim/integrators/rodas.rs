@@ -20,7 +20,7 @@ use super::step_control::{Attempt, SAFETY, StepControl, error_factor};
 use super::{Integrator, Problem};
 use crate::registry::Entry;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{DaeSystem, SimErrorKind};
+use crate::sim::{Events, Residual, SimErrorKind};
 
 pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "rodas4",

@@ -2,7 +2,9 @@
 
 use super::Sliding;
 use super::slide::nearest_mode;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Linearity, Pattern, Side, Treatment};
+use crate::sim::{
+    EventOutcome, Events, Failure, Linearity, Modes, Pattern, Residual, Sensitive, Side, Treatment,
+};
 
 /// How far a share may be outside 0 … 1: more than rounding.
 const OUTSIDE: f64 = 1e-6;
@@ -15,7 +17,7 @@ macro_rules! sliding {
     };
 }
 
-impl DaeSystem for Sliding<'_> {
+impl Residual for Sliding<'_> {
     fn begin(&mut self) {
         self.inner.begin();
     }
@@ -66,6 +68,31 @@ impl DaeSystem for Sliding<'_> {
         self.inner.initialize(t, y)
     }
 
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        self.inner.finish(t, y)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        sliding!(self, y, slide, self.inner.check(t, y));
+        self.enter(&slide, slide.nearest_mode(y));
+        let checked = self.inner.check(t, &self.y);
+        self.slide = Some(slide);
+        checked
+    }
+
+    fn n_observed(&self) -> usize {
+        self.inner.n_observed()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        sliding!(self, y, slide, self.inner.observe(t, y, out));
+        let observed = self.blended_observation(&slide, t, y, out);
+        self.slide = Some(slide);
+        observed
+    }
+}
+
+impl Sensitive for Sliding<'_> {
     /// Derivatives are carried as long as nothing slides: [`Run::slide`](crate::sim::simulator::Run)
     /// refuses them.
     fn n_directions(&self) -> usize {
@@ -79,7 +106,9 @@ impl DaeSystem for Sliding<'_> {
     fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.inner.sensitivity_rhs(t, y, out)
     }
+}
 
+impl Events for Sliding<'_> {
     fn crossed(&mut self, crossing: Option<usize>, span: f64) {
         self.inner.crossed(crossing, span);
     }
@@ -144,7 +173,9 @@ impl DaeSystem for Sliding<'_> {
     fn set_uncertainty(&mut self, crossings: &[f64]) {
         self.inner.set_uncertainty(crossings);
     }
+}
 
+impl Modes for Sliding<'_> {
     fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
         self.inner.prepare_modes(t, y, sides)
     }
@@ -176,28 +207,5 @@ impl DaeSystem for Sliding<'_> {
 
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
         self.inner.note_treatment(t, crossing, treatment);
-    }
-
-    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
-        self.inner.finish(t, y)
-    }
-
-    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        sliding!(self, y, slide, self.inner.check(t, y));
-        self.enter(&slide, slide.nearest_mode(y));
-        let checked = self.inner.check(t, &self.y);
-        self.slide = Some(slide);
-        checked
-    }
-
-    fn n_observed(&self) -> usize {
-        self.inner.n_observed()
-    }
-
-    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        sliding!(self, y, slide, self.inner.observe(t, y, out));
-        let observed = self.blended_observation(&slide, t, y, out);
-        self.slide = Some(slide);
-        observed
     }
 }

@@ -18,7 +18,7 @@ use crate::mat::{Column, MatFile};
 use crate::models::simulation::{self, SimulationOptions};
 use crate::models::static_curve;
 use crate::registry::BAD_OPTION;
-use crate::sim::{DaeSystem as _, Settings, TimeBudget};
+use crate::sim::{Residual, Settings, TimeBudget};
 use crate::source::Span;
 use crate::{bail, fault};
 use std::fmt::Write;

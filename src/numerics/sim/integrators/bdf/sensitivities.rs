@@ -19,7 +19,7 @@
 use super::{Bdf, NEWTON_TOLERANCE, ROUNDING, alpha};
 use crate::sim::integrators::Problem;
 use crate::sim::norm::weighted_rms;
-use crate::sim::{DaeSystem, SimErrorKind};
+use crate::sim::{Sensitive, SimErrorKind};
 
 /// Iterations with one matrix.
 const MAX_ITERATIONS: usize = 4;
