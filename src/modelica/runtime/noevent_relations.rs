@@ -15,7 +15,7 @@ impl System {
         let program = self.program.clone();
         let Some(Differences { registers, code }) = program.differences() else { return Ok(()) };
         let made = || Box::new(Memory::new(registers));
-        let memory = self.relations.literal.memory.get_or_insert_with(made);
+        let memory = self.literal.memory.get_or_insert_with(made);
         let n = program.sorted.dae.variables.len();
         memory.registers[..n].copy_from_slice(&self.registers[..n]);
         run(&code.tape, memory)?;
@@ -34,13 +34,13 @@ impl System {
         let mut next = self.in_program(program);
         next.start_relations(self.program.switching.relations.len(), t)?;
         let plain = std::mem::replace(self, next);
-        self.relations.literal.plain = Some(Box::new(plain));
+        self.literal.plain = Some(Box::new(plain));
         Ok(true)
     }
 
     /// Takes events of relations inside `noEvent` back: every simulation begins without.
     pub(super) fn restore_program(&mut self) {
-        let Some(plain) = self.relations.literal.plain.take() else { return };
+        let Some(plain) = self.literal.plain.take() else { return };
         let changed = std::mem::replace(self, *plain);
         self.take_settings(changed);
     }

@@ -7,7 +7,6 @@ use super::newton::LoopSolver;
 use super::partial_observation::OtherVariables;
 use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
-use super::system::LiteralRelations;
 use super::transport_record::Record;
 use crate::codegen::code::Outputs;
 use crate::codegen::program::Program;
@@ -49,8 +48,6 @@ pub(super) struct RelationState {
     pub(super) modes: Modes,
     /// What was done about relations that chattered.
     pub(super) treated: Vec<Treated>,
-    /// Its relations inside `noEvent`.
-    pub(super) literal: LiteralRelations,
 }
 
 impl RelationState {
@@ -72,7 +69,6 @@ impl RelationState {
             kept: Vec::new(),
             modes: Modes::default(),
             treated: Vec::new(),
-            literal: LiteralRelations::default(),
         }
     }
 }

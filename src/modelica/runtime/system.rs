@@ -40,6 +40,8 @@ pub struct System {
     /// Derivatives that are carried along, if any are.
     pub(super) sensitivity: Option<Box<Sensitivity>>,
     pub(super) relations: RelationState,
+    /// Its relations inside `noEvent`.
+    pub(super) literal: LiteralRelations,
     pub(super) loops: LoopState,
     pub(super) delays: DelayState,
     pub(super) events: EventState,
@@ -65,6 +67,7 @@ impl System {
             nominal: vec![1.0; n],
             sensitivity: None,
             relations: RelationState::new(&program),
+            literal: LiteralRelations::default(),
             loops: LoopState::default(),
             delays: DelayState::new(&program),
             events: EventState::new(&program),

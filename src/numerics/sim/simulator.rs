@@ -165,17 +165,8 @@ impl Simulator {
             effort: &mut self.effort,
             out,
             t: settings.start,
-            outputs: OutputPoints {
-                output_number: 0,
-                next_output: settings.output.point(settings.start, settings.stop, 0),
-                ends_at_points: n == 0 || linearity.is_some(),
-            },
-            jumps: Jumps {
-                last_event: f64::NEG_INFINITY,
-                last_jump: f64::NEG_INFINITY,
-                last_solved: f64::NEG_INFINITY,
-                events_at_once: 0,
-            },
+            outputs: OutputPoints::new(settings, n == 0 || linearity.is_some()),
+            jumps: Jumps::NONE,
             progress: Progress::default(),
         };
         let ended = run.run();
@@ -299,6 +290,13 @@ struct OutputPoints {
     ends_at_points: bool,
 }
 
+impl OutputPoints {
+    fn new(settings: &Settings, ends_at_points: bool) -> OutputPoints {
+        let next_output = settings.output.point(settings.start, settings.stop, 0);
+        OutputPoints { next_output, output_number: 0, ends_at_points }
+    }
+}
+
 /// When events and jumps were the last time.
 struct Jumps {
     last_event: f64,
@@ -306,6 +304,15 @@ struct Jumps {
     /// When algebraic unknowns were solved for because no step could be made.
     last_solved: f64,
     events_at_once: u32,
+}
+
+impl Jumps {
+    const NONE: Jumps = Jumps {
+        last_event: f64::NEG_INFINITY,
+        last_jump: f64::NEG_INFINITY,
+        last_solved: f64::NEG_INFINITY,
+        events_at_once: 0,
+    };
 }
 
 impl Run<'_> {
