@@ -65,12 +65,10 @@ impl Origins {
         self.0.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Adds a problem file. Its comments, its limits (`[stop]`) and how often it is saved
+    /// Adds the entries of a problem. Its limits (`[stop]`) and how often it is saved
     /// (`[checkpoint]`) may change while a run is resumed.
-    pub fn add_problem(&mut self, text: &str) {
-        let Ok(mut table) = text.parse::<toml::Table>() else {
-            return self.add(PROBLEM, text.as_bytes());
-        };
+    pub fn add_problem(&mut self, entries: &toml::Table) {
+        let mut table = entries.clone();
         ["stop", "checkpoint"].iter().for_each(|name| drop(table.remove(*name)));
         self.add(PROBLEM, toml::to_string(&table).unwrap_or_default().as_bytes());
     }
@@ -174,7 +172,7 @@ mod tests {
         }
         let of = |text: &str| {
             let mut origins = Origins::new();
-            origins.add_problem(text);
+            origins.add_problem(&text.parse().unwrap());
             origins
         };
         let problem = "model = \"M\"\n[parameters]\na = { min = 0 }\nb = { min = 0 }\n";

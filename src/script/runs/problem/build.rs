@@ -78,14 +78,13 @@ pub(super) fn build(
     session: &mut Session,
     file: &mut ProblemFile,
     path: &Path,
-    text: &str,
 ) -> Result<Built, Vec<Diagnostic>> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_models(session, file, &folder)?;
     let file = &*file;
     check_class(session, file)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    origins.add_problem(text);
+    origins.add_problem(&file.table);
     let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
     let free = free_parameters(file, &data).map_err(one)?;
     let mut read = experiments(session, file, &data, &free, &mut notes)?;
@@ -108,7 +107,6 @@ pub(super) fn build(
     problem.inference = inference;
     let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
     adjust(&mut problem, adjustments).map_err(one)?;
-    problem.text = text.to_owned();
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
     Ok(Built { problem, experiments, validation, origins, notes, calibration, undecided })
@@ -305,7 +303,7 @@ fn assemble(
     Ok(Problem {
         title: title(file),
         model: file.model.clone(),
-        text: String::new(),
+        text: file.text.clone(),
         parameters,
         series,
         objectives,

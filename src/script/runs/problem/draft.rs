@@ -394,7 +394,7 @@ fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
 fn check(session: &mut Session, text: &str) -> Option<String> {
     let source = session.sources.add("the draft", text);
     let built = file::read(source, text).map_err(|error| vec![error]).and_then(|mut file| {
-        build::build(session, &mut file, Path::new(""), text).map(|built| built.notes)
+        build::build(session, &mut file, Path::new("")).map(|built| built.notes)
     });
     match built {
         Ok(notes) => {

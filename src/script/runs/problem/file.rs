@@ -1,4 +1,4 @@
-//! The file that a problem is written in: TOML.
+//! A problem as a TOML file or a record of a script states it.
 
 use super::places::{self, ExperimentPlaces, Places};
 use super::refusal;
@@ -48,6 +48,12 @@ pub(super) struct ProblemFile {
     /// Where its entries are written.
     #[serde(skip)]
     pub places: Places,
+    /// All its entries, in their order.
+    #[serde(skip)]
+    pub table: toml::Table,
+    /// The text for the report.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -328,11 +334,25 @@ pub(super) struct PosteriorEntry {
 pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnostic> {
     let mut file: ProblemFile =
         toml::from_str(text).map_err(|error| refusal::refusal(source, text, &error))?;
+    // What could be read once can be read again.
+    file.table = text.parse().unwrap_or_default();
+    file.text = text.to_owned();
     file.places = places::places(source, text);
     for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
         entry.places = places.clone();
     }
     Ok(file)
+}
+
+/// The problem with the entries of `table`, which are written nowhere.
+///
+/// # Errors
+///
+/// Entries of another type, too many or missing ones.
+pub(super) fn of_table(table: toml::Table) -> Result<ProblemFile, Diagnostic> {
+    let file = ProblemFile::deserialize(table.clone());
+    let file = file.map_err(|error| refusal::refusal(SourceId::NONE, "", &error))?;
+    Ok(ProblemFile { text: table.to_string(), table, ..file })
 }
 
 impl ColumnEntry {

@@ -52,7 +52,7 @@ use crate::identify::problem::{
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::registry::BAD_OPTION;
 use crate::sim::TimeBudget;
-use crate::source::{SourceId, Span};
+use crate::source::Span;
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, draft};
@@ -129,7 +129,8 @@ pub fn solve(
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     let source = session.sources.add(path.display().to_string(), text.as_str());
-    solve_text(session, path, (source, text), options)
+    let file = file::read(source, &text).map_err(|error| vec![error])?;
+    solve_stated(session, path, file, options)
 }
 
 /// Solves the problem that a record `GAPILib.Problem` of a script holds.
@@ -142,23 +143,19 @@ pub(crate) fn solve_record(
     record: &RecordValue,
     options: &RunOptions,
 ) -> Result<Solution, Vec<Diagnostic>> {
-    let text = record::text(record).map_err(|fault| vec![fault.at(Span::NONE)])?;
-    let source = session.sources.add("problem".to_owned(), text.as_str());
-    // This text is generated: its places lead nowhere.
-    let hidden = |span: Span| if span.source == source { Span::NONE } else { span };
-    let solution = solve_text(session, Path::new("problem"), (source, text), options);
-    solution.map_err(|errors| errors.into_iter().map(|error| error.with_spans(hidden)).collect())
+    let table = record::table(record).map_err(|fault| fault.at(Span::NONE));
+    let file = table.and_then(file::of_table).map_err(|error| vec![error])?;
+    solve_stated(session, Path::new("problem"), file, options)
 }
 
-fn solve_text(
+fn solve_stated(
     session: &mut Session,
     path: &Path,
-    (source, text): (SourceId, String),
+    mut file: file::ProblemFile,
     options: &RunOptions,
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let mut file = file::read(source, &text).map_err(|error| vec![error])?;
-    let built = built_for(session, &mut file, (path, &text), options)?;
+    let built = built_for(session, &mut file, path, options)?;
     for note in &built.notes {
         session.note(crate::mat::errors::DATA_NOTE, note.sentence.clone());
     }
@@ -175,11 +172,11 @@ fn solve_text(
         let built = match change {
             Change::Seed(seed) => {
                 file.seed = Some(seed);
-                built_for(session, &mut file, (path, &text), &options)
+                built_for(session, &mut file, path, &options)
             }
             Change::Interpolation(names, between) => {
                 let before = interpolation::set(&mut file, names, between);
-                let built = built_for(session, &mut file, (path, &text), &options);
+                let built = built_for(session, &mut file, path, &options);
                 interpolation::restore(&mut file, before);
                 built
             }
@@ -198,10 +195,10 @@ fn solve_text(
 fn built_for(
     session: &mut Session,
     file: &mut file::ProblemFile,
-    (path, text): (&Path, &str),
+    path: &Path,
     options: &RunOptions,
 ) -> Result<Built, Vec<Diagnostic>> {
-    let mut built = build::build(session, file, path, text)?;
+    let mut built = build::build(session, file, path)?;
     if options.design {
         built.problem.inference.design.get_or_insert_with(inference::usual_design);
     }

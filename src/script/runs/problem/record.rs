@@ -1,4 +1,4 @@
-//! From the record `GAPILib.Problem` of a script to the text of a problem's file, so that both
+//! From the record `GAPILib.Problem` of a script to the entries of a problem's file, so that both
 //! forms mean the same.
 
 use crate::bail;
@@ -8,12 +8,12 @@ use crate::registry::BAD_OPTION;
 use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
 use toml::{Table, Value as Entry};
 
-/// The file that says what the record says.
+/// The entries of the file that states what the record states.
 ///
 /// # Errors
 ///
 /// Components that are missing or of another type, vectors that belong together and differ in size.
-pub(super) fn text(record: &RecordValue) -> Result<String, Fault> {
+pub(super) fn table(record: &RecordValue) -> Result<Table, Fault> {
     let fields = Fields(record);
     let mut file = Table::new();
     put_text(&mut file, "title", fields.text("title")?);
@@ -44,7 +44,7 @@ pub(super) fn text(record: &RecordValue) -> Result<String, Fault> {
     }
     put(&mut file, "method", method);
     put(&mut file, "stop", stop(&fields)?);
-    Ok(file.to_string())
+    Ok(file)
 }
 
 fn stop(fields: &Fields<'_>) -> Result<Table, Fault> {

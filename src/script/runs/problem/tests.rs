@@ -206,7 +206,7 @@ fn resumes_with(problem: &str, other: (&str, String)) {
     let text = files[0].1.clone();
     let source = session.sources.add("p.toml", text.as_str());
     let mut file = file::read(source, &text).unwrap();
-    let built = build::build(&mut session, &mut file, Path::new("p.toml"), &text)
+    let built = build::build(&mut session, &mut file, Path::new("p.toml"))
         .unwrap_or_else(|e| panic!("{}", e[0].message));
     let mut journal = solving::header(&built.origins);
     let mut run_of = Run::new(built.problem, 1).unwrap();
