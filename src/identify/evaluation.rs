@@ -8,14 +8,16 @@ use super::plan::TIME;
 use super::problem::{
     Experiment, Failed, ModelSimulator, NOISE_OF_FORMULAS, Observation, Simulate,
 };
-use super::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
+use super::ranks::{Asked, Batch, Processors, Simulation};
+use super::simulators::Simulators;
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
+use crate::sim::Settings;
 use crate::{bail, fault};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// What is varied and what is compared.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -36,14 +38,9 @@ pub struct Evaluator {
     model: Arc<dyn Model>,
     parameters: Vec<Parameter>,
     x: Vec<f64>,
-    workers: Vec<ModelSimulator>,
-    pool: Option<rayon::ThreadPool>,
-    /// The simulators of other ranks.
-    others: Option<Prepared>,
-    /// Why there are none although there are ranks.
-    alone: Option<String>,
-    /// Set where simulations have to end.
-    cancel: Option<Arc<AtomicBool>>,
+    simulators: Simulators,
+    settings: Settings,
+    noise: f64,
 }
 
 /// The simulated values of a population.
@@ -78,21 +75,11 @@ impl std::fmt::Display for FailedSimulation {
 }
 
 impl Simulated {
-    fn none() -> Simulated {
-        Simulated { rows: Vec::new(), failures: Vec::new() }
-    }
-
     /// Why each simulation failed, as text; empty where it did not.
     pub fn messages(&self) -> Vec<String> {
         let text = |failed: &FailedSimulation| failed.to_string();
         self.failures.iter().map(|failure| failure.as_ref().map_or(String::new(), text)).collect()
     }
-}
-
-/// The answer for one individual.
-struct Answer {
-    individual: usize,
-    row: Result<Vec<f64>, FailedSimulation>,
 }
 
 impl Evaluator {
@@ -134,7 +121,14 @@ impl Evaluator {
             observations: vec![Observation { y_name: y.name.clone(), x: question.x.clone() }],
             parameters: parameters.iter().map(|p| p.name.clone()).enumerate().collect(),
         };
-        let worker = || ModelSimulator::new(std::slice::from_ref(&experiment));
+        let mut one = ModelSimulator::new(std::slice::from_ref(&experiment))?;
+        let settings = one.settings().clone();
+        // Relative error of the simulated values: the solver's, where anything is integrated.
+        let noise = if one.is_static() { NOISE_OF_FORMULAS } else { settings.tolerance };
+        let simulator = || {
+            let one = ModelSimulator::new(std::slice::from_ref(&experiment))?;
+            Ok(Box::new(one) as Box<dyn Simulate>)
+        };
         let quantity = |p: &Parameter| Quantity { name: p.name.clone(), unit: p.unit.clone() };
         let study = Study {
             model: model.name().to_owned(),
@@ -142,30 +136,20 @@ impl Evaluator {
             x,
             y,
         };
-        let threads = processors.threads.max(1);
-        let workers: Vec<ModelSimulator> =
-            (0..threads).map(|_| worker()).collect::<Result<_, Fault>>()?;
-        let (others, alone) = processors.prepare(|| workers[0].portable())?;
-        // Without a pool (one thread, or no more threads to be had) the caller's thread works alone.
-        // It gives work to the other ranks where there are some.
-        let helpers = if others.is_some() { threads } else { threads.saturating_sub(1).max(1) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
         Ok(Evaluator {
             study: Arc::new(study),
-            model: Arc::clone(&shared),
+            simulators: Simulators::on(processors, simulator)?,
+            model: shared,
             parameters,
             x: question.x,
-            workers,
-            pool: pool.filter(|_| threads > 1 || others.is_some()),
-            others,
-            alone,
-            cancel: None,
+            settings,
+            noise,
         })
     }
 
     /// What the simulation is asked for, as a text that is the same where the settings are.
     pub fn settings_text(&self) -> String {
-        let s = self.workers[0].settings();
+        let s = &self.settings;
         format!(
             "{:?}",
             (
@@ -193,25 +177,23 @@ impl Evaluator {
     }
 
     /// Relative error of the simulated values: the solver's, where anything is integrated.
-    pub fn noise(&mut self) -> f64 {
-        let simulator = &mut self.workers[0];
-        if simulator.is_static() { NOISE_OF_FORMULAS } else { simulator.settings().tolerance }
+    pub fn noise(&self) -> f64 {
+        self.noise
     }
 
     /// From now on simulations end when the flag is set.
     pub fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
-        self.workers.iter_mut().for_each(|worker| worker.cancel_by(flag.clone()));
-        self.cancel = flag;
+        self.simulators.cancel_by(flag);
     }
 
     /// Whether simulations were cancelled; what was answered then is not used.
     pub fn is_cancelled(&self) -> bool {
-        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+        self.simulators.is_cancelled()
     }
 
     /// Why other ranks take no part, in words that follow on "because".
     pub fn alone(&self) -> Option<&str> {
-        self.alone.as_deref()
+        self.simulators.alone()
     }
 
     /// The measured points.
@@ -225,76 +207,23 @@ impl Evaluator {
     ///
     /// `population-size-mismatch` when there is not one gene for each parameter, `bad-range` when
     /// a gene lies outside what the model allows for its parameter.
-    pub fn evaluate(&mut self, genomes: &Genomes) -> Result<Simulated, Fault> {
+    pub fn evaluate(&self, genomes: &Genomes) -> Result<Simulated, Fault> {
         self.check_genomes(genomes)?;
-        if self.others.is_some() && self.pool.is_some() {
-            return Ok(self.distributed(genomes));
-        }
-        let Evaluator { x, workers, pool, .. } = self;
-        let next = AtomicUsize::new(0);
-        let points = x.len();
-        let work = |worker: &mut ModelSimulator| {
-            let mut answers = Vec::new();
-            loop {
-                let individual = next.fetch_add(1, Ordering::Relaxed);
-                if individual >= genomes.len() {
-                    return answers;
-                }
-                let mut row = vec![f64::NAN; points];
-                let run = worker.simulate(genomes.row(individual), &mut row);
-                let failed = |failed: Failed| FailedSimulation {
-                    cause: failed.cause,
-                    time: worker.failed_at(),
-                };
-                let row = run.map(|()| row).map_err(failed);
-                answers.push(Answer { individual, row });
-            }
-        };
-        let mut answers: Vec<Vec<Answer>> = workers.iter().map(|_| Vec::new()).collect();
-        let mut shares = workers.iter_mut().zip(&mut answers);
-        let own = shares.next();
-        // The caller's thread works too: it has begun long before another one is awake.
-        let work_own = || own.into_iter().for_each(|(worker, found)| *found = work(worker));
-        match pool {
-            Some(pool) => pool.in_place_scope(|scope| {
-                for (worker, found) in shares {
-                    scope.spawn(|_| *found = work(worker));
-                }
-                work_own();
-            }),
-            None => work_own(),
-        }
-        Ok(collect(answers, genomes.len(), points))
-    }
-
-    /// Simulates every individual on all threads and ranks.
-    fn distributed(&mut self, genomes: &Genomes) -> Simulated {
-        let Evaluator { x, workers, pool, others, cancel, .. } = self;
-        let (Some(others), Some(pool)) = (others, pool) else { return Simulated::none() };
         let batch = Batch {
             values: genomes.values(),
             parameters: genomes.n_genes(),
-            points: x.len(),
+            points: self.x.len(),
             asked: Asked::Points,
-            tolerance: 1.0,
+            tolerance: self.simulators.tolerance(),
         };
-        let workers: Vec<Mutex<&mut ModelSimulator>> = workers.iter_mut().map(Mutex::new).collect();
-        let one = |individual: usize| {
-            let place = rayon::current_thread_index().unwrap_or(0) % workers.len();
-            let mut worker = workers[place].lock().unwrap_or_else(PoisonError::into_inner);
-            simulate(&mut **worker, &batch, individual)
-        };
-        let local = Local { pool, threads: workers.len(), simulate: &one };
-        let found = others.distribute(&batch, &local, cancel.as_deref());
-        let found = found.unwrap_or_else(|| vec![Simulation::cancelled(&batch); batch.len()]);
-        let mut all = Simulated::none();
-        for Simulation { row, failed, failed_at, .. } in found {
-            all.rows.extend(row);
+        let answer = |Simulation { row, failed, failed_at, .. }: Simulation| {
             let failure =
                 |failed: Failed| FailedSimulation { cause: failed.cause, time: failed_at };
-            all.failures.push(failed.map(failure));
-        }
-        all
+            (row, failed.map(failure))
+        };
+        let (rows, failures): (Vec<Vec<f64>>, Vec<_>) =
+            self.simulators.simulate(&batch, answer).into_iter().unzip();
+        Ok(Simulated { rows: rows.concat(), failures })
     }
 
     fn check_genomes(&self, genomes: &Genomes) -> Result<(), Fault> {
@@ -325,18 +254,6 @@ impl Evaluator {
         }
         Ok(())
     }
-}
-
-fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
-    let mut rows = vec![f64::NAN; individuals * points];
-    let mut failures = vec![None; individuals];
-    for Answer { individual, row } in answers.into_iter().flatten() {
-        match row {
-            Ok(row) => rows[individual * points..(individual + 1) * points].copy_from_slice(&row),
-            Err(failure) => failures[individual] = Some(failure),
-        }
-    }
-    Simulated { rows, failures }
 }
 
 fn check_points(x: &[f64]) -> Result<(), Fault> {

@@ -31,6 +31,7 @@ mod program;
 mod recorder;
 mod report;
 mod seeds;
+mod simulators;
 mod study;
 mod table;
 mod uncertainty;

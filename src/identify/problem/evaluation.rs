@@ -3,17 +3,16 @@
 
 use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
-use crate::ranks::{Asked, Batch, Local, Prepared, Processors, Simulation, simulate};
-use crate::registry::BAD_OPTION;
-use crate::{bail, elementary};
-use rayon::prelude::*;
+use crate::ranks::{Asked, Batch, Processors, Simulation};
+use crate::simulators::Simulators;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Shows what is being done.
 pub type Status = Arc<dyn Fn(&str) + Send + Sync>;
@@ -40,28 +39,18 @@ pub struct Answered {
 /// The simulated points of an individual, or why there are none.
 type Row = Result<Vec<f64>, Failed>;
 
-/// Simulators on several threads, and the memory of equal genes.
+/// Simulators, what their answers are compared with, and the memory of equal genes.
 pub struct Evaluation {
     measured: Vec<f64>,
     weights: Vec<f64>,
     /// What residuals are multiplied with, where there is a sum of squares.
     scales: Option<Vec<f64>>,
     n_objectives: usize,
-    /// `None` where one thread is requested and the system has no others (browsers).
-    pool: Option<rayon::ThreadPool>,
-    workers: Vec<Mutex<Box<dyn Simulate>>>,
-    /// The simulators of other ranks.
-    others: Option<Prepared>,
-    /// Why there are none although there are ranks.
-    alone: Option<String>,
+    simulators: Simulators,
     /// The independent parts of what follows the search.
     pub parts: Parts,
-    rows: Vec<f64>,
     memory: Memory,
-    cancel: Option<Arc<AtomicBool>>,
     status: Option<Status>,
-    /// What the tolerance of the settings is multiplied with.
-    tolerance: f64,
 }
 
 /// Answers by genes; the oldest give way.
@@ -80,7 +69,7 @@ impl Evaluation {
     ///
     /// # Errors
     ///
-    /// Those of the simulator's maker; no threads to be had.
+    /// Those of the simulator's maker.
     pub fn new(problem: &Problem, threads: usize) -> Result<Evaluation, Fault> {
         Evaluation::on(problem, &Processors::threads(threads))
     }
@@ -91,15 +80,6 @@ impl Evaluation {
     ///
     /// Those of [`Evaluation::new`]; `ranks-differ` where a rank cannot make the simulator.
     pub fn on(problem: &Problem, processors: &Processors) -> Result<Evaluation, Fault> {
-        let threads = processors.threads.max(1);
-        let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            Ok(pool) => Some(pool),
-            Err(_) if threads == 1 => None,
-            Err(error) => bail!(BAD_OPTION, "cannot start {threads} threads: {error}"),
-        };
-        let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
-        let workers: Vec<Mutex<Box<dyn Simulate>>> = workers.collect::<Result<_, Fault>>()?;
-        let (others, alone) = processors.prepare(|| locked(&workers[0]).portable())?;
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
         let weights: Vec<f64> = problem.series.iter().flat_map(super::Series::weights).collect();
@@ -108,18 +88,12 @@ impl Evaluation {
         Ok(Evaluation {
             scales,
             n_objectives: problem.objectives.len(),
-            workers,
-            others,
-            alone,
-            pool,
+            simulators: Simulators::on(processors, &*problem.simulator)?,
             measured,
             weights,
             parts: Parts::default(),
-            rows: Vec::new(),
             memory: Memory::default(),
-            cancel: None,
             status: None,
-            tolerance: 1.0,
         })
     }
 
@@ -146,7 +120,7 @@ impl Evaluation {
 
     /// Why other ranks take no part, in words that follow on "because".
     pub fn alone(&self) -> Option<&str> {
-        self.alone.as_deref()
+        self.simulators.alone()
     }
 
     /// What differences of the points count.
@@ -163,16 +137,12 @@ impl Evaluation {
 
     /// From now on simulations end when the flag is set.
     pub fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
-        for worker in &self.workers {
-            let mut worker = worker.lock().unwrap_or_else(PoisonError::into_inner);
-            worker.cancel_by(flag.clone());
-        }
-        self.cancel = flag;
+        self.simulators.cancel_by(flag);
     }
 
     /// What ends simulations when it is set.
     pub(super) fn cancel(&self) -> Option<Arc<AtomicBool>> {
-        self.cancel.clone()
+        self.simulators.cancel().cloned()
     }
 
     /// From now on what is being done is shown this way.
@@ -199,7 +169,7 @@ impl Evaluation {
             Wants::Jacobians => self.with_jacobians(problem, batch),
             _ => self.without(problem, batch, wants == Wants::Residuals),
         };
-        if self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        if self.is_cancelled() {
             return None;
         }
         self.remember(batch, &answered);
@@ -218,7 +188,8 @@ impl Evaluation {
             return single.map_or(Vec::new(), |one| self.with_jacobians(problem, &one).objectives);
         }
         let mut row = vec![f64::NAN; self.measured.len()];
-        self.on_threads(|| self.one(problem, genome, &mut row).0)
+        let failed = self.simulators.own().simulate(&problem.values(genome), &mut row).err();
+        self.rate(problem, &row, failed).0
     }
 
     fn with_jacobians(&self, problem: &Problem, batch: &Genomes) -> Answered {
@@ -263,8 +234,8 @@ impl Evaluation {
             .collect()
     }
 
-    fn without(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
-        let (n, m, points) = (batch.len(), self.n_objectives, self.measured.len());
+    fn without(&self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
+        let (n, m) = (batch.len(), self.n_objectives);
         let mut objectives = vec![f64::NAN; n * m];
         let mut failed: Vec<Option<Failed>> = vec![None; n];
         // Those with equal genes stand for each other; with residuals everything is simulated.
@@ -280,60 +251,42 @@ impl Evaluation {
                 None => wanted.push(k),
             }
         }
-        let mut rows = std::mem::take(&mut self.rows);
-        rows.clear();
-        rows.resize(wanted.len() * points, f64::NAN);
-        let mut outcomes: Vec<(Vec<f64>, Option<Failed>)> = Vec::with_capacity(wanted.len());
-        if self.others.is_some() {
-            let places: Vec<Vec<f64>> =
-                wanted.iter().map(|&k| problem.values(batch.row(k))).collect();
-            let found = self.distributed(&places, Asked::Points, self.tolerance);
-            for (own, row) in found.into_iter().zip(rows.chunks_exact_mut(points)) {
-                row.copy_from_slice(&own.row);
-                outcomes.push(self.rate(problem, row, own.failed));
-            }
-        } else {
-            let evaluate = |(row, &k): (&mut [f64], &usize)| self.one(problem, batch.row(k), row);
-            self.on_threads(|| {
-                let rows = rows.par_chunks_mut(points).zip(&wanted);
-                rows.map(evaluate).collect_into_vec(&mut outcomes);
-            });
-        }
-        for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
+        let places: Vec<Vec<f64>> = wanted.iter().map(|&k| problem.values(batch.row(k))).collect();
+        let found = self.distributed(&places, (Asked::Points, 1.0), |own| {
+            let rated = self.rate(problem, &own.row, own.failed);
+            (rated, residuals.then_some(own.row))
+        });
+        let mut rows = Vec::new();
+        for (&k, ((values, failure), row)) in wanted.iter().zip(found) {
             objectives[k * m..(k + 1) * m].copy_from_slice(&values);
             failed[k] = failure;
+            rows.extend(row.into_iter().flatten());
         }
-        let answered = Answered {
+        Answered {
             residuals: if residuals { self.residuals(problem, &rows) } else { Vec::new() },
             objectives,
             failures: failed.into_iter().enumerate().filter_map(|(k, f)| Some((k, f?))).collect(),
             simulations: wanted.len() as u64,
             jacobians: Vec::new(),
-        };
-        self.rows = rows;
-        answered
+        }
     }
 
-    /// Simulations at several places, spread over all threads and ranks. Where they were cancelled,
-    /// they have failed.
-    fn distributed(&self, places: &[Vec<f64>], asked: Asked, tolerance: f64) -> Vec<Simulation> {
-        let values = places.concat();
-        let parameters = places.first().map_or(1, Vec::len);
-        let points = self.measured.len();
-        let batch = Batch { values: &values, parameters, points, asked, tolerance };
-        let one = |individual: usize| {
-            let mut worker = self.worker();
-            worker.scale_tolerance(tolerance);
-            let found = simulate(worker.as_mut(), &batch, individual);
-            worker.scale_tolerance(self.tolerance);
-            found
+    /// Simulations at several places with the tolerance times a factor, spread over all threads and
+    /// ranks, and what `then` makes of them. Where they were cancelled, they have failed.
+    fn distributed<T: Send>(
+        &self,
+        places: &[Vec<f64>],
+        (asked, factor): (Asked, f64),
+        then: impl Fn(Simulation) -> T + Sync,
+    ) -> Vec<T> {
+        let batch = Batch {
+            values: &places.concat(),
+            parameters: places.first().map_or(1, Vec::len),
+            points: self.measured.len(),
+            asked,
+            tolerance: factor * self.simulators.tolerance(),
         };
-        if let (Some(others), Some(pool)) = (&self.others, &self.pool) {
-            let local = Local { pool, threads: self.workers.len(), simulate: &one };
-            let found = others.distribute(&batch, &local, self.cancel.as_deref());
-            return found.unwrap_or_else(|| vec![Simulation::cancelled(&batch); batch.len()]);
-        }
-        self.on_threads(|| (0..batch.len()).into_par_iter().map(one).collect())
+        self.simulators.simulate(&batch, then)
     }
 
     /// The simulated points of one individual.
@@ -343,10 +296,7 @@ impl Evaluation {
     /// Why it failed.
     pub fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, Failed> {
         let mut row = vec![f64::NAN; self.measured.len()];
-        self.workers[0]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .simulate(values, &mut row)?;
+        self.simulators.own().simulate(values, &mut row)?;
         Ok(row)
     }
 
@@ -361,9 +311,8 @@ impl Evaluation {
         values: &[Vec<f64>],
         factor: f64,
     ) -> Vec<Result<Vec<f64>, Failed>> {
-        let tolerance = factor * self.tolerance;
-        let found = self.distributed(values, Asked::Points, tolerance);
-        found.into_iter().map(|own| own.failed.map_or(Ok(own.row), Err)).collect()
+        let points = |own: Simulation| own.failed.map_or(Ok(own.row), Err);
+        self.distributed(values, (Asked::Points, factor), points)
     }
 
     /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
@@ -372,16 +321,7 @@ impl Evaluation {
         count: usize,
         job: impl Fn(usize, &mut dyn Simulate) -> T + Sync,
     ) -> Vec<T> {
-        let one = |number: usize| {
-            let mut worker = self.worker();
-            job(number, worker.as_mut())
-        };
-        let of_ranks = self.others.as_ref().and_then(|others| {
-            let how = (self.tolerance, self.cancel.as_deref());
-            others.run_jobs(count, &self.workers, &job, how)
-        });
-        of_ranks
-            .unwrap_or_else(|| self.on_threads(|| (0..count).into_par_iter().map(one).collect()))
+        self.simulators.each(count, job)
     }
 
     /// The results of jobs that several shards may share, all of which start from `start`; `None`
@@ -415,7 +355,7 @@ impl Evaluation {
 
     /// Whether simulations have been cancelled.
     pub(super) fn is_cancelled(&self) -> bool {
-        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+        self.simulators.is_cancelled()
     }
 
     /// The simulated points at several places, with derivatives where the simulator has exact ones.
@@ -430,22 +370,7 @@ impl Evaluation {
                 simulations: 1,
             }),
         };
-        let found = self.distributed(places, Asked::DerivativesOrPoints, self.tolerance);
-        found.into_iter().map(linearization).collect()
-    }
-
-    /// Runs work on the threads of the pool.
-    fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
-    }
-
-    /// The simulator of this thread.
-    fn worker(&self) -> MutexGuard<'_, Box<dyn Simulate>> {
-        let place = rayon::current_thread_index().unwrap_or(0) % self.workers.len();
-        self.workers[place].lock().unwrap_or_else(PoisonError::into_inner)
+        self.distributed(places, (Asked::DerivativesOrPoints, 1.0), linearization)
     }
 
     /// The answers of an earlier run are remembered as if they were new.
@@ -462,19 +387,6 @@ impl Evaluation {
     /// Forgets the answers: equal genes mean other values from now on.
     pub(super) fn forget(&mut self) {
         self.memory = Memory::default();
-    }
-
-    fn one(
-        &self,
-        problem: &Problem,
-        genome: &[f64],
-        row: &mut [f64],
-    ) -> (Vec<f64>, Option<Failed>) {
-        let failed = self.worker().simulate(&problem.values(genome), row).err();
-        if failed.is_some() {
-            row.fill(f64::NAN);
-        }
-        self.rate(problem, row, failed)
     }
 
     /// The objectives of a simulation, and why it failed.
@@ -551,16 +463,9 @@ impl Evaluation {
 
     /// From now on simulators solve with their tolerance times this.
     pub(super) fn scale_tolerance(&mut self, factor: f64) {
-        for worker in &self.workers {
-            worker.lock().unwrap_or_else(PoisonError::into_inner).scale_tolerance(factor);
-        }
-        self.tolerance = factor;
+        self.simulators.scale_tolerance(factor);
         self.forget();
     }
-}
-
-fn locked(worker: &Mutex<Box<dyn Simulate>>) -> MutexGuard<'_, Box<dyn Simulate>> {
-    worker.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn unrated_by(name: &str) -> Failed {
