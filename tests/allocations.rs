@@ -278,7 +278,7 @@ fn memory_stays_the_same_over_many_evaluations() {
     while run.stop().is_none() {
         let record = run.step(0.0).expect("an answer");
         failed += record.answered.failures.len();
-        if half.is_none() && run.evaluations >= evaluations / 2 {
+        if half.is_none() && run.evaluations() >= evaluations / 2 {
             half = Some((held(), run.generations()));
         }
     }
@@ -290,7 +290,7 @@ fn memory_stays_the_same_over_many_evaluations() {
     let grown = pages.saturating_sub(pages_then) * 4096;
     println!(
         "{} evaluations, {failed} failed, {grown} bytes more than after half of them, {files} open files",
-        run.evaluations
+        run.evaluations()
     );
     assert_eq!(files, files_then, "open files");
     // What is kept is one line of the history for each generation.

@@ -13,7 +13,7 @@ use super::problem::{
     SolvedParameter, SolvedSeries, Stop, conclude, draw_curves, failure_region,
 };
 use super::ranks::Processors;
-use super::recorder::{Best, Recorder};
+use super::recorder::{Recorder, ScriptBest};
 use super::study::Compared;
 use super::table::significant;
 use super::{Model, Objective, Parameter};
@@ -70,7 +70,7 @@ pub struct Ending<'a> {
 impl Ending<'_> {
     /// The solution; `None` when no individual was simulated successfully.
     pub fn solution(&self) -> Option<Solution> {
-        let best = self.recorder.best.as_ref()?;
+        let best = self.recorder.best()?;
         let solution = match self.reached(best) {
             Ok(solution) => solution,
             Err(why) => self.unprobed(best, &why),
@@ -81,12 +81,12 @@ impl Ending<'_> {
     /// Least squares from the best individual. Where the script names no ranges, those that its
     /// individuals span bound nothing: they are widened until the minimum does not lie at their
     /// ends, and it is none where that does not help.
-    fn reached(&self, best: &Best) -> Result<Solution, String> {
+    fn reached(&self, best: ScriptBest<'_>) -> Result<Solution, String> {
         let named = self.recorder.ranges.is_some();
         let mut ranges = self.ranges(best);
         let limits = self.limits(best);
         let mut simulations = 0;
-        for ((range, value), limits) in ranges.iter_mut().zip(&best.genome).zip(&limits) {
+        for ((range, value), limits) in ranges.iter_mut().zip(best.genome).zip(&limits) {
             if range[0] == range[1] && !named {
                 widen(range, *value, *limits);
             }
@@ -116,7 +116,7 @@ impl Ending<'_> {
     /// The problem of least squares; `Err` says why there is none.
     fn problem(
         &self,
-        best: &Best,
+        best: ScriptBest<'_>,
         ranges: &[[f64; 2]],
     ) -> Result<(Problem, Vec<Experiment>), String> {
         if self.interrupted {
@@ -147,7 +147,7 @@ impl Ending<'_> {
 
     fn assembled(
         &self,
-        best: &Best,
+        best: ScriptBest<'_>,
         series: Vec<Series>,
         (experiments, ranges): (&[Experiment], &[[f64; 2]]),
     ) -> Result<Problem, Fault> {
@@ -179,12 +179,12 @@ impl Ending<'_> {
         })
     }
 
-    fn title(&self, best: &Best) -> String {
+    fn title(&self, best: ScriptBest<'_>) -> String {
         format!("Identified parameters of {}", models(best))
     }
 
     /// The parameters with these ranges.
-    fn parameters(&self, best: &Best, ranges: &[[f64; 2]]) -> Result<Vec<Free>, Fault> {
+    fn parameters(&self, best: ScriptBest<'_>, ranges: &[[f64; 2]]) -> Result<Vec<Free>, Fault> {
         let quantities = &best.compared[0].study.parameters;
         if best.compared.iter().any(|compared| compared.study.parameters != *quantities) {
             return Err(fault!(BAD_OPTION, "its experiments have different parameters"));
@@ -197,13 +197,13 @@ impl Ending<'_> {
     }
 
     /// The ranges of the script, or those that its individuals span.
-    fn ranges(&self, best: &Best) -> Vec<[f64; 2]> {
+    fn ranges(&self, best: ScriptBest<'_>) -> Vec<[f64; 2]> {
         let genes = best.genome.iter().enumerate();
         genes.map(|(k, value)| self.range(k, *value)).collect()
     }
 
     /// What the models allow for each parameter.
-    fn limits(&self, best: &Best) -> Vec<[f64; 2]> {
+    fn limits(&self, best: ScriptBest<'_>) -> Vec<[f64; 2]> {
         let quantities = best.compared[0].study.parameters.iter();
         let all: Vec<Parameter> =
             self.models.iter().flatten().flat_map(|model| model.parameters()).collect();
@@ -227,7 +227,7 @@ impl Ending<'_> {
     /// Least squares from the best individual, with everything that follows from its minimum.
     fn probed(
         &self,
-        best: &Best,
+        best: ScriptBest<'_>,
         (problem, experiments): (Problem, Vec<Experiment>),
     ) -> Result<Solution, String> {
         let before = best.sum_of_squares().ok_or("the measured values are unknown")?;
@@ -244,7 +244,7 @@ impl Ending<'_> {
         let solution = self.inferred(&mut run, &stop).map_err(|fault| fault.message)?;
         let at_minimum = solution.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
-        let generations = self.recorder.history.generations.len();
+        let generations = self.recorder.observed.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
         draw_curves(&experiments, &mut solution, &[], None);
         let probe = sentence((who, best, before), &solution, at_minimum);
@@ -272,7 +272,7 @@ impl Ending<'_> {
     }
 
     /// The script's best individual alone; why there was no probe.
-    fn unprobed(&self, best: &Best, why: &str) -> Solution {
+    fn unprobed(&self, best: ScriptBest<'_>, why: &str) -> Solution {
         let parameter = |(k, quantity): (usize, &super::Quantity)| SolvedParameter {
             name: quantity.name.clone(),
             unit: quantity.unit.clone(),
@@ -306,7 +306,7 @@ impl Ending<'_> {
     }
 
     /// Adds what the script's search was.
-    fn with_search(&self, best: &Best, mut solution: Solution) -> Solution {
+    fn with_search(&self, best: ScriptBest<'_>, mut solution: Solution) -> Solution {
         let recorder = self.recorder;
         let names = best.compared[0].study.parameters.iter().map(|quantity| quantity.name.clone());
         let script = solution.script.get_or_insert_default();
@@ -336,23 +336,25 @@ impl Ending<'_> {
         if !script.probed {
             solution.fitness_name = best.objective.name().to_owned();
         }
-        let failed = [("simulation".to_owned(), recorder.failures)];
+        let failed = [("simulation".to_owned(), recorder.observed.failures)];
         let free = self.parameters(best, &self.ranges(best));
         Solution {
             findings,
             method: method.to_owned(),
             stop,
-            generations: recorder.history.generations.len() as u64,
+            generations: recorder.observed.history.generations.len() as u64,
             evaluations: recorder.evaluations,
             simulations: recorder.evaluations,
             failures: failed.into_iter().filter(|(_, count)| *count > 0).collect(),
-            causes: recorder.causes.clone(),
-            failure_region: free.ok().and_then(|free| failure_region(&free, &recorder.kept)),
+            causes: recorder.observed.causes.clone(),
+            failure_region: free
+                .ok()
+                .and_then(|free| failure_region(&free, &recorder.observed.kept)),
             objectives: vec![best.objective.name().to_owned()],
             seed: recorder.seed(),
-            history: recorder.history.generations.clone(),
-            trace: recorder.trace.clone(),
-            individuals: recorder.kept.clone(),
+            history: recorder.observed.history.generations.clone(),
+            trace: recorder.observed.trace.clone(),
+            individuals: recorder.observed.kept.clone(),
             ..solution
         }
     }
@@ -384,7 +386,7 @@ fn search(sentence: impl Into<String>) -> Finding {
 }
 
 /// The models of a best individual, each once.
-fn models(best: &Best) -> String {
+fn models(best: ScriptBest<'_>) -> String {
     let mut names: Vec<&str> =
         best.compared.iter().map(|compared| compared.study.model.as_str()).collect();
     names.dedup();
@@ -392,7 +394,7 @@ fn models(best: &Best) -> String {
 }
 
 /// What an experiment is called: nothing where it is the only one.
-fn name(best: &Best, k: usize) -> String {
+fn name(best: ScriptBest<'_>, k: usize) -> String {
     match best.compared.len() {
         1 => String::new(),
         _ => format!("experiment {}", k + 1),
@@ -434,7 +436,7 @@ fn experiment(compared: &Compared, model: &Arc<dyn Model>, name: String) -> Expe
 
 /// What least squares have made of the script's best individual.
 fn sentence(
-    (who, best, before): (&str, &Best, f64),
+    (who, best, before): (&str, ScriptBest<'_>, f64),
     solution: &Solution,
     at_minimum: bool,
 ) -> String {

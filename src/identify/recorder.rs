@@ -12,71 +12,63 @@ use super::Simulated;
 use super::fitness::sum_of_squares;
 use super::generation::{self, Generation};
 use super::objective::{Objective, recognised};
+use super::search_record::{Best, SearchRecord};
 use super::seeds::Seeds;
 use super::study::{Compared, Measurement, Study};
-use crate::ga::{Genomes, History, has_failed};
-use indexmap::IndexMap;
+use crate::ga::{Genomes, has_failed};
 use std::sync::Arc;
 
-/// No more different failure messages than this are kept apart.
-const MAX_CAUSES: usize = 50;
-/// The cause under which all further messages are counted.
-const OTHER_CAUSES: &str = "other causes";
 /// Individuals of generations that may turn out to be parts of one: a population of 100 in the 36
 /// experiments of `scripts/humidity` has 3600.
 const PROVISIONAL: usize = 10_000;
-/// Individuals kept for the figures.
-const KEPT: usize = 4000;
-
 /// The best individual of the run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Best {
+#[derive(Debug, Clone, Copy)]
+pub struct ScriptBest<'a> {
     /// Its genes.
-    pub genome: Vec<f64>,
+    pub genome: &'a [f64],
     /// Its fitness.
     pub fitness: f64,
     /// What the fitness is.
-    pub objective: Objective,
+    pub objective: &'a Objective,
     /// Everything that it was compared with.
-    pub compared: Vec<Compared>,
+    pub compared: &'a [Compared],
 }
+
+/// What the fitness of the best individual is, and everything that it was compared with.
+#[derive(Debug, Clone)]
+struct Comparison {
+    objective: Objective,
+    compared: Vec<Compared>,
+}
+
+/// The best individual with its comparison, where there is one.
+type Known = Option<(Best, Comparison)>;
 
 /// What was observed of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Recorder {
-    /// One record for each generation.
-    pub history: History,
-    /// The best individual so far.
-    pub best: Option<Best>,
-    /// The genes of the best individual so far after each generation.
-    pub trace: Vec<Vec<f64>>,
-    /// Evenly chosen individuals and their fitness.
-    pub kept: Vec<(Vec<f64>, f64)>,
+    /// Its generations, its best individual, and its failures.
+    pub observed: SearchRecord,
+    comparison: Option<Comparison>,
     /// The search ranges used last: minima and maxima.
     pub ranges: Option<(Vec<f64>, Vec<f64>)>,
     /// Smallest and largest gene of all individuals that were simulated.
     pub spanned: Option<(Vec<f64>, Vec<f64>)>,
     /// Number of simulations.
     pub evaluations: u64,
-    /// Number of failed simulations.
-    pub failures: u64,
-    /// Why simulations failed, and how often.
-    pub causes: IndexMap<String, u64>,
-    /// What the user changed during the run, and from which generation on.
+    /// What the user changed while the run went on, and from which generation on.
     pub changes: Vec<(usize, String)>,
     /// Whether operators of the genetic algorithm make one generation of the other; a script without
     /// them evaluates individuals that it chooses in another way.
     pub evolves: bool,
     measurements: Vec<Measurement>,
     seeds: Seeds,
-    keep_every: u64,
-    ordered: u64,
     /// Individuals of the generation that ended last.
     generation_size: usize,
     sorted_by_fit_order: bool,
     pending: Generation,
     /// Generations that ended without `Fit_Order`, each with what was best before it.
-    provisional: Vec<(Generation, Option<Best>)>,
+    provisional: Vec<(Generation, Known)>,
 }
 
 impl Recorder {
@@ -131,14 +123,14 @@ impl Recorder {
         if ends {
             self.end_pending_generation();
         }
-        let generations = self.history.generations.len();
+        let generations = self.observed.history.generations.len();
         if let Some(seed) = self.seeds.goes_on(generations) {
             let entries = seed.map(|entry| entry.to_string()).join(", ");
             self.changes.push((generations + 1, format!("seed := {{{entries}}}")));
         }
         self.evaluations += genomes.len() as u64;
         for failure in simulated.failures.iter().flatten() {
-            self.count_failure(&failure.cause);
+            self.observed.failed(&failure.cause);
         }
         self.span(genomes);
         self.pending.add(study, x, genomes, simulated);
@@ -153,14 +145,19 @@ impl Recorder {
     /// What is counted: generations, or evaluations where nothing evolves. Which of them it is shows
     /// in the first generation only.
     pub fn counted(&self) -> &'static str {
-        let is_known = !self.history.generations.is_empty();
+        let is_known = self.observed.generations() > 0;
         if is_known && !self.evolves { "evaluation" } else { "generation" }
     }
 
-    /// The cause of most failures, and of how many.
-    pub fn main_cause(&self) -> Option<(&str, u64)> {
-        let most = self.causes.iter().rev().max_by_key(|(_, count)| **count);
-        most.map(|(cause, count)| (cause.as_str(), *count))
+    /// The best individual so far.
+    pub fn best(&self) -> Option<ScriptBest<'_>> {
+        let (best, comparison) = (self.observed.best.as_ref()?, self.comparison.as_ref()?);
+        Some(ScriptBest {
+            genome: &best.values,
+            fitness: best.fitness,
+            objective: &comparison.objective,
+            compared: &comparison.compared,
+        })
     }
 
     /// `Fit_Order` got a population with its fitness: a generation ends.
@@ -178,7 +175,7 @@ impl Recorder {
 
     /// The run has ended or was interrupted: ends the generation that is complete.
     pub fn finish(&mut self) {
-        let not_shown = self.history.generations.is_empty() && !self.pending.has_ratings();
+        let not_shown = self.observed.generations() == 0 && !self.pending.has_ratings();
         let complete = self.pending.is_rated() && !self.sorted_by_fit_order;
         let interrupted =
             self.pending.is_rated() && self.sorted_by_fit_order && self.is_next_generation();
@@ -192,22 +189,15 @@ impl Recorder {
     /// a simulation for another purpose. What a script adds up is known by `Fit_Order` alone.
     fn is_next_generation(&self) -> bool {
         let Some((study, x, count)) = self.pending.only() else { return false };
-        let alike = |best: &Best| match best.compared.as_slice() {
+        let alike = |best: ScriptBest<'_>| match best.compared {
             [one] => {
                 one.x == x
                     && *one.study == *study
-                    && best.objective == Objective::SumOfSquares(vec![1.0])
+                    && *best.objective == Objective::SumOfSquares(vec![1.0])
             }
             _ => false,
         };
-        count == self.generation_size && self.best.as_ref().is_some_and(alike)
-    }
-
-    fn count_failure(&mut self, cause: &str) {
-        self.failures += 1;
-        let room = self.causes.len() < MAX_CAUSES || self.causes.contains_key(cause);
-        let cause = if room { cause } else { OTHER_CAUSES };
-        *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        count == self.generation_size && self.best().is_some_and(alike)
     }
 
     fn span(&mut self, genomes: &Genomes) {
@@ -233,9 +223,9 @@ impl Recorder {
             let mut whole = part;
             whole.append(std::mem::take(&mut self.pending));
             self.pending = whole;
-            self.best = before;
-            self.history.generations.pop();
-            self.trace.pop();
+            let (best, comparison) = before.unzip();
+            self.observed.take_back(best);
+            self.comparison = comparison;
         }
         self.provisional = Vec::new();
     }
@@ -253,7 +243,8 @@ impl Recorder {
         for value in fitness.iter_mut().filter(|value| has_failed(**value)) {
             *value = crate::ga::FAILED_FITNESS;
         }
-        let (part, before) = (self.pending.clone(), self.best.clone());
+        let before = self.observed.best.clone().zip(self.comparison.clone());
+        let part = self.pending.clone();
         self.end_generation(&individuals, &fitness, false);
         if !self.sorted_by_fit_order {
             self.provisional.push((part, before));
@@ -265,28 +256,32 @@ impl Recorder {
     }
 
     fn end_generation(&mut self, individuals: &[Vec<f64>], fitness: &[f64], sorted: bool) {
-        self.history.record(fitness);
         self.generation_size = fitness.len();
-        if let Some(&k) = crate::ga::order(fitness).first() {
-            self.keep_if_better(k, individuals, fitness, sorted);
+        let mut comparison = None;
+        let counts = |k: usize| {
+            comparison = self.comparison_of(k, individuals, fitness, sorted);
+            comparison.is_some()
+        };
+        let mut observed = std::mem::take(&mut self.observed);
+        if observed.generation(fitness, |k| individuals[k].clone(), counts) {
+            self.comparison = comparison;
         }
-        let best = self.best.as_ref().map_or_else(Vec::new, |best| best.genome.clone());
-        self.trace.push(best);
-        self.keep(individuals, fitness);
+        self.observed = observed;
         self.pending.clear();
     }
 
-    /// Keeps individual `k` when it is better than the best so far.
-    fn keep_if_better(&mut self, k: usize, all: &[Vec<f64>], fitness: &[f64], sorted: bool) {
-        let better = self.best.as_ref().is_none_or(|best| fitness[k] < best.fitness);
-        if !better || has_failed(fitness[k]) {
-            return;
-        }
-        let genome = &all[k];
+    /// What individual `k` was compared with, if it is better than the best so far.
+    fn comparison_of(
+        &self,
+        k: usize,
+        all: &[Vec<f64>],
+        fitness: &[f64],
+        sorted: bool,
+    ) -> Option<Comparison> {
         let experiments = self.pending.covering(all);
-        let compared = self.pending.compared(&experiments, genome, &self.measurements);
+        let compared = self.pending.compared(&experiments, &all[k], &self.measurements);
         if compared.is_empty() {
-            return;
+            return None;
         }
         let objective = match (sorted, self.pending.has_ratings(), compared.len()) {
             (false, true, 1) => Objective::SumOfSquares(vec![1.0]),
@@ -295,31 +290,12 @@ impl Recorder {
                 recognised(&self.pending.sums(&experiments, all, &self.measurements), fitness)
             }
         };
-        let objective = objective.agreeing(self.best.as_ref().map(|best| &best.objective));
-        self.best = Some(Best { genome: genome.clone(), fitness: fitness[k], objective, compared });
-    }
-
-    /// Every n-th individual, n doubled when there are too many.
-    fn keep(&mut self, individuals: &[Vec<f64>], fitness: &[f64]) {
-        self.keep_every = self.keep_every.max(1);
-        for (genome, &fitness) in individuals.iter().zip(fitness) {
-            if self.ordered.is_multiple_of(self.keep_every) {
-                self.kept.push((genome.clone(), fitness));
-            }
-            self.ordered += 1;
-            if self.kept.len() >= KEPT {
-                let mut number = 0;
-                self.kept.retain(|_| {
-                    number += 1;
-                    number % 2 == 1
-                });
-                self.keep_every *= 2;
-            }
-        }
+        let before = self.comparison.as_ref().map(|before| &before.objective);
+        Some(Comparison { objective: objective.agreeing(before), compared })
     }
 }
 
-impl Best {
+impl ScriptBest<'_> {
     /// The sum of squared residuals over all series, each times its weight; `None` where the
     /// objective is not of this kind or data are not known.
     pub fn sum_of_squares(&self) -> Option<f64> {
@@ -368,13 +344,13 @@ mod tests {
             recorder.ordered(&population, &[9.0, 1.0, 1e60]);
         }
         recorder.finish();
-        assert_eq!(recorder.history.generations.len(), 2);
-        assert_eq!(recorder.history.generations[1].failures, 1);
-        assert_eq!((recorder.evaluations, recorder.failures), (6, 2));
-        assert_eq!(recorder.causes["log of -1"], 2);
-        let best = recorder.best.as_ref().unwrap();
+        assert_eq!(recorder.observed.history.generations.len(), 2);
+        assert_eq!(recorder.observed.history.generations[1].failures, 1);
+        assert_eq!((recorder.evaluations, recorder.observed.failures), (6, 2));
+        assert_eq!(recorder.observed.causes["log of -1"], 2);
+        let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (1.0, 1.0, 1.0));
-        assert_eq!(best.objective, Objective::SumOfSquares(vec![1.0]));
+        assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0]));
         assert_eq!(best.compared[0].measured, Some(vec![0.0]));
     }
 
@@ -390,8 +366,8 @@ mod tests {
             let population = genomes(&[3, 2, 1].map(|value| f64::from(value - generation)));
             recorder.ordered(&population, population.values());
         }
-        assert_eq!(recorder.history.generations.len(), 2);
-        assert_eq!(recorder.best.unwrap().fitness, 0.0);
+        assert_eq!(recorder.observed.history.generations.len(), 2);
+        assert_eq!(recorder.best().unwrap().fitness, 0.0);
     }
 
     #[test]
@@ -421,12 +397,12 @@ mod tests {
             &simulated(&[2.0, 3.0, 4.0]),
         );
         recorder.rated(&[2.0, 3.0, 4.0], &[3.0]);
-        assert!(recorder.history.generations.is_empty());
+        assert!(recorder.observed.history.generations.is_empty());
         recorder.rated(&[1.1], &[3.0]);
         recorder.finish();
-        let best = recorder.best.as_ref().unwrap();
+        let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (3.0, 0.0, 3.0));
-        assert_eq!(recorder.history.generations.len(), 1);
+        assert_eq!(recorder.observed.history.generations.len(), 1);
     }
 
     /// Some rows of an `Eval`, and rows of several put together, are known as well.
@@ -441,7 +417,7 @@ mod tests {
         assert!(!recorder.pending.is_rated(), "that row is not known");
         recorder.rated(&[1.0], &[4.0]);
         recorder.finish();
-        let best = recorder.best.as_ref().unwrap();
+        let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (5.0, 1.0));
     }
 
@@ -470,21 +446,22 @@ mod tests {
     #[test]
     fn a_generation_with_several_experiments_is_one() {
         let recorder = two_experiments(|a, b| a + b);
-        assert_eq!((recorder.history.generations.len(), recorder.evaluations), (3, 30));
-        assert_eq!(recorder.history.generations[0].best, 1.0, "not a partial sum");
-        let best = recorder.best.as_ref().unwrap();
+        assert_eq!((recorder.observed.history.generations.len(), recorder.evaluations), (3, 30));
+        assert_eq!(recorder.observed.history.generations[0].best, 1.0, "not a partial sum");
+        let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (4.0, 1.0));
-        assert_eq!(best.objective, Objective::SumOfSquares(vec![1.0, 1.0]));
+        assert_eq!(best.objective, &Objective::SumOfSquares(vec![1.0, 1.0]));
         let models: Vec<&str> = best.compared.iter().map(|c| c.study.model.as_str()).collect();
         assert_eq!((models, best.sum_of_squares()), (vec!["M", "M2"], Some(1.0)));
     }
 
     #[test]
     fn the_weights_of_the_script_are_found() {
-        let best = two_experiments(|a, b| a + 0.25 * b).best.unwrap();
-        let Objective::SumOfSquares(weights) = &best.objective else { panic!("{best:?}") };
+        let recorder = two_experiments(|a, b| a + 0.25 * b);
+        let best = recorder.best().unwrap();
+        let Objective::SumOfSquares(weights) = best.objective else { panic!("{best:?}") };
         assert!((weights[0] - 1.0).abs() < 1e-9 && (weights[1] - 0.25).abs() < 1e-9);
-        assert_eq!(two_experiments(|a, b| a + b * b).best.unwrap().objective, Objective::Script);
+        assert_eq!(*two_experiments(|a, b| a + b * b).best().unwrap().objective, Objective::Script);
     }
 
     #[test]
@@ -496,9 +473,9 @@ mod tests {
         recorder.evaluated(&study(), &[1.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.rated(&[3.0], &[3.0]);
         recorder.finish();
-        assert_eq!(recorder.history.generations.len(), 1);
-        assert_eq!(recorder.best.as_ref().unwrap().fitness, 9.0);
-        assert_eq!(recorder.best.unwrap().compared[0].measured, Some(vec![0.0]));
+        assert_eq!(recorder.observed.history.generations.len(), 1);
+        assert_eq!(recorder.best().unwrap().fitness, 9.0);
+        assert_eq!(recorder.best().unwrap().compared[0].measured, Some(vec![0.0]));
     }
 
     #[test]
@@ -508,10 +485,10 @@ mod tests {
             recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &simulated(&[value]));
             recorder.rated(&[value], &[0.0]);
         }
-        assert_eq!(recorder.history.generations.len(), 1);
+        assert_eq!(recorder.observed.history.generations.len(), 1);
         recorder.finish();
-        assert_eq!(recorder.history.generations.len(), 2);
-        assert_eq!(recorder.best.unwrap().genome, [2.0]);
+        assert_eq!(recorder.observed.history.generations.len(), 2);
+        assert_eq!(recorder.best().unwrap().genome, [2.0]);
     }
 
     #[test]
@@ -520,8 +497,8 @@ mod tests {
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
         recorder.finish();
-        assert_eq!(recorder.best.as_ref().unwrap().fitness, 42.0);
-        assert_eq!(recorder.best.unwrap().objective, Objective::Script);
+        assert_eq!(recorder.best().unwrap().fitness, 42.0);
+        assert_eq!(recorder.best().unwrap().objective, &Objective::Script);
     }
 
     #[test]
@@ -530,8 +507,8 @@ mod tests {
         recorder.measured(Measurement { file: "d.mat".into(), x: vec![0.0], y: vec![1.0] });
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.finish();
-        assert_eq!(recorder.best.as_ref().unwrap().fitness, 4.0);
-        assert_eq!(recorder.best.unwrap().objective, Objective::Assumed);
+        assert_eq!(recorder.best().unwrap().fitness, 4.0);
+        assert_eq!(recorder.best().unwrap().objective, &Objective::Assumed);
     }
 
     #[test]
@@ -541,7 +518,7 @@ mod tests {
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
         recorder.evaluated(&study(), &[0.0], &genomes(&[4.0]), &simulated(&[3.0]));
         recorder.finish();
-        assert_eq!(recorder.history.generations.len(), 1);
+        assert_eq!(recorder.observed.history.generations.len(), 1);
         assert_eq!(recorder.evaluations, 2);
     }
 }

@@ -54,7 +54,7 @@ fn reweigh(run: &mut Run) -> Result<(), Fault> {
         return Ok(());
     }
     for _ in 0..REWEIGHTED {
-        let Some(best) = run.best.clone() else { return Ok(()) };
+        let Some(best) = run.observed.best.clone() else { return Ok(()) };
         let Ok(simulated) = run.evaluation.simulate(&best.values) else { return Ok(()) };
         let weights = weights_at(&run.problem, &simulated);
         if weights.iter().any(|weight| !weight.is_finite() || *weight <= 0.0) {
@@ -82,7 +82,7 @@ fn rescale(run: &mut Run) -> Result<(), Fault> {
     }
     let (mut last, mut estimated): (f64, Option<Box<dyn Fitness>>) = (0.0, None);
     for _ in 0..REWEIGHTED {
-        let Some(best) = run.best.clone() else { return Ok(()) };
+        let Some(best) = run.observed.best.clone() else { return Ok(()) };
         let Ok(simulated) = run.evaluation.simulate(&best.values) else { return Ok(()) };
         let residuals = weighted(run, &simulated);
         let freedom = residuals.len().saturating_sub(best.values.len()).max(1);
@@ -133,7 +133,7 @@ const WITHOUT_NOISE: f64 = 1e-7;
 /// a tenth of a standard deviation of the data, or the search has ended where errors of the
 /// simulation hide the minimum, the fit is repeated there, until neither is so.
 fn tolerance(run: &mut Run) -> Result<(), Fault> {
-    let Some(first) = run.best.clone() else { return Ok(()) };
+    let Some(first) = run.observed.best.clone() else { return Ok(()) };
     let (noise, mut factor) = (run.problem.noise, 1.0);
     let Ok(mut coarse) = run.evaluation.simulate(&first.values) else { return Ok(()) };
     let allowed = errors(run, &coarse);
@@ -148,7 +148,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         if noise * next < SMALLEST {
             break;
         }
-        let Some(best) = run.best.clone() else { break };
+        let Some(best) = run.observed.best.clone() else { break };
         run.evaluation.scale_tolerance(next);
         run.conclusion.simulations += 1;
         let fine = run.evaluation.simulate(&best.values);
@@ -161,7 +161,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         (moved, most, factor) = (true, most.max(shift), next);
         run.problem.noise = noise * factor;
         run.refit()?;
-        let Some(best) = &run.best else { break };
+        let Some(best) = &run.observed.best else { break };
         let Ok(again) = run.evaluation.simulate(&best.values) else { break };
         coarse = again;
         is_minimum = at_minimum(run);
@@ -169,7 +169,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
     if !moved {
         return Ok(());
     }
-    let worse = run.best.as_ref().is_some_and(|best| best.fitness > WORSE * first.fitness);
+    let worse = run.observed.best.as_ref().is_some_and(|best| best.fitness > WORSE * first.fitness);
     // Data that a coarse simulation has made.
     let made =
         worse && first.fitness > 0.0 && ErrorModel::of(&run.problem) == ErrorModel::OneVariance;
@@ -177,7 +177,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         run.evaluation.scale_tolerance(1.0);
         run.problem.noise = noise;
         run.conclusion.resolved = false;
-        run.best = Some(first);
+        run.observed.best = Some(first);
         return Ok(());
     }
     let finding = coarse_solver(run, &first, [noise, noise * factor], most);
@@ -188,8 +188,11 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
 /// Whether nothing better is to be had from a finer solver: the best point is a minimum, or that
 /// cannot be tested, or the search was ended before it came to one.
 fn at_minimum(run: &mut Run) -> bool {
-    let is_at_limit =
-        run.best.as_ref().is_some_and(|b| limits::along(&run.problem, &b.values).is_some());
+    let is_at_limit = run
+        .observed
+        .best
+        .as_ref()
+        .is_some_and(|b| limits::along(&run.problem, &b.values).is_some());
     let is_known = run.conclusion.by_curvature.is_some() || !run.conclusion.held.is_empty();
     if run.cause() != Cause::Converged || is_known || is_at_limit {
         return true;
@@ -233,7 +236,7 @@ fn coarse_solver(run: &Run, first: &Best, [before, after]: [f64; 2], moved: f64)
         };
         pairs.map(one).collect::<Vec<_>>().join(", ")
     };
-    let best = run.best.as_ref().map_or(&first.values, |best| &best.values);
+    let best = run.observed.best.as_ref().map_or(&first.values, |best| &best.values);
     let consequence = match fitted {
         true => format!(
             "The fit was repeated with the tolerance {}: {} instead of {}",

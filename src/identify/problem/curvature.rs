@@ -69,7 +69,7 @@ pub fn finish(run: &mut Run) {
         return;
     }
     let is_at_limit =
-        run.best.as_ref().is_some_and(|best| along(&run.problem, &best.values).is_some());
+        run.observed.best.as_ref().is_some_and(|best| along(&run.problem, &best.values).is_some());
     if is_at_limit {
         return;
     }
@@ -77,7 +77,7 @@ pub fn finish(run: &mut Run) {
     run.conclusion.simulations += simulations;
     for reach in REACH {
         for _ in 0..STEPS {
-            let Some(best) = run.best.clone() else { return };
+            let Some(best) = run.observed.best.clone() else { return };
             let Some(found) = about(run, &best.values, reach) else { return };
             run.conclusion.simulations += found.1;
             if found.0.offset().is_some_and(|offset| offset <= MINIMUM) {
@@ -85,7 +85,7 @@ pub fn finish(run: &mut Run) {
                 return;
             }
             let Some(lower) = lower(run, &best, &found.0) else { break };
-            run.best = Some(lower);
+            run.observed.best = Some(lower);
         }
     }
 }

@@ -38,8 +38,11 @@ const GOLDEN: f64 = 0.381_966_011_250_105_1;
 pub fn finish(run: &mut Run) -> Result<(), Fault> {
     let is_open = run.cause() == Cause::Converged && run.conclusion.by_curvature.is_none();
     for _ in 0..MOVES {
-        let is_at_limit =
-            run.best.as_ref().is_some_and(|best| along(&run.problem, &best.values).is_some());
+        let is_at_limit = run
+            .observed
+            .best
+            .as_ref()
+            .is_some_and(|best| along(&run.problem, &best.values).is_some());
         if !is_open || is_at_limit {
             break;
         }
@@ -72,7 +75,7 @@ pub fn is_minimum(run: &Run, values: &[f64], found: &Linearization) -> bool {
 
 /// The fewest parameters with which held the others are at a minimum.
 fn candidates(run: &mut Run) -> Option<Vec<usize>> {
-    let values = run.best.as_ref()?.values.clone();
+    let values = run.observed.best.as_ref()?.values.clone();
     let found =
         run.evaluation.linearize(&run.problem, std::slice::from_ref(&values)).pop()?.ok()?;
     run.conclusion.simulations += found.simulations;
@@ -118,7 +121,7 @@ fn holds(run: &Run, values: &[f64], found: &Linearization, held: &[usize]) -> (b
 /// A better point, where a descent that met a kink has ended before the other parameters had come to
 /// their minimum: with one parameter held, least squares go on.
 fn with_one_held(run: &mut Run) -> Result<Option<Vec<f64>>, Fault> {
-    let Some(best) = run.best.clone() else { return Ok(None) };
+    let Some(best) = run.observed.best.clone() else { return Ok(None) };
     let Some(mut refit) = Refit::new(&run.problem, &run.evaluation) else { return Ok(None) };
     let mut lowest: Option<Fitted> = None;
     for k in 0..best.values.len() {
@@ -145,7 +148,7 @@ enum Tried {
 }
 
 fn tried(run: &mut Run, held: &[usize]) -> Result<Tried, Fault> {
-    let Some(best) = run.best.clone() else { return Ok(Tried::Nothing) };
+    let Some(best) = run.observed.best.clone() else { return Ok(Tried::Nothing) };
     let Some(mut refit) = Refit::new(&run.problem, &run.evaluation) else {
         return Ok(Tried::Nothing);
     };

@@ -154,13 +154,13 @@ pub fn finish(run: &mut Run) {
     }
     let Some((false, simulations)) = is_at_minimum(run) else { return };
     run.conclusion.simulations += simulations;
-    let Some(first) = run.best.clone() else { return };
+    let Some(first) = run.observed.best.clone() else { return };
     let constraints: Vec<String> =
         active(&run.problem, &first.values, NEAR).iter().map(|own| own.text.clone()).collect();
     let Some(reached) = descend(run, &first, constraints) else { return };
     // Beside the limit the point may have been lower by the errors of the simulation.
     if reached.fitness <= first.fitness * (1.0 + 1e-6) {
-        run.best = Some(reached);
+        run.observed.best = Some(reached);
     }
 }
 

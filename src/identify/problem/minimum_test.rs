@@ -11,7 +11,7 @@ pub(crate) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return None;
     }
-    let values = &run.best.as_ref()?.values;
+    let values = &run.observed.best.as_ref()?.values;
     let found = run.evaluation.linearize(&run.problem, std::slice::from_ref(values)).pop()?.ok()?;
     Some((tested(&run.problem, &run.evaluation, values, &found).1, found.simulations))
 }

@@ -56,6 +56,7 @@ mod valley;
 mod verdict_notes;
 mod verdicts;
 
+pub use crate::search_record::Best;
 pub use conclude::conclude;
 pub(crate) use conclusion::Conclusion;
 pub use curve::draw_curves;
@@ -83,7 +84,7 @@ pub(crate) use portable::PortableSettings;
 pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;
-pub use run::{Best, Run};
+pub use run::Run;
 pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
 pub use solution::ChiSquare;

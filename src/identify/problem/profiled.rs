@@ -163,7 +163,7 @@ impl Solution {
     }
 
     fn profiles_about_best(&self, run: &Run) -> Result<Option<Profiles>, Fault> {
-        let Some(best) = &run.best else { return Ok(None) };
+        let Some(best) = &run.observed.best else { return Ok(None) };
         if self.is_short_of_minimum(run) {
             bail!(
                 BAD_OPTION,

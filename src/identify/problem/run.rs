@@ -6,9 +6,10 @@ use crate::diag::Fault;
 use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
 };
-use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
+use crate::ga::{Gene, Genomes, Mrg32k3a, has_failed};
 use crate::ranks::Processors;
 use crate::registry::BAD_OPTION;
+use crate::search_record::{Best, SearchRecord};
 use crate::{bail, elementary, fault};
 use indexmap::IndexMap;
 
@@ -16,25 +17,12 @@ use indexmap::IndexMap;
 const IMPROVEMENT: f64 = 1e-6;
 /// Evaluations of a run without any stop condition.
 const EVALUATIONS: u64 = 20_000;
-/// Individuals kept for the figures.
-const KEPT: usize = 4000;
-/// Different causes of failure kept apart.
-const CAUSES: usize = 50;
 /// Individuals that fail alike, at the same time for the same cause, before the search ends: the cause
 /// is the model, whatever the parameters are.
 const ALIKE: u64 = 20;
 /// Individuals that fail, none of them being simulated, before the search ends. Where a hundredth of
 /// the search space can be simulated, these many find it with a probability of 0.99.
 const HOPELESS: u64 = 500;
-
-/// The best individual.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Best {
-    /// Values of the free parameters.
-    pub values: Vec<f64>,
-    /// Its first objective.
-    pub fitness: f64,
-}
 
 /// What ended the search, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,29 +43,18 @@ pub struct Run {
     asked: bool,
     converged: bool,
     changes: Vec<(String, f64)>,
-    /// One record for each question.
-    pub history: History,
-    /// The best individual so far.
-    pub best: Option<Best>,
-    /// The values of the best individual after each question.
-    pub trace: Vec<Vec<f64>>,
-    /// Individuals evaluated.
-    pub evaluations: u64,
+    /// What was observed; a generation is a question.
+    pub observed: SearchRecord,
     /// Simulations that it took.
     pub simulations: u64,
     /// Seconds of work so far, as the records say.
     pub seconds: f64,
     /// Failures by kind.
     pub failed: [u64; FailureKind::ALL.len()],
-    /// Failures by cause.
-    pub causes: IndexMap<String, u64>,
     /// Values with which each cause came first.
     pub examples: IndexMap<String, Vec<f64>>,
     /// The first failure, as long as all others are like it.
     alike: Option<Failed>,
-    /// Evenly chosen individuals: values and fitness.
-    pub kept: Vec<(Vec<f64>, f64)>,
-    keep_every: u64,
     /// The non-dominated individuals, where there are several objectives: values and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     last_gain: u64,
@@ -130,18 +107,12 @@ impl Run {
             asked: false,
             converged: false,
             changes: Vec::new(),
-            history: History::default(),
-            best: None,
-            trace: Vec::new(),
-            evaluations: 0,
+            observed: SearchRecord::default(),
             simulations: 0,
             seconds: 0.0,
             failed: [0; FailureKind::ALL.len()],
-            causes: IndexMap::new(),
             examples: IndexMap::new(),
             alike: None,
-            kept: Vec::new(),
-            keep_every: 1,
             front: Vec::new(),
             last_gain: 0,
             reference: f64::INFINITY,
@@ -153,7 +124,12 @@ impl Run {
 
     /// Questions answered so far.
     pub fn generations(&self) -> u64 {
-        self.history.generations.len() as u64
+        self.observed.generations()
+    }
+
+    /// Individuals evaluated.
+    pub fn evaluations(&self) -> u64 {
+        self.observed.individuals
     }
 
     /// What the method is doing, in one word.
@@ -186,7 +162,7 @@ impl Run {
             return Some("no individual could be simulated".to_owned());
         }
         let stop = self.problem.stop;
-        let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
+        let best = self.observed.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
         if let Some(target) = stop.target.filter(|target| best <= *target) {
             return Some(format!("the fitness {best:e} has reached the target {target:e}"));
         }
@@ -194,7 +170,7 @@ impl Run {
             return Some(format!("{limit} generations"));
         }
         // A Jacobian by differences is one individual, but many simulations.
-        let evaluations = self.evaluations.max(self.simulations);
+        let evaluations = self.evaluations().max(self.simulations);
         if let Some(limit) = stop.evaluations.filter(|limit| evaluations >= *limit) {
             return Some(format!("{limit} evaluations"));
         }
@@ -209,7 +185,7 @@ impl Run {
     /// Whether nothing was simulated and nothing will be.
     fn is_hopeless(&self) -> bool {
         let enough = if self.alike.is_some() { ALIKE } else { HOPELESS };
-        self.best.is_none() && self.evaluations >= enough
+        self.observed.best.is_none() && self.evaluations() >= enough
     }
 
     /// Ends the run because the time of its stop conditions is used up while a question is under way;
@@ -234,9 +210,9 @@ impl Run {
     pub(super) fn go_to(&mut self, values: &[f64]) -> bool {
         let Ok(simulated) = self.evaluation.simulate(values) else { return false };
         let fitness = self.evaluation.objective(&self.problem, &simulated);
-        let is_better = self.best.as_ref().is_none_or(|best| fitness < best.fitness);
+        let is_better = self.observed.best.as_ref().is_none_or(|best| fitness < best.fitness);
         if is_better && !has_failed(fitness) {
-            self.best = Some(Best { values: values.to_vec(), fitness });
+            self.observed.best = Some(Best { values: values.to_vec(), fitness });
         }
         is_better
     }
@@ -420,12 +396,10 @@ impl Run {
         let fitness: Vec<f64> = objectives.iter().step_by(m).copied().collect();
         self.seconds = record.seconds;
         self.simulations += simulations;
-        self.history.record(&fitness);
         for (row, failed) in failures {
             self.note_failure(*row, failed);
         }
-        self.keep(&fitness);
-        self.keep_best(&fitness);
+        self.observe(&fitness);
         if m > 1 {
             self.keep_front(objectives, m);
         }
@@ -445,46 +419,25 @@ impl Run {
             known => known.filter(is_alike),
         };
         self.failed[kind] += 1;
-        let room = self.causes.len() < CAUSES || self.causes.contains_key(&failed.cause);
-        let cause = if room { failed.cause.as_str() } else { "other causes" };
-        *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        let cause = self.observed.failed(&failed.cause);
         if row < self.batch.len() && !self.examples.contains_key(cause) {
             let values = self.problem.values(self.batch.row(row));
             self.examples.insert(cause.to_owned(), values);
         }
     }
 
-    fn keep_best(&mut self, fitness: &[f64]) {
-        let k = order(fitness)[0];
-        let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
-        if !has_failed(fitness[k]) && fitness[k] < best {
-            let values = self.problem.values(self.batch.row(k));
-            self.best = Some(Best { values, fitness: fitness[k] });
-            let is_first = self.reference.is_infinite();
-            if is_first || fitness[k] <= self.reference - IMPROVEMENT * self.reference.abs() {
-                self.last_gain = self.generations();
-                self.reference = fitness[k];
-            }
+    /// A generation has this fitness.
+    fn observe(&mut self, fitness: &[f64]) {
+        let (problem, batch) = (&self.problem, &self.batch);
+        let values = |k: usize| problem.values(batch.row(k));
+        if !self.observed.generation(fitness, values, |_| true) {
+            return;
         }
-        let values = self.best.as_ref().map_or_else(Vec::new, |best| best.values.clone());
-        self.trace.push(values);
-    }
-
-    /// Every n-th individual, n doubled when there are too many.
-    fn keep(&mut self, fitness: &[f64]) {
-        for (k, &fitness) in fitness.iter().enumerate() {
-            if self.evaluations.is_multiple_of(self.keep_every) {
-                self.kept.push((self.problem.values(self.batch.row(k)), fitness));
-            }
-            self.evaluations += 1;
-            if self.kept.len() >= KEPT {
-                let mut number = 0;
-                self.kept.retain(|_| {
-                    number += 1;
-                    number % 2 == 1
-                });
-                self.keep_every *= 2;
-            }
+        let best = self.observed.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
+        let is_first = self.reference.is_infinite();
+        if is_first || best <= self.reference - IMPROVEMENT * self.reference.abs() {
+            self.last_gain = self.generations();
+            self.reference = best;
         }
     }
 
@@ -512,11 +465,6 @@ impl Run {
             false => gene.clamp(0.0, 1.0),
         };
         self.batch.rows().map(|genome| fraction(genome[parameter])).collect()
-    }
-
-    /// The generation evaluated last.
-    pub fn last(&self) -> Option<&Generation> {
-        self.history.generations.last()
     }
 }
 

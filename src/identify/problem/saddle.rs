@@ -32,20 +32,26 @@ pub fn leave(run: &mut Run) -> Result<(), Fault> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return Ok(());
     }
-    let Some(first) = run.best.as_ref().map(|best| best.fitness) else { return Ok(()) };
+    let Some(first) = run.observed.best.as_ref().map(|best| best.fitness) else { return Ok(()) };
     let mut left = false;
     for _ in 0..MOST {
         let Some(lower) = lower_beside(run) else { break };
-        let before = run.best.replace(lower);
+        let before = run.observed.best.replace(lower);
         run.refit()?;
         let is_lower = |now: &Best, old: &Best| now.fitness < old.fitness;
-        if !run.best.as_ref().zip(before.as_ref()).is_some_and(|(now, old)| is_lower(now, old)) {
-            run.best = before;
+        if !run
+            .observed
+            .best
+            .as_ref()
+            .zip(before.as_ref())
+            .is_some_and(|(now, old)| is_lower(now, old))
+        {
+            run.observed.best = before;
             break;
         }
         left = true;
     }
-    if let Some(best) = run.best.as_ref().filter(|_| left) {
+    if let Some(best) = run.observed.best.as_ref().filter(|_| left) {
         let sentence = format!(
             "The search ended at a saddle point ({}), where derivatives are linearly dependent; \
              least squares continued from a point nearby to {}.",
@@ -68,7 +74,7 @@ fn is_exact(run: &Run, best: &Best) -> bool {
 
 /// The best of some points along the null directions, if it is better than the best of the run.
 fn lower_beside(run: &mut Run) -> Option<Best> {
-    let best = run.best.as_ref().filter(|best| !is_exact(run, best))?;
+    let best = run.observed.best.as_ref().filter(|best| !is_exact(run, best))?;
     let directions = null_directions(run, &best.values)?;
     let free = &run.problem.parameters;
     let step = |direction: &Vec<f64>, size: f64| {

@@ -18,13 +18,13 @@ impl SolvedSearch {
     /// What a run has found.
     pub fn of(run: &Run) -> SolvedSearch {
         let none = || Best { values: Vec::new(), fitness: f64::INFINITY };
-        let Best { values, fitness: objective } = run.best.clone().unwrap_or_else(none);
+        let Best { values, fitness: objective } = run.observed.best.clone().unwrap_or_else(none);
         SolvedSearch {
             seed: run.problem.seed,
             objective,
             values,
             generations: run.generations(),
-            evaluations: run.evaluations,
+            evaluations: run.evaluations(),
             as_good: false,
         }
     }

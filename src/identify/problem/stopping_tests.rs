@@ -102,7 +102,7 @@ fn wrong(found: &Solution, whole: &Solution) -> Option<String> {
 fn after_any_number_of_simulations_what_is_missing_is_named() {
     let (left, flag) = (Arc::new(AtomicI64::new(i64::MAX)), Arc::new(AtomicBool::new(false)));
     let mut run = searched(&left, &flag);
-    let best = run.best.clone();
+    let best = run.observed.best.clone();
     let whole = statistics(&mut run).unwrap();
     let count = i64::MAX - left.load(Ordering::Relaxed);
     let (mut none, mut some) = (0, 0);
@@ -112,7 +112,7 @@ fn after_any_number_of_simulations_what_is_missing_is_named() {
         left.store(i64::MAX, Ordering::Relaxed);
         flag.store(false, Ordering::Relaxed);
         let mut run = searched(&left, &flag);
-        assert_eq!(run.best, best);
+        assert_eq!(run.observed.best, best);
         left.store(stop, Ordering::Relaxed);
         match statistics(&mut run) {
             Err(fault) => {

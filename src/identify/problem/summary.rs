@@ -152,10 +152,10 @@ impl Solution {
 ///
 /// When nothing was simulated successfully.
 fn best<'a>(run: &'a Run, stop: &str) -> Result<&'a Best, Fault> {
-    if let Some(best) = &run.best {
+    if let Some(best) = &run.observed.best {
         return Ok(best);
     }
-    if run.evaluations == 0 {
+    if run.evaluations() == 0 {
         return Err(fault!(
             BAD_OPTION,
             "the run ended ({stop}) before the first generation was simulated: there is \
@@ -163,11 +163,11 @@ fn best<'a>(run: &'a Run, stop: &str) -> Result<&'a Best, Fault> {
             help: "allow more time, or use fewer individuals per generation"
         ));
     }
-    let most = run.causes.iter().max_by_key(|cause| cause.1);
+    let most = run.observed.causes.iter().max_by_key(|cause| cause.1);
     let why = most.map_or_else(String::new, |(cause, count)| format!("; {count} times: {cause}"));
     Err(fault!(
         BAD_OPTION,
-        "none of {} individuals could be simulated{why}", run.evaluations;
+        "none of {} individuals could be simulated{why}", run.evaluations();
         help: "correct the model or the search ranges"
     ))
 }
@@ -185,11 +185,11 @@ fn searched(run: &Run, stop: &str) -> Solution {
         error_model: ErrorModel::of(problem),
         stop: stop.to_owned(),
         generations: run.generations(),
-        evaluations: run.evaluations,
+        evaluations: run.evaluations(),
         simulations: run.simulations,
         failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
-        causes: run.causes.clone(),
-        failure_region: super::failure_region(&problem.parameters, &run.kept),
+        causes: run.observed.causes.clone(),
+        failure_region: super::failure_region(&problem.parameters, &run.observed.kept),
         changes: run.changed.clone(),
         knee: knee(&run.front),
         hypervolume: front_volume(&run.front),
@@ -198,9 +198,9 @@ fn searched(run: &Run, stop: &str) -> Solution {
         seed: Some(problem.seed),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         problem: problem.text.clone(),
-        history: run.history.generations.clone(),
-        trace: run.trace.clone(),
-        individuals: run.kept.clone(),
+        history: run.observed.history.generations.clone(),
+        trace: run.observed.trace.clone(),
+        individuals: run.observed.kept.clone(),
         ..Solution::default()
     }
 }
@@ -225,6 +225,7 @@ fn elsewhere(run: &Run, best: &[f64]) -> Result<Vec<Vec<f64>>, Fault> {
         pairs.into_iter().any(|(free, (a, b))| (free.fraction(*a) - free.fraction(*b)).abs() > FAR)
     };
     let good: Vec<&Vec<f64>> = run
+        .observed
         .kept
         .iter()
         .filter(|(values, fitness)| !crate::ga::has_failed(*fitness) && is_far(values))

@@ -281,7 +281,7 @@ fn equal_genes_are_simulated_once() {
     for generation in 0..5 {
         run.step(f64::from(generation)).unwrap();
     }
-    assert_eq!(run.evaluations, 500);
+    assert_eq!(run.evaluations(), 500);
     // The elite of each later generation at least; parents that are alike have children like them.
     assert!((450..=496).contains(&run.simulations), "{}", run.simulations);
 }

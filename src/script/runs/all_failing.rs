@@ -26,10 +26,10 @@ impl Session {
         simulated: &Simulated,
     ) -> Result<(), Failure> {
         let recorder = &self.identification().recorder;
-        if recorder.evaluations > recorder.failures || genomes.len() < ENOUGH {
+        if recorder.evaluations > recorder.observed.failures || genomes.len() < ENOUGH {
             return Ok(());
         }
-        let main = recorder.main_cause().map(|(cause, _)| cause);
+        let main = recorder.observed.main_cause().map(|(cause, _)| cause);
         let example = simulated.failures.iter().flatten().find(|one| Some(&*one.cause) == main);
         let fault = nothing_simulated(recorder, "stops", example);
         self.identification().is_hopeless = true;
@@ -45,11 +45,11 @@ impl Session {
     pub(super) fn report_if_all_failed(&mut self, recorder: &Recorder, interrupted: bool) {
         let identification = self.extension::<Identification>();
         let has_said = std::mem::take(&mut identification.is_hopeless);
-        let all_failed = recorder.evaluations == recorder.failures;
-        if all_failed && recorder.failures > 0 && !has_said && !interrupted {
+        let all_failed = recorder.evaluations == recorder.observed.failures;
+        if all_failed && recorder.observed.failures > 0 && !has_said && !interrupted {
             let fault = nothing_simulated(recorder, "has no result", None).at(Span::NONE);
             // One individual alone is a question of the script, which gets its answer, 1e60.
-            self.report(if recorder.failures == 1 { fault.warning() } else { fault });
+            self.report(if recorder.observed.failures == 1 { fault.warning() } else { fault });
         }
     }
 
@@ -97,11 +97,11 @@ fn nothing_simulated(
     consequence: &str,
     example: Option<&FailedSimulation>,
 ) -> Fault {
-    let all = match recorder.failures {
+    let all = match recorder.observed.failures {
         1 => "the only individual could not be simulated".to_owned(),
         all => format!("none of {all} individuals could be simulated"),
     };
-    let most = recorder.main_cause().map(|(cause, count)| {
+    let most = recorder.observed.main_cause().map(|(cause, count)| {
         let text = example.map_or_else(|| cause.to_owned(), FailedSimulation::to_string);
         match count {
             1 => format!(": {text}"),

@@ -149,7 +149,7 @@ impl Session {
     /// Notes measured data. Data read after generations have been evaluated begin another run: the
     /// one before is reported.
     pub(crate) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
-        if !self.identification().recorder.history.generations.is_empty() {
+        if !self.identification().recorder.observed.history.generations.is_empty() {
             let identification = self.identification();
             let own = identification.data_notes.split_off(identification.older_notes);
             report_run(self)?;
@@ -461,10 +461,10 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
         return Ok(());
     }
     let identification = session.extension::<Identification>();
-    let Some(best) = &recorder.best else { return Ok(()) };
+    let Some(best) = recorder.best() else { return Ok(()) };
     let mut noise = NOISE_OF_FORMULAS;
     let mut models = Vec::new();
-    for compared in &best.compared {
+    for compared in best.compared {
         let own = |prepared: &&mut Prepared| {
             prepared.evaluator.study() == &compared.study && prepared.evaluator.x() == compared.x
         };

@@ -1,5 +1,8 @@
 //! A run as it is now: data for drawing it during the run.
 
+use crate::Session;
+use crate::identify::{Quantity, SearchRecord};
+
 /// How far a long piece of work is: data for drawing it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Progress {
@@ -62,16 +65,86 @@ pub struct Fitted {
     pub simulated: Vec<f64>,
 }
 
+/// What of a search is drawn beside its record.
+pub(super) struct Drawn {
+    pub title: String,
+    pub spreads: Vec<Spread>,
+    pub fitted: Vec<Fitted>,
+}
+
+impl Session {
+    /// Shows how far a search is, and draws it where that is requested; whether it was drawn.
+    pub(super) fn show_search(
+        &mut self,
+        progress: Progress,
+        record: &SearchRecord,
+        drawn: impl FnOnce() -> Drawn,
+    ) -> bool {
+        self.world.progress(&progress);
+        let is_drawn = self.world.wants_view();
+        if is_drawn {
+            self.world.show_view(&View::of(progress, record, drawn()));
+        }
+        is_drawn
+    }
+}
+
+impl Progress {
+    /// That of a search: so many units of what it counts, and of as many.
+    pub(super) fn of(record: &SearchRecord, label: &str, [done, total]: [u64; 2]) -> Progress {
+        Progress {
+            label: label.to_owned(),
+            done,
+            total,
+            best: record.best.as_ref().map(|best| best.fitness),
+            failures: record.failures,
+            main_cause: record.main_cause().map(|(cause, count)| (cause.to_owned(), count)),
+        }
+    }
+}
+
+impl View {
+    /// That of a search.
+    pub(super) fn of(progress: Progress, record: &SearchRecord, drawn: Drawn) -> View {
+        let Drawn { title, spreads, fitted } = drawn;
+        let best = record.history.generations.iter().map(|generation| generation.best).collect();
+        View { title, progress, best, spreads, fitted }
+    }
+}
+
 impl Spread {
-    /// The spread of fractions in any order; `None` where there are none.
-    pub fn of(mut fractions: Vec<f64>) -> Option<[f64; 3]> {
+    /// A parameter with its best value, where that lies in its range, and where the individuals of the
+    /// last generation lie; `None` where there are none.
+    pub(super) fn of(
+        (name, unit): (&str, &str),
+        (value, best): (f64, f64),
+        mut fractions: Vec<f64>,
+    ) -> Option<Spread> {
         fractions.sort_by(f64::total_cmp);
         let (first, last) = (*fractions.first()?, *fractions.last()?);
-        Some([first, fractions[fractions.len() / 2], last])
+        let generation = [first, fractions[fractions.len() / 2], last];
+        Some(Spread { name: name.to_owned(), unit: unit.to_owned(), value, best, generation })
+    }
+}
+
+impl Fitted {
+    /// A series of y over x.
+    pub(super) fn of(
+        y: &Quantity,
+        x: &Quantity,
+        [points, measured, simulated]: [&[f64]; 3],
+    ) -> Fitted {
+        Fitted {
+            y_name: labelled(y),
+            x_name: labelled(x),
+            x: points.to_vec(),
+            measured: measured.to_vec(),
+            simulated: simulated.to_vec(),
+        }
     }
 }
 
 /// A name with its unit, if it has one.
-pub(super) fn labelled(name: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "1" { name.to_owned() } else { format!("{name} / {unit}") }
+fn labelled(Quantity { name, unit }: &Quantity) -> String {
+    if unit.is_empty() || unit == "1" { name.clone() } else { format!("{name} / {unit}") }
 }

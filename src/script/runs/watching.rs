@@ -2,13 +2,12 @@
 //! type between two of them.
 
 use super::changing;
-use super::view::{Fitted, Spread, View, labelled};
+use super::view::{Drawn, Fitted, Progress, Spread, View};
 use crate::Session;
 use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
 use crate::identify::{Compared, Quantity, Recorder, Study};
-use crate::runs::view::Progress;
 
 const HELP: &str = "\
 Paused. Type script statements, such as F_Mut := 0.3; they take effect from this generation on. \
@@ -24,20 +23,21 @@ impl Session {
             Some((_, Some(iterations))) => iterations as u64,
             _ => 0,
         };
-        let progress = progress(&self.identification().recorder, iterations);
-        self.world.progress(&progress);
-        if self.world.wants_view() {
-            let view = view(&self.identification().recorder, study, genomes, progress);
-            self.world.show_view(&view);
+        // It is read only, and put back.
+        let recorder = std::mem::take(&mut self.identification().recorder);
+        let progress = progress(&recorder, iterations);
+        if self.show_search(progress, &recorder.observed, || drawn(&recorder, study, genomes)) {
             self.identification().shown = Some((study.clone(), genomes.clone(), iterations));
         }
+        self.identification().recorder = recorder;
     }
 
     /// The view of the whole run, where the run was viewed: each of the others is drawn before its
     /// generation is rated.
     pub(super) fn show_end(&mut self, recorder: &Recorder) {
         let Some((study, genomes, total)) = self.identification().shown.take() else { return };
-        let view = view(recorder, &study, &genomes, progress(recorder, total));
+        let drawn = drawn(recorder, &study, &genomes);
+        let view = View::of(progress(recorder, total), &recorder.observed, drawn);
         self.world.show_view(&view);
     }
 
@@ -78,7 +78,7 @@ impl Session {
         let script = changing::parsed(self, "typed during a pause", line)?;
         self.change(&script, true)?;
         let recorder = &mut self.identification().recorder;
-        let generation = recorder.history.generations.len() + 1;
+        let generation = recorder.observed.history.generations.len() + 1;
         recorder.changes.push((generation, line.trim().to_owned()));
         Ok(())
     }
@@ -86,18 +86,12 @@ impl Session {
 
 /// How far a run is, of so many generations.
 fn progress(recorder: &Recorder, total: u64) -> Progress {
-    Progress {
-        label: recorder.counted().to_owned(),
-        done: recorder.history.generations.len() as u64,
-        total,
-        best: recorder.best.as_ref().map(|best| best.fitness),
-        failures: recorder.failures,
-        main_cause: recorder.main_cause().map(|(cause, count)| (cause.to_owned(), count)),
-    }
+    let observed = &recorder.observed;
+    Progress::of(observed, recorder.counted(), [observed.generations(), total])
 }
 
-fn view(recorder: &Recorder, study: &Study, genomes: &Genomes, progress: Progress) -> View {
-    let best = recorder.best.as_ref();
+fn drawn(recorder: &Recorder, study: &Study, genomes: &Genomes) -> Drawn {
+    let best = recorder.best();
     let spread = |(k, quantity): (usize, &Quantity)| {
         let genes: Vec<f64> = genomes.rows().map(|genome| genome[k]).collect();
         let known = recorder.ranges.as_ref();
@@ -105,27 +99,18 @@ fn view(recorder: &Recorder, study: &Study, genomes: &Genomes, progress: Progres
         let [low, high] = ends.unwrap_or_else(|| ends_of(&genes));
         let fraction = |value: &f64| ((value - low) / (high - low)).clamp(0.0, 1.0);
         let value = best.and_then(|best| best.genome.get(k)).copied().unwrap_or(f64::NAN);
-        Some(Spread {
-            name: quantity.name.clone(),
-            unit: quantity.unit.clone(),
-            value,
-            best: fraction(&value),
-            generation: Spread::of(genes.iter().map(fraction).collect())?,
-        })
+        let generation = genes.iter().map(fraction).collect();
+        Spread::of((&quantity.name, &quantity.unit), (value, fraction(&value)), generation)
     };
-    let fitted = |compared: &Compared| Fitted {
-        y_name: labelled(&compared.study.y.name, &compared.study.y.unit),
-        x_name: labelled(&compared.study.x.name, &compared.study.x.unit),
-        x: compared.x.clone(),
-        measured: compared.measured.clone().unwrap_or_default(),
-        simulated: compared.simulated.clone(),
+    let fitted = |compared: &Compared| {
+        let measured = compared.measured.as_deref().unwrap_or_default();
+        let study = &compared.study;
+        Fitted::of(&study.y, &study.x, [&compared.x, measured, &compared.simulated])
     };
-    View {
+    Drawn {
         title: format!("Identification of {}", study.model),
-        progress,
-        best: recorder.history.generations.iter().map(|generation| generation.best).collect(),
         spreads: study.parameters.iter().enumerate().filter_map(spread).collect(),
-        fitted: best.iter().flat_map(|best| &best.compared).map(fitted).collect(),
+        fitted: best.iter().flat_map(|best| best.compared).map(fitted).collect(),
     }
 }
 

@@ -77,7 +77,7 @@ pub struct Inference {
 /// Settings that do not fit the problem.
 pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
     let wanted = &run.problem.inference;
-    let Some(best) = run.best.as_ref().filter(|_| !run.evaluation.is_cancelled()) else {
+    let Some(best) = run.observed.best.as_ref().filter(|_| !run.evaluation.is_cancelled()) else {
         return Ok(Inferred::stopped(wanted.parts()));
     };
     let mut found = Inferred {

@@ -210,7 +210,7 @@ fn refitted(best: &[f64], more: &[f64]) -> Vec<f64> {
     y.extend(more.iter().map(|x| saturation(best, *x)));
     x.extend(more);
     let run = finished(problem(saturation, &x, &y, &RANGES));
-    let values = &run.best.as_ref().unwrap().values;
+    let values = &run.observed.best.as_ref().unwrap().values;
     let simulated = run.evaluation.simulate(values).unwrap();
     let statistics = Statistics::at(&run.problem, &run.evaluation, values, &simulated, &[]);
     let square: f64 = y.iter().zip(&simulated).map(|(y, s)| (y - s).powi(2)).sum();
@@ -228,7 +228,7 @@ fn window([low, high]: [f64; 2], points: usize) -> Vec<f64> {
 #[test]
 fn announced_gains_come_true_and_are_the_largest() {
     let (run, next) = planned(5);
-    let best = run.best.as_ref().unwrap().values.clone();
+    let best = run.observed.best.as_ref().unwrap().values.clone();
     let local = Local::at(&run.problem, &run.evaluation, &best).unwrap();
     let spread = local.variance.sqrt();
     let quantile = student_quantile(12 + 5 - 2);
@@ -257,7 +257,7 @@ fn announced_gains_come_true_and_are_the_largest() {
 #[test]
 fn many_points_go_where_the_closed_form_says() {
     let (run, next) = planned(40);
-    let best = &run.best.as_ref().unwrap().values;
+    let best = &run.observed.best.as_ref().unwrap().values;
     let optimal = best[1] / (1.0 + 2.0 * best[1] / 10.0);
     let plans = &next.proposals.iter().find(|p| p.criterion == "D").unwrap().plans;
     assert!(plans.len() <= 3, "{plans:?}");
@@ -324,7 +324,7 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     let [u, v] = [25.0 * sy + 100.0 * 2.0, 25.0 * sxy + 1e6 * 0.3];
     let determinant = a * d - b * b;
     let expected = [(d * u - b * v) / determinant, (a * v - b * u) / determinant];
-    let best = &run.best.as_ref().unwrap().values;
+    let best = &run.observed.best.as_ref().unwrap().values;
     for (found, expected) in best.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-7, "{found} {expected}");
     }
@@ -376,7 +376,7 @@ fn log_normal_data_are_fitted_by_their_logarithms() {
     let (mean_x, mean_y) = (4.5, y.iter().map(|y| y.ln()).sum::<f64>() / 10.0);
     let sxy: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * y.ln()).sum();
     let slope = sxy / 82.5;
-    let best = &run.best.as_ref().unwrap().values;
+    let best = &run.observed.best.as_ref().unwrap().values;
     assert!((best[1] - slope).abs() < 1e-6, "{} {slope}", best[1]);
     assert!((best[0].ln() - (mean_y - slope * mean_x)).abs() < 1e-6);
     // The density of a value is that of its logarithm by the value.
@@ -404,7 +404,7 @@ fn constraints_hold_and_are_named_where_they_are_active() {
         let constraints = vec![Constraint::new(text, std::sync::Arc::new(sides))];
         adjust(&mut problem, Adjustments { constraints, ..Adjustments::default() }).unwrap();
         let run = finished(problem);
-        (run.best.as_ref().unwrap().values.clone(), infer(&run).unwrap())
+        (run.observed.best.as_ref().unwrap().values.clone(), infer(&run).unwrap())
     };
     let (free, found) = solved("p1 < p0");
     assert!((free[0] - 3.0).abs() < 0.2 && found.findings.is_empty(), "{free:?}");
@@ -428,14 +428,14 @@ fn nothing_is_inferred_beside_a_minimum() {
     problem.inference.predict = Some(Box::new(predict));
     problem.inference.design = Some(DesignSettings { points: 4, range: None, outputs: Vec::new() });
     let mut run = finished(problem);
-    let best = run.best.as_ref().unwrap().values.clone();
+    let best = run.observed.best.as_ref().unwrap().values.clone();
     let local = Local::at(&run.problem, &run.evaluation, &best).unwrap();
     let error = local.information.variances()[0].unwrap().sqrt();
     // By a thousandth of a standard error, and by a half, the other parameter held.
     for (part, holds) in [(0.001, true), (0.5, false)] {
         let mut values = best.clone();
         values[0] += part * error;
-        run.best.as_mut().unwrap().values = values;
+        run.observed.best.as_mut().unwrap().values = values;
         let found = infer(&run).unwrap();
         assert_eq!(found.next_measurement.is_some(), holds, "{part}");
         assert_eq!(found.refusals.iter().any(|why| why.contains("are not a minimum")), !holds);

@@ -10,15 +10,16 @@ const SHOWN: usize = 8;
 
 /// Why a run has no result, if its simulations have failed and the model shows where.
 pub(super) fn none_simulated(run: &Run, experiments: &[Experiment]) -> Option<Diagnostic> {
-    if run.best.is_some() {
+    if run.observed.best.is_some() {
         return None;
     }
-    let (cause, count) = run.causes.iter().max_by_key(|cause| cause.1)?;
+    let (cause, count) = run.observed.causes.iter().max_by_key(|cause| cause.1)?;
     let values = run.examples.get(cause)?;
     let (found, time) = diagnosed(experiments, values)?;
     let message = format!(
         "none of the first {} individuals could be simulated; {count} times: {}",
-        run.evaluations, found.message
+        run.evaluations(),
+        found.message
     );
     let shown = run.problem.parameters.iter().zip(values).take(SHOWN);
     let shown: Vec<String> =

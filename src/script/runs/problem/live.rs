@@ -1,8 +1,10 @@
 //! What users see of a run in progress, and what they may change then.
 
 use crate::Session;
+use crate::identify::Quantity;
+use crate::identify::problem::Free;
 use crate::identify::problem::Run;
-use crate::runs::view::{Fitted, Progress, Spread, View, labelled};
+use crate::runs::view::{Drawn, Fitted, Progress, Spread};
 
 /// What a pause explains.
 const HELP: &str = "\
@@ -23,46 +25,33 @@ pub(super) struct Live {
 impl Live {
     /// Shows how far the run is.
     pub(super) fn show(&mut self, session: &mut Session, run: &Run) {
-        session.world.progress(&progress(run));
-        if session.world.wants_view() {
-            let view = self.view(run);
-            session.world.show_view(&view);
-        }
+        session.show_search(progress(run), &run.observed, || self.drawn(run));
     }
 
-    fn view(&mut self, run: &Run) -> View {
-        let best = run.best.as_ref();
+    fn drawn(&mut self, run: &Run) -> Drawn {
+        let best = run.observed.best.as_ref();
         if let Some(best) = best.filter(|best| Some(best.fitness) != self.fitness) {
             self.fitness = Some(best.fitness);
             self.simulated = run.evaluation.simulate(&best.values).unwrap_or_default();
         }
-        let spread = |(k, free): (usize, &crate::identify::problem::Free)| {
+        let spread = |(k, free): (usize, &Free)| {
             let value = best.map_or(f64::NAN, |best| best.values[k]);
-            Some(Spread {
-                name: free.name.clone(),
-                unit: free.unit.clone(),
-                value,
-                best: free.fraction(value),
-                generation: Spread::of(run.fractions(k))?,
-            })
+            let values = (value, free.fraction(value));
+            Spread::of((&free.name, &free.unit), values, run.fractions(k))
         };
         let mut rest = self.simulated.as_slice();
+        let quantity =
+            |name: &String, unit: &String| Quantity { name: name.clone(), unit: unit.clone() };
         let mut fitted = Vec::new();
         for series in &run.problem.series {
             let (own, others) = rest.split_at(series.x.len().min(rest.len()));
             rest = others;
-            fitted.push(Fitted {
-                y_name: labelled(&series.y_name, &series.y_unit),
-                x_name: labelled(&series.x_name, &series.x_unit),
-                x: series.x.clone(),
-                measured: series.y.clone(),
-                simulated: own.to_vec(),
-            });
+            let y = quantity(&series.y_name, &series.y_unit);
+            let x = quantity(&series.x_name, &series.x_unit);
+            fitted.push(Fitted::of(&y, &x, [&series.x, &series.y, own]));
         }
-        View {
+        Drawn {
             title: run.problem.title.clone(),
-            progress: progress(run),
-            best: run.history.generations.iter().map(|generation| generation.best).collect(),
             spreads: run.problem.parameters.iter().enumerate().filter_map(spread).collect(),
             fitted,
         }
@@ -71,19 +60,12 @@ impl Live {
 
 fn progress(run: &Run) -> Progress {
     let limits = run.problem.stop;
-    let (done, total) = match (limits.evaluations, limits.generations) {
-        (_, Some(total)) => (run.generations(), total),
-        (Some(total), None) => (run.evaluations.min(total), total),
-        (None, None) => (run.evaluations, 0),
+    let units = match (limits.evaluations, limits.generations) {
+        (_, Some(total)) => [run.generations(), total],
+        (Some(total), None) => [run.evaluations().min(total), total],
+        (None, None) => [run.evaluations(), 0],
     };
-    Progress {
-        label: run.phase().to_owned(),
-        done,
-        total,
-        best: run.best.as_ref().map(|best| best.fitness),
-        failures: run.failed.iter().sum(),
-        main_cause: None,
-    }
+    Progress::of(&run.observed, run.phase(), units)
 }
 
 /// Carries out what the user types during a pause. Whether the run shall end.

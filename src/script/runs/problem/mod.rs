@@ -484,7 +484,7 @@ fn open(
         let text = format!(
             "resumed after {} generations, {} evaluations{lost}\n",
             run.generations(),
-            run.evaluations
+            run.evaluations()
         );
         session.print(&text);
         bytes = old[..journal.whole].to_vec();
@@ -509,7 +509,7 @@ fn validated(
     validation: &[(solving::Experiment, Vec<solving::Series>)],
     hurry: Option<TimeBudget>,
 ) -> Result<Vec<SolvedSeries>, Fault> {
-    let Some(best) = &run.best else { return Ok(Vec::new()) };
+    let Some(best) = &run.observed.best else { return Ok(Vec::new()) };
     let mut solved = Vec::new();
     for (experiment, series) in validation {
         let mut experiment = experiment.clone();

@@ -17,7 +17,7 @@ fn bootstrapped(resampling: Resampling, interval: IntervalKind, threads: usize) 
     if threads > 1 {
         run.evaluation = crate::problem::Evaluation::new(&run.problem, threads).unwrap();
     }
-    let best = run.best.as_ref().unwrap().values.clone();
+    let best = run.observed.best.as_ref().unwrap().values.clone();
     let square: f64 = x.iter().zip(&y).map(|(x, y)| (y - line(&best, *x)).powi(2)).sum();
     let sxx: f64 = x.iter().map(|x| (x - 9.5).powi(2)).sum();
     (infer(&run).unwrap(), (square / 18.0 / sxx).sqrt())

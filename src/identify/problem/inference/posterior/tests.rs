@@ -104,7 +104,7 @@ fn fitted(known: bool, threads: usize, samples: usize) -> (Run, f64) {
 fn posteriors_of_a_straight_line_are_exact() {
     for known in [true, false] {
         let (run, unit) = fitted(known, 2, 8000);
-        let best = run.best.as_ref().unwrap().values.clone();
+        let best = run.observed.best.as_ref().unwrap().values.clone();
         let local = Local::at(&run.problem, &run.evaluation, &best).unwrap();
         let half = match known {
             true => 1.959_964 * 0.1 * unit,
