@@ -3,9 +3,8 @@
 use super::named;
 use super::terminal;
 use crate::diag::visible;
-use crate::script::runs::journal::{ScriptEntry, read_script_journal};
 use clap::{Args, ValueHint};
-use gapilib_identify::problem::{Origins, Record, ShardFile, decode};
+use gapilib_identify::problem::{Entry, Origins, Record, ShardFile, decode};
 use gapilib_script::teach::Trace;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -49,7 +48,7 @@ pub(super) fn journal(arguments: &JournalArgs) -> ExitCode {
             ));
         }
     };
-    let readers = [of_run, of_script, of_shard, of_trace];
+    let readers = [of_search, of_shard, of_trace];
     let Some(described) = readers.into_iter().find_map(|read| read(&bytes)) else {
         return refused(format!(
             "`{name}` is not a journal that this version of gapi has written\n = help: give a file \
@@ -67,12 +66,18 @@ pub(super) fn journal(arguments: &JournalArgs) -> ExitCode {
 }
 
 /// The checkpoint of a search.
-fn of_run(bytes: &[u8]) -> Option<Described> {
+fn of_search(bytes: &[u8]) -> Option<Described> {
     let journal = decode(bytes)?;
+    let lost = journal.lost;
+    let is_of_script =
+        |entry: &Entry<'_>| matches!(entry, Entry::Simulated { .. } | Entry::Typed(_));
+    if journal.entries.iter().any(is_of_script) {
+        return Some(Described { text: of_script(&journal.entries), lost });
+    }
     let mut text = "a checkpoint of gapi identify\n".to_owned();
-    text += &origins(&journal.origins);
-    text += &records(&journal.records);
-    Some(Described { text, lost: journal.lost })
+    text += &journal.origins().map_or_else(String::new, origins);
+    text += &records(&journal.records());
+    Some(Described { text, lost })
 }
 
 fn records(records: &[Record]) -> String {
@@ -98,28 +103,28 @@ fn records(records: &[Record]) -> String {
 }
 
 /// The checkpoint of a script.
-fn of_script(bytes: &[u8]) -> Option<Described> {
-    let (entries, lost) = read_script_journal(bytes)?;
+fn of_script(entries: &[Entry<'_>]) -> String {
     let mut text = "a checkpoint of gapi run\n".to_owned();
-    let (mut calls, mut points, mut failed) = (0u64, 0u64, 0u64);
+    let (mut calls, mut points, mut failed) = (0, 0, 0);
     for entry in entries {
         match entry {
-            ScriptEntry::Simulated { values, failures } => {
+            Entry::Simulated { rows, failures, .. } => {
                 calls += 1;
-                points += values as u64;
-                failed += failures as u64;
+                points += rows.len();
+                failed += failures.len();
             }
-            ScriptEntry::Typed(line) => {
+            Entry::Typed(line) => {
                 _ = writeln!(text, "typed after call {calls} of Eval: {line}");
             }
-            ScriptEntry::From(from) => text += &origins(&from),
+            Entry::From(from) => text += &origins(from),
+            Entry::Answered(_) => {}
         }
     }
     _ = writeln!(
         text,
         "{calls} calls of Eval: {points} simulated values, {failed} failed individuals"
     );
-    Some(Described { text, lost })
+    text
 }
 
 /// A part of a study.
@@ -132,7 +137,7 @@ fn of_shard(bytes: &[u8]) -> Option<Described> {
         _ = writeln!(text, "{kind}: {parts} parts");
     }
     if let Some(search) = decode(&file.journal) {
-        text += &records(&search.records);
+        text += &records(&search.records());
     }
     Some(Described { text, lost: 0 })
 }

@@ -8,7 +8,7 @@ use super::plan::TIME;
 use super::problem::{
     Experiment, Failed, ModelSimulator, NOISE_OF_FORMULAS, Observation, Simulate,
 };
-use super::ranks::{Asked, Batch, Processors, Simulation};
+use super::ranks::{Asked, Batch, Processors};
 use super::simulators::Simulators;
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
@@ -49,35 +49,13 @@ pub struct Simulated {
     /// Y at the measured points, one row for each individual; NaN where the simulation failed.
     pub rows: Vec<f64>,
     /// Why it failed; `None` where it did not.
-    pub failures: Vec<Option<FailedSimulation>>,
-}
-
-/// Why and when a simulation failed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FailedSimulation {
-    /// Why, in one sentence.
-    pub cause: String,
-    /// When, in simulated time; `None` where the whole simulation is of no use.
-    pub time: Option<f64>,
-}
-
-impl std::fmt::Display for FailedSimulation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.time {
-            Some(time) => {
-                // Six digits say when; the rest is the solver's.
-                let time: f64 = format!("{time:.5e}").parse().unwrap_or(time);
-                write!(f, "{} (at {time} s)", self.cause)
-            }
-            None => f.write_str(&self.cause),
-        }
-    }
+    pub failures: Vec<Option<Failed>>,
 }
 
 impl Simulated {
     /// Why each simulation failed, as text; empty where it did not.
     pub fn messages(&self) -> Vec<String> {
-        let text = |failed: &FailedSimulation| failed.to_string();
+        let text = |failed: &Failed| failed.to_string();
         self.failures.iter().map(|failure| failure.as_ref().map_or(String::new(), text)).collect()
     }
 }
@@ -216,13 +194,8 @@ impl Evaluator {
             asked: Asked::Points,
             tolerance: self.simulators.tolerance(),
         };
-        let answer = |Simulation { row, failed, failed_at, .. }: Simulation| {
-            let failure =
-                |failed: Failed| FailedSimulation { cause: failed.cause, time: failed_at };
-            (row, failed.map(failure))
-        };
-        let (rows, failures): (Vec<Vec<f64>>, Vec<_>) =
-            self.simulators.simulate(&batch, answer).into_iter().unzip();
+        let found = self.simulators.simulate(&batch, |found| (found.row, found.failed));
+        let (rows, failures): (Vec<Vec<f64>>, Vec<_>) = found.into_iter().unzip();
         Ok(Simulated { rows: rows.concat(), failures })
     }
 

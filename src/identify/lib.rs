@@ -37,7 +37,7 @@ mod study;
 mod table;
 mod uncertainty;
 
-pub use evaluation::{Evaluator, FailedSimulation, Question, Simulated};
+pub use evaluation::{Evaluator, Question, Simulated};
 pub use model::{Instance, Model, Parameter, PortableModel};
 pub use objective::Objective;
 pub use points::{Path, time_of};

@@ -310,7 +310,8 @@ impl ScriptBest<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FailedSimulation, Quantity};
+    use crate::Quantity;
+    use crate::problem::{Failed, FailureKind};
 
     fn study() -> Arc<Study> {
         let quantity = |name: &str| Quantity { name: name.to_owned(), unit: String::new() };
@@ -327,9 +328,8 @@ mod tests {
     }
 
     fn simulated(rows: &[f64]) -> Simulated {
-        let failure = |row: &f64| {
-            row.is_nan().then(|| FailedSimulation { cause: "log of -1".into(), time: Some(0.5) })
-        };
+        let failure =
+            |row: &f64| row.is_nan().then(|| Failed::new(FailureKind::Model, "log of -1", 0.5));
         Simulated { rows: rows.to_vec(), failures: rows.iter().map(failure).collect() }
     }
 

@@ -149,8 +149,8 @@ pub(crate) fn solve_problem(bytes: &[u8]) {
 pub(crate) fn read_journal(bytes: &[u8]) {
     if let Some(journal) = problem::decode(bytes) {
         assert_eq!(journal.whole + journal.lost, bytes.len());
-        for record in &journal.records {
-            problem::encode(record);
+        for entry in &journal.entries {
+            entry.to_bytes();
         }
     }
 }

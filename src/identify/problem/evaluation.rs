@@ -9,8 +9,8 @@ use crate::ga::{Genomes, has_failed};
 use crate::ranks::{Asked, Batch, Processors, Simulation};
 use crate::simulators::Simulators;
 use rustc_hash::FxHashMap;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -21,7 +21,7 @@ pub type Status = Arc<dyn Fn(&str) + Send + Sync>;
 const REMEMBERED: usize = 8192;
 
 /// The answers to one question.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
     /// Objectives, individual by individual.
     pub objectives: Vec<f64>,
@@ -470,7 +470,7 @@ impl Evaluation {
 
 fn unrated_by(name: &str) -> Failed {
     let cause = format!("the fitness function `{name}` does not return a number");
-    Failed { kind: super::FailureKind::Points, cause, progress: 1.0 }
+    Failed::new(super::FailureKind::Points, cause, 1.0)
 }
 
 impl Memory {

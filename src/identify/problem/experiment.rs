@@ -58,8 +58,6 @@ pub struct ModelSimulator {
     simulator: Simulator,
     trajectory: Trajectory,
     refusal: Option<String>,
-    /// When the last simulation failed, in simulated time.
-    failed_at: Option<f64>,
 }
 
 /// One experiment, ready to run.
@@ -81,8 +79,6 @@ struct Stage {
     in_x: bool,
     /// For static curves.
     pointwise: Option<Pointwise>,
-    /// When the first attempt failed, in simulated time.
-    failed_at: Option<f64>,
 }
 
 impl Experiment {
@@ -116,7 +112,6 @@ impl ModelSimulator {
             simulator: Simulator::new(),
             trajectory: Trajectory::default(),
             refusal: None,
-            failed_at: None,
         })
     }
 
@@ -139,9 +134,7 @@ impl Simulate for ModelSimulator {
             let length: usize = stage.points.iter().map(Vec::len).sum();
             let out = &mut out[first..first + length];
             first += length;
-            stage.failed_at = None;
             let run = stage.run(parameters, &mut self.simulator, &mut self.trajectory, out);
-            self.failed_at = stage.failed_at;
             run.map_err(|failed| located(failed, (number, count), &stage.name))?;
         }
         Ok(())
@@ -187,10 +180,6 @@ impl Simulate for ModelSimulator {
                 retry.tolerance = second;
             }
         }
-    }
-
-    fn failed_at(&self) -> Option<f64> {
-        self.failed_at
     }
 
     fn portable(&self) -> Result<Portable, String> {
@@ -277,7 +266,6 @@ impl Stage {
             limits,
             in_x,
             pointwise,
-            failed_at: None,
         })
     }
 
@@ -299,7 +287,8 @@ impl Stage {
         };
         let again = failed.kind == FailureKind::Solver && self.retry.is_some();
         if again && self.attempt(true, simulator, trajectory).is_ok() {
-            return self.read(trajectory, out);
+            let first = failed.at;
+            return self.read(trajectory, out).map_err(|failed| Failed { at: first, ..failed });
         }
         Err(failed)
     }
@@ -310,25 +299,21 @@ impl Stage {
         else {
             return Ok(());
         };
-        let failed = |kind: FailureKind, cause: String| Failed { kind, cause, progress: 0.0 };
         let mut first = 0;
         for (column, x) in points.iter().enumerate() {
             if settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                return Err(failed(FailureKind::Points, "it was cancelled".to_owned()));
+                return Err(Failed::new(FailureKind::Points, "it was cancelled", 0.0));
             }
             let out = &mut out[first..first + x.len()];
             first += x.len();
             let at = (values.as_slice(), settings.start);
             pointwise
                 .evaluate(instance.as_mut(), at, (column, x), out)
-                .map_err(|cause| failed(FailureKind::Model, cause))?;
+                .map_err(|cause| Failed::new(FailureKind::Model, cause, 0.0))?;
         }
         match out.iter().all(|value| value.is_finite()) {
             true => Ok(()),
-            false => {
-                let cause = "a simulated value is not finite".to_owned();
-                Err(failed(FailureKind::Points, cause))
-            }
+            false => Err(Failed::new(FailureKind::Points, "a simulated value is not finite", 0.0)),
         }
     }
 
@@ -472,18 +457,17 @@ impl Stage {
         simulator: &mut Simulator,
         trajectory: &mut Trajectory,
     ) -> Result<(), Failed> {
-        let refused =
-            |fault: Fault| Failed { kind: FailureKind::Model, cause: fault.message, progress: 0.0 };
+        let refused = |fault: Fault| Failed::new(FailureKind::Model, fault.message, 0.0);
         self.instance.set(&self.values).map_err(refused)?;
         let settings = self.retry.as_ref().filter(|_| again).unwrap_or(&self.settings);
         let run = simulator.run(self.instance.system(), settings, trajectory);
         run.map(|_| ()).map_err(|error| {
-            self.failed_at = self.failed_at.or(Some(error.time));
             let length = (settings.stop - settings.start).max(f64::MIN_POSITIVE);
             Failed {
                 kind: kind(&error),
                 cause: self.instance.explain(&error),
                 progress: (error.time - settings.start) / length,
+                at: Some(error.time),
             }
         })
     }
@@ -528,7 +512,7 @@ impl Stage {
 
 /// The points could not be read.
 fn missing(cause: &str) -> Failed {
-    Failed { kind: FailureKind::Points, cause: cause.to_owned(), progress: 1.0 }
+    Failed::new(FailureKind::Points, cause, 1.0)
 }
 
 /// Other settings for a second attempt; none for methods with fixed step.

@@ -41,11 +41,31 @@ pub struct Failed {
     pub cause: String,
     /// How far it got, 0 to 1.
     pub progress: f64,
+    /// When it failed, in simulated time; `None` where the whole simulation is of no use.
+    pub at: Option<f64>,
 }
 
 impl Failed {
+    /// A failure at no particular time.
+    pub fn new(kind: FailureKind, cause: impl Into<String>, progress: f64) -> Failed {
+        Failed { kind, cause: cause.into(), progress, at: None }
+    }
+
     /// Worse than every success; among failures, the better the further they got.
     pub fn fitness(&self) -> f64 {
         FAILED_FITNESS * (2.0 - self.progress.clamp(0.0, 1.0))
+    }
+}
+
+impl std::fmt::Display for Failed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.at {
+            Some(time) => {
+                // Six digits say when; the rest is the solver's.
+                let time: f64 = format!("{time:.5e}").parse().unwrap_or(time);
+                write!(f, "{} (at {time} s)", self.cause)
+            }
+            None => f.write_str(&self.cause),
+        }
     }
 }

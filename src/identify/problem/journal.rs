@@ -1,25 +1,27 @@
-//! The journal of a run: the answers to every request, one record after the other, each with its
-//! length and a checksum. A run that ended in the middle of a record has lost that record alone.
+//! The journal of a search, of a problem or of a script: what it depends on, the answers to every request
+//! and what the user changed, one entry after the other, each with its length and a checksum. A run
+//! that ended in the middle of an entry has lost that entry alone.
 //!
 //! ```text
-//! file   = "GAPIRUN3", frame of the origins of the problem, record, record, …
-//! record = length of the payload (8 bytes), CRC-32 of it (4 bytes), payload
+//! file = "GAPIRUN4", frame, frame, …
 //! ```
-//!
-//! All numbers are little-endian.
 
 use super::evaluation::Answered;
 use super::frame::{first_frame, frame};
-use super::{Failed, FailureKind, Origins};
+use super::{Failed, Origins};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
-const MAGIC: &[u8; 8] = b"GAPIRUN3";
+const MAGIC: &[u8; 8] = b"GAPIRUN4";
+/// What journals of other versions begin with.
+const OTHERS: [&[u8]; 2] = [b"GAPIRUN", b"GAPISCR"];
 
-/// One question of the method with its answers.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// A request of the method with its answers.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Seconds of work up to here.
     pub seconds: f64,
-    /// Settings changed before this question: name and value.
+    /// Settings changed before this request: name and value.
     pub changes: Vec<(String, f64)>,
     /// A number made of the genes that were asked: a run that asks others is another run.
     pub asked: u64,
@@ -27,59 +29,85 @@ pub struct Record {
     pub answered: Answered,
 }
 
+/// An entry of a journal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Entry<'a> {
+    /// What the next entries depend on.
+    From(Cow<'a, Origins>),
+    /// A request of the method of a problem.
+    Answered(Cow<'a, Record>),
+    /// A population that a script has simulated.
+    Simulated {
+        /// A number made of what was asked.
+        asked: u64,
+        /// The simulated points.
+        rows: Cow<'a, [f64]>,
+        /// Which individuals failed.
+        failures: Vec<(u32, Failed)>,
+    },
+    /// A statement that the user typed between two populations of a script.
+    Typed(Cow<'a, str>),
+}
+
 /// A journal that was read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Journal {
-    /// What the run depends on.
-    pub origins: Origins,
-    /// The records that are whole.
-    pub records: Vec<Record>,
+    /// The entries that are whole.
+    pub entries: Vec<Entry<'static>>,
     /// How many bytes they take; what follows is damaged or was not finished.
     pub whole: usize,
     /// Bytes after them.
     pub lost: usize,
 }
 
-/// The beginning of a journal.
+impl Journal {
+    /// What the run of a problem depends on; `None` where that was lost.
+    pub fn origins(&self) -> Option<&Origins> {
+        match self.entries.first()? {
+            Entry::From(origins) => Some(origins),
+            _ => None,
+        }
+    }
+
+    /// The requests of the method of a problem.
+    pub fn records(self) -> Vec<Record> {
+        let record = |entry| match entry {
+            Entry::Answered(record) => Some(record.into_owned()),
+            _ => None,
+        };
+        self.entries.into_iter().filter_map(record).collect()
+    }
+}
+
+/// The beginning of a journal, before its first entry.
+pub fn begin() -> Vec<u8> {
+    MAGIC.to_vec()
+}
+
+/// The beginning of the journal of a problem.
 pub fn header(origins: &Origins) -> Vec<u8> {
-    let mut bytes = MAGIC.to_vec();
-    // Names and numbers only.
-    bytes.extend(frame(&postcard::to_allocvec(origins).unwrap_or_default()));
-    bytes
+    [begin(), Entry::From(Cow::Borrowed(origins)).to_bytes()].concat()
 }
 
-/// A record as bytes.
+impl Entry<'_> {
+    /// The entry as it is written.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        // Numbers and strings only.
+        frame(&postcard::to_allocvec(self).unwrap_or_default())
+    }
+}
+
+/// A record as an entry.
 pub fn encode(record: &Record) -> Vec<u8> {
-    let mut payload = Vec::new();
-    payload.extend(record.seconds.to_le_bytes());
-    payload.extend(record.asked.to_le_bytes());
-    payload.extend(record.answered.simulations.to_le_bytes());
-    put_count(&mut payload, record.changes.len());
-    for (name, value) in &record.changes {
-        put_text(&mut payload, name);
-        payload.extend(value.to_le_bytes());
-    }
-    let Answered { objectives, residuals, jacobians, .. } = &record.answered;
-    for numbers in [objectives, residuals, jacobians] {
-        put_count(&mut payload, numbers.len());
-        numbers.iter().for_each(|value| payload.extend(value.to_le_bytes()));
-    }
-    put_count(&mut payload, record.answered.failures.len());
-    for (k, failed) in &record.answered.failures {
-        put_count(&mut payload, *k);
-        payload
-            .push(FailureKind::ALL.iter().position(|kind| *kind == failed.kind).unwrap_or(0) as u8);
-        payload.extend(failed.progress.to_le_bytes());
-        put_text(&mut payload, &failed.cause);
-    }
-    frame(&payload)
+    Entry::Answered(Cow::Borrowed(record)).to_bytes()
 }
 
-/// A journal without the times that its run took; what is none stays as it is.
+/// The journal of a problem without the times that its run took; what is none stays as it is.
 pub fn without_times(bytes: &[u8]) -> Vec<u8> {
     let Some(journal) = decode(bytes) else { return bytes.to_vec() };
-    let mut timeless = header(&journal.origins);
-    for record in journal.records {
+    let Some(origins) = journal.origins() else { return bytes.to_vec() };
+    let mut timeless = header(origins);
+    for record in journal.records() {
         timeless.extend(encode(&Record { seconds: 0.0, ..record }));
     }
     timeless
@@ -87,99 +115,26 @@ pub fn without_times(bytes: &[u8]) -> Vec<u8> {
 
 /// Reads a journal as far as it is whole; `None` when it is none at all.
 pub fn decode(bytes: &[u8]) -> Option<Journal> {
-    let mut reader = Reader { bytes };
-    if reader.take(MAGIC.len())? != MAGIC {
-        return None;
+    let mut rest = bytes.strip_prefix(MAGIC)?;
+    let mut journal = Journal::default();
+    while let Some((payload, others)) = first_frame(rest) {
+        let Ok(entry) = postcard::from_bytes(payload) else { break };
+        journal.entries.push(entry);
+        rest = others;
     }
-    let (origins, rest) = first_frame(reader.bytes)?;
-    let origins = postcard::from_bytes(origins).ok()?;
-    reader.bytes = rest;
-    let mut journal = Journal { origins, ..Journal::default() };
-    journal.whole = bytes.len() - reader.bytes.len();
-    while let Some(record) = whole_record(&mut reader) {
-        journal.records.push(record);
-        journal.whole = bytes.len() - reader.bytes.len();
-    }
-    journal.lost = bytes.len() - journal.whole;
+    journal.lost = rest.len();
+    journal.whole = bytes.len() - rest.len();
     Some(journal)
 }
 
-fn whole_record(reader: &mut Reader<'_>) -> Option<Record> {
-    let (payload, rest) = first_frame(reader.bytes)?;
-    let record = record(&mut Reader { bytes: payload })?;
-    reader.bytes = rest;
-    Some(record)
-}
-
-fn record(reader: &mut Reader<'_>) -> Option<Record> {
-    let mut record =
-        Record { seconds: reader.number()?, asked: reader.integer()?, ..Record::default() };
-    record.answered.simulations = reader.integer()?;
-    for _ in 0..reader.count()? {
-        record.changes.push((reader.text()?, reader.number()?));
-    }
-    record.answered.objectives = reader.numbers()?;
-    record.answered.residuals = reader.numbers()?;
-    record.answered.jacobians = reader.numbers()?;
-    for _ in 0..reader.count()? {
-        let k = reader.count()?;
-        let kind = *FailureKind::ALL.get(usize::from(reader.take(1)?[0]))?;
-        let (progress, cause) = (reader.number()?, reader.text()?);
-        record.answered.failures.push((k, Failed { kind, cause, progress }));
-    }
-    reader.bytes.is_empty().then_some(record)
-}
-
-fn put_count(bytes: &mut Vec<u8>, count: usize) {
-    bytes.extend((count as u64).to_le_bytes());
-}
-
-fn put_text(bytes: &mut Vec<u8>, text: &str) {
-    put_count(bytes, text.len());
-    bytes.extend(text.as_bytes());
-}
-
-/// The bytes not read yet.
-struct Reader<'a> {
-    bytes: &'a [u8],
-}
-
-impl<'a> Reader<'a> {
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.bytes.split_at_checked(count)?;
-        self.bytes = rest;
-        Some(taken)
-    }
-
-    fn integer(&mut self) -> Option<u64> {
-        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
-    }
-
-    /// A number of things, each of which takes a byte or more.
-    fn count(&mut self) -> Option<usize> {
-        usize::try_from(self.integer()?).ok()
-    }
-
-    fn number(&mut self) -> Option<f64> {
-        Some(f64::from_bits(self.integer()?))
-    }
-
-    fn numbers(&mut self) -> Option<Vec<f64>> {
-        let count = self.count()?;
-        if count > self.bytes.len() / 8 {
-            return None;
-        }
-        (0..count).map(|_| self.number()).collect()
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let count = self.count()?;
-        String::from_utf8(self.take(count)?.to_vec()).ok()
-    }
+/// Whether these bytes are a journal that another version of this program has written.
+pub fn is_of_another_version(bytes: &[u8]) -> bool {
+    !bytes.starts_with(MAGIC) && OTHERS.iter().any(|other| bytes.starts_with(other))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::FailureKind;
     use super::*;
 
     fn record() -> Record {
@@ -191,10 +146,7 @@ mod tests {
                 objectives: vec![1.0, f64::INFINITY, -0.0],
                 residuals: vec![0.1],
                 jacobians: vec![0.5, -0.5],
-                failures: vec![(
-                    1,
-                    Failed { kind: FailureKind::Solver, cause: "log ≤ 0".into(), progress: 0.25 },
-                )],
+                failures: vec![(1, Failed::new(FailureKind::Solver, "log ≤ 0", 0.25))],
                 simulations: 2,
             },
         }
@@ -209,7 +161,8 @@ mod tests {
         bytes.extend(&single);
         let journal = decode(&bytes).unwrap();
         assert_eq!((journal.whole, journal.lost), (bytes.len(), 0));
-        assert_eq!((journal.origins, journal.records), (origins, vec![record(), record()]));
+        assert_eq!(journal.origins(), Some(&origins));
+        assert_eq!(journal.records(), [record(), record()]);
     }
 
     #[test]
@@ -220,21 +173,26 @@ mod tests {
         bytes.extend(&single);
         bytes.extend(&single);
         for end in begin..bytes.len() {
-            let records = decode(&bytes[..end]).unwrap().records.len();
+            let records = decode(&bytes[..end]).unwrap().records().len();
             assert_eq!(records, usize::from(end >= begin + single.len()), "cut at {end}");
         }
         for place in 0..bytes.len() {
             let mut damaged = bytes.clone();
             damaged[place] ^= 0x40;
-            let Some(journal) = decode(&damaged) else {
+            let journal = decode(&damaged).filter(|journal| journal.origins().is_some());
+            let Some(journal) = journal else {
                 assert!(place < begin, "{place}");
                 continue;
             };
             let whole = usize::from(place >= begin + single.len());
-            assert_eq!(journal.records.len(), whole, "{place}");
             assert_eq!(journal.whole + journal.lost, bytes.len());
+            assert_eq!(journal.records().len(), whole, "{place}");
         }
         assert!(decode(b"something else").is_none());
+        for other in [&b"GAPIRUN3"[..], b"GAPISCR2"] {
+            assert!(decode(other).is_none() && is_of_another_version(other));
+        }
+        assert!(!is_of_another_version(&bytes) && !is_of_another_version(b"something else"));
         assert!(decode(b"").is_none());
     }
 }

@@ -74,7 +74,9 @@ pub use fingerprint::{Fingerprint, Origins, listed};
 pub use frame::{first_frame, frame};
 pub use importance::{Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred};
-pub use journal::{Journal, Record, decode, encode, header, without_times};
+pub use journal::{
+    Entry, Journal, Record, begin, decode, encode, header, is_of_another_version, without_times,
+};
 pub use linearization::Linearization;
 pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
@@ -138,11 +140,6 @@ pub trait Simulate: Send {
     fn scale_tolerance(&mut self, _factor: f64) {}
     /// From now on simulations end when the flag is set; what they answer then is not used.
     fn cancel_by(&mut self, _flag: Option<Arc<AtomicBool>>) {}
-    /// When the last simulation failed, in simulated time; `None` where it did not, or where the
-    /// whole simulation is of no use.
-    fn failed_at(&self) -> Option<f64> {
-        None
-    }
     /// What another process makes an equal simulator from.
     ///
     /// # Errors

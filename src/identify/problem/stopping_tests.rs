@@ -25,7 +25,7 @@ impl Simulate for Counted {
         }
         if self.flag.load(Ordering::Relaxed) {
             let cause = "it was cancelled".to_owned();
-            return Err(Failed { kind: FailureKind::Points, cause, progress: 0.0 });
+            return Err(Failed::new(FailureKind::Points, cause, 0.0));
         }
         self.own.simulate(parameters, out)
     }

@@ -15,7 +15,7 @@ impl Simulate for Formula {
         }
         match out.iter().all(|value| value.is_finite()) {
             true => Ok(()),
-            false => Err(Failed { kind: FailureKind::Model, cause: "log".into(), progress: 0.5 }),
+            false => Err(Failed::new(FailureKind::Model, "log", 0.5)),
         }
     }
 }

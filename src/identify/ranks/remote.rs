@@ -22,7 +22,6 @@ pub(super) struct Remote {
     /// What the solver's tolerance is multiplied with.
     tolerance: f64,
     refusal: Option<String>,
-    failed_at: Option<f64>,
 }
 
 impl Remote {
@@ -32,16 +31,14 @@ impl Remote {
         answers: Receiver<Simulation>,
         tolerance: f64,
     ) -> Remote {
-        Remote { lane, requests, answers, tolerance, refusal: None, failed_at: None }
+        Remote { lane, requests, answers, tolerance, refusal: None }
     }
 
     /// The answer; `None` where the work was cancelled.
     fn ask(&mut self, values: &[f64], points: usize, asked: Asked) -> Option<Simulation> {
         let (lane, tolerance, values) = (self.lane, self.tolerance, values.to_vec());
         self.requests.send(Request { lane, values, points, asked, tolerance }).ok()?;
-        let answer = self.answers.recv().ok()?;
-        self.failed_at = answer.failed_at;
-        Some(answer)
+        self.answers.recv().ok()
     }
 }
 
@@ -84,9 +81,5 @@ impl Simulate for Remote {
 
     fn scale_tolerance(&mut self, factor: f64) {
         self.tolerance = factor;
-    }
-
-    fn failed_at(&self) -> Option<f64> {
-        self.failed_at
     }
 }

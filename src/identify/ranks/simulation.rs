@@ -42,8 +42,6 @@ pub struct Simulation {
     pub refusal: Option<String>,
     /// Why it failed.
     pub failed: Option<Failed>,
-    /// When it failed, in simulated time.
-    pub(crate) failed_at: Option<f64>,
 }
 
 impl Batch<'_> {
@@ -74,8 +72,7 @@ impl Simulation {
 
 /// What is answered where a simulation was cancelled.
 pub(super) fn cancelled() -> Failed {
-    let cause = "the simulation was cancelled".to_owned();
-    Failed { kind: FailureKind::Budget, cause, progress: 0.0 }
+    Failed::new(FailureKind::Budget, "the simulation was cancelled", 0.0)
 }
 
 /// Simulates one individual of a batch.
@@ -96,9 +93,8 @@ pub fn simulate(simulator: &mut dyn Simulate, batch: &Batch<'_>, individual: usi
         }
     }
     let failed = simulator.simulate(values, &mut row).err();
-    let failed_at = simulator.failed_at().filter(|_| failed.is_some());
     if failed.is_some() {
         row.fill(f64::NAN);
     }
-    Simulation { row, refusal, failed, failed_at, ..Simulation::default() }
+    Simulation { row, refusal, failed, ..Simulation::default() }
 }

@@ -7,7 +7,8 @@ use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::ga::Genomes;
 use crate::ga::errors::BAD_POPULATION;
-use crate::identify::{FailedSimulation, Recorder, Simulated, Study};
+use crate::identify::problem::Failed;
+use crate::identify::{Recorder, Simulated, Study};
 use crate::models::simulation::{SimulationOptions, simulate, translated};
 use crate::models::static_curve::DRIVER;
 use crate::source::Span;
@@ -92,17 +93,13 @@ impl Session {
     }
 }
 
-fn nothing_simulated(
-    recorder: &Recorder,
-    consequence: &str,
-    example: Option<&FailedSimulation>,
-) -> Fault {
+fn nothing_simulated(recorder: &Recorder, consequence: &str, example: Option<&Failed>) -> Fault {
     let all = match recorder.observed.failures {
         1 => "the only individual could not be simulated".to_owned(),
         all => format!("none of {all} individuals could be simulated"),
     };
     let most = recorder.observed.main_cause().map(|(cause, count)| {
-        let text = example.map_or_else(|| cause.to_owned(), FailedSimulation::to_string);
+        let text = example.map_or_else(|| cause.to_owned(), Failed::to_string);
         match count {
             1 => format!(": {text}"),
             _ => format!("; {count} times: {text}"),

@@ -2,6 +2,9 @@
 
 use crate::Session;
 use crate::diag::Fault;
+use crate::fault;
+use crate::identify::problem::is_of_another_version;
+use crate::registry::BAD_OPTION;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -53,6 +56,18 @@ pub(super) fn keep_old(session: &mut Session, path: &Path) -> Result<PathBuf, Fa
     // What cannot be removed is written over.
     let _ = session.world.remove(path);
     Ok(old)
+}
+
+/// Why these bytes of a file are not a checkpoint.
+pub(super) fn refused(path: &Path, bytes: &[u8]) -> Fault {
+    let path = path.display();
+    match is_of_another_version(bytes) {
+        true => fault!(
+            BAD_OPTION,
+            "`{path}` is not a checkpoint that this version of gapilib can read: another one wrote it"
+        ),
+        false => fault!(BAD_OPTION, "`{path}` is not a checkpoint"),
+    }
 }
 
 impl Checkpoint {

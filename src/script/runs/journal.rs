@@ -2,80 +2,35 @@
 //! between two of them. A run that resumes executes the script from its beginning; as long as it
 //! asks the same, it is answered from the journal instead of by simulations, and so it comes to
 //! where the earlier run was, with the same bits.
-//!
-//! ```text
-//! file = "GAPISCR2", frame, frame, …   each with its length and its checksum
-//! ```
 
-use super::checkpoint::{Checkpoint, keep_old};
+use super::checkpoint::{Checkpoint, keep_old, refused};
 use super::identification::Request;
 use crate::bail;
 use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
-use crate::identify::problem::{Fingerprint, Origins, first_frame, frame, listed};
-use crate::identify::{FailedSimulation, Simulated};
+use crate::identify::Simulated;
+use crate::identify::problem::{Entry, Fingerprint, Origins, begin, decode, listed};
 use crate::language::execution::Stop;
 use crate::registry::BAD_OPTION;
 use crate::source::SourceId;
 use crate::{Journaling, Session};
-use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::VecDeque;
 
 const FILE: &str = "script.journal";
-const MAGIC: &[u8; 8] = b"GAPISCR2";
 
 /// The journal of this session, and what it still has to answer.
 #[derive(Default)]
 pub(super) struct Journal {
     checkpoint: Option<Checkpoint>,
-    replay: VecDeque<Entry>,
+    replay: VecDeque<Entry<'static>>,
     /// What the entries depend on, as it was noted last.
     noted: Origins,
     /// What the next entry depends on, and how many sources were looked at for it.
     origins: Option<(Origins, u32)>,
     /// Answers taken from the earlier run.
     answered: usize,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-enum Entry {
-    /// `Eval` was asked this and answered that.
-    Simulated { asked: u64, rows: Vec<f64>, failures: Vec<(u32, String, Option<f64>)> },
-    /// The user typed this.
-    Typed(String),
-    /// What the next answers depend on: the Modelica sources read so far, and the program.
-    From(Origins),
-}
-
-/// An entry of a journal, as it is described to the user.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ScriptEntry {
-    /// A call of `Eval`: the number of simulated values, and of individuals that failed.
-    Simulated {
-        /// Values that were simulated.
-        values: usize,
-        /// Individuals that could not be simulated.
-        failures: usize,
-    },
-    /// What the user typed.
-    Typed(String),
-    /// What the next entries depend on.
-    From(Origins),
-}
-
-/// The entries of a journal, and how many bytes at its end are damaged or were not finished; `None` for
-/// another kind of file.
-pub fn read_script_journal(bytes: &[u8]) -> Option<(Vec<ScriptEntry>, usize)> {
-    let (entries, whole) = decode(bytes)?;
-    let described = |entry| match entry {
-        Entry::Simulated { rows, failures, .. } => {
-            ScriptEntry::Simulated { values: rows.len(), failures: failures.len() }
-        }
-        Entry::Typed(line) => ScriptEntry::Typed(line),
-        Entry::From(origins) => ScriptEntry::From(origins),
-    };
-    Some((entries.into_iter().map(described).collect(), bytes.len() - whole))
 }
 
 impl Session {
@@ -106,12 +61,12 @@ impl Session {
                     && rows.len() == genomes.len() * request.question.x.len() =>
             {
                 let mut all = vec![None; genomes.len()];
-                for (k, cause, time) in failures {
+                for (k, failed) in failures {
                     if let Some(place) = all.get_mut(k as usize) {
-                        *place = Some(FailedSimulation { cause, time });
+                        *place = Some(failed);
                     }
                 }
-                Ok(Some(Simulated { rows, failures: all }))
+                Ok(Some(Simulated { rows: rows.into_owned(), failures: all }))
             }
             _ => {
                 self.refuse_to_resume();
@@ -138,16 +93,14 @@ impl Session {
         }
         let origins = self.origins();
         if self.extension::<Journal>().noted != origins {
-            self.note_entry(&Entry::From(origins.clone()), false);
+            self.note_entry(&Entry::From(Cow::Borrowed(&origins)), false);
             self.extension::<Journal>().noted = origins;
         }
         let failed = simulated.failures.iter().enumerate();
-        let failures = failed.filter_map(|(k, failed)| {
-            failed.as_ref().map(|failed| (k as u32, failed.cause.clone(), failed.time))
-        });
+        let failures = failed.filter_map(|(k, failed)| Some((k as u32, failed.clone()?)));
         let entry = Entry::Simulated {
             asked: fingerprint(request, settings, genomes),
-            rows: simulated.rows.clone(),
+            rows: Cow::Borrowed(&simulated.rows),
             failures: failures.collect(),
         };
         self.note_entry(&entry, false);
@@ -155,13 +108,13 @@ impl Session {
 
     /// Notes what the user typed during a pause.
     pub(crate) fn journal_typed(&mut self, line: &str) {
-        self.note_entry(&Entry::Typed(line.to_owned()), true);
+        self.note_entry(&Entry::Typed(Cow::Borrowed(line)), true);
     }
 
     /// What the user typed here in the run that is resumed.
     pub(crate) fn typed_before(&mut self) -> Option<String> {
         match self.extension::<Journal>().replay.pop_front()? {
-            Entry::Typed(line) => Some(line),
+            Entry::Typed(line) => Some(line.into_owned()),
             other => {
                 self.extension::<Journal>().replay.push_front(other);
                 None
@@ -192,7 +145,7 @@ impl Session {
     /// The next answers of the earlier run depend on what this run depends on.
     fn compare_origins(&mut self) -> Result<(), Failure> {
         while let Some(Entry::From(before)) = self.extension::<Journal>().replay.front() {
-            let before = before.clone();
+            let before = before.as_ref().clone();
             self.extension::<Journal>().replay.pop_front();
             let changed = self.origins().changed_since(&before);
             if !changed.is_empty() {
@@ -219,16 +172,14 @@ impl Session {
     pub(crate) fn is_to_be_checked(&mut self) -> bool {
         let journal = self.extension::<Journal>();
         journal.answered += 1;
-        let is_answer = |entry: &Entry| matches!(entry, Entry::Simulated { .. });
+        let is_answer = |entry: &Entry<'_>| matches!(entry, Entry::Simulated { .. });
         journal.answered == 1 || !journal.replay.iter().any(is_answer)
     }
 
-    fn note_entry(&mut self, entry: &Entry, at_once: bool) {
+    fn note_entry(&mut self, entry: &Entry<'_>, at_once: bool) {
         let Some(mut checkpoint) = self.extension::<Journal>().checkpoint.take() else { return };
         let now = self.world.monotonic_seconds();
-        // Numbers and strings only.
-        let payload = postcard::to_allocvec(entry).unwrap_or_default();
-        checkpoint.note(self, &frame(&payload), now);
+        checkpoint.note(self, &entry.to_bytes(), now);
         if at_once {
             checkpoint.flush(self, now);
         }
@@ -242,15 +193,15 @@ impl Session {
         let exists = self.world.exists(&path);
         if exists && resumes {
             let old = self.read_bytes(&path)?;
-            let Some((entries, whole)) = decode(&old) else {
-                bail!(BAD_OPTION, "`{}` is not a checkpoint of a \
-                                   script", path.display(); help: "start again without `--resume`")
+            let Some(journal) = decode(&old) else {
+                let refused = refused(&path, &old);
+                return Err(refused.help("start again without `--resume`").into());
             };
-            let generations =
-                entries.iter().filter(|entry| matches!(entry, Entry::Simulated { .. })).count();
-            self.extension::<Journal>().replay = entries.into();
-            self.write_safely(&path, &old[..whole])?;
-            checkpoint = checkpoint.after(old[..whole].to_vec());
+            let is_answer = |entry: &&Entry<'_>| matches!(entry, Entry::Simulated { .. });
+            let generations = journal.entries.iter().filter(is_answer).count();
+            self.extension::<Journal>().replay = journal.entries.into();
+            self.write_safely(&path, &old[..journal.whole])?;
+            checkpoint = checkpoint.after(old[..journal.whole].to_vec());
             self.world.eprint(&format!(
                 "resumed: {generations} calls of Eval are replayed from `{}`\n",
                 path.display()
@@ -265,7 +216,7 @@ impl Session {
                 );
                 self.world.eprint(&text);
             }
-            checkpoint.begin(MAGIC);
+            checkpoint.begin(&begin());
         }
         self.extension::<Journal>().checkpoint = Some(checkpoint);
         self.at_end(close);
@@ -289,18 +240,6 @@ fn close(session: &mut Session) -> Result<(), Diagnostic> {
         let _ = session.world.remove(checkpoint.path());
     }
     Ok(())
-}
-
-/// The entries that are whole, and the bytes that they take; `None` for another kind of file.
-fn decode(bytes: &[u8]) -> Option<(Vec<Entry>, usize)> {
-    let mut rest = bytes.strip_prefix(MAGIC)?;
-    let mut entries = Vec::new();
-    while let Some((payload, others)) = first_frame(rest) {
-        let Ok(entry) = postcard::from_bytes(payload) else { break };
-        entries.push(entry);
-        rest = others;
-    }
-    Some((entries, bytes.len() - rest.len()))
 }
 
 fn fingerprint(request: &Request, settings: &str, genomes: &Genomes) -> u64 {

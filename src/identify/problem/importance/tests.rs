@@ -11,7 +11,7 @@ impl<F: Fn(&[f64]) -> f64 + Send> Simulate for Formula<F> {
         let value = (self.0)(parameters);
         if !value.is_finite() {
             let cause = "not finite".to_owned();
-            return Err(Failed { kind: FailureKind::Points, cause, progress: 1.0 });
+            return Err(Failed::new(FailureKind::Points, cause, 1.0));
         }
         out.fill(value);
         Ok(())

@@ -220,11 +220,8 @@ impl Shared {
         for constraint in &self.constraints {
             let violation = constraint.violation(parameters);
             if violation > 0.0 {
-                return Err(Failed {
-                    kind: FailureKind::Model,
-                    cause: format!("the constraint `{}` does not hold", constraint.text),
-                    progress: 0.5 / (1.0 + violation),
-                });
+                let cause = format!("the constraint `{}` does not hold", constraint.text);
+                return Err(Failed::new(FailureKind::Model, cause, 0.5 / (1.0 + violation)));
             }
         }
         Ok(())
@@ -234,11 +231,8 @@ impl Shared {
         for range in &self.logarithmic {
             for value in &mut out[range.clone()] {
                 if *value <= 0.0 {
-                    return Err(Failed {
-                        kind: FailureKind::Points,
-                        cause: "a simulated value of log-normal data is not positive".to_owned(),
-                        progress: 1.0,
-                    });
+                    let cause = "a simulated value of log-normal data is not positive";
+                    return Err(Failed::new(FailureKind::Points, cause, 1.0));
                 }
                 *value = elementary::ln(*value);
             }
@@ -309,10 +303,6 @@ impl Simulate for Adjusted {
 
     fn scale_tolerance(&mut self, factor: f64) {
         self.inner.scale_tolerance(factor);
-    }
-
-    fn failed_at(&self) -> Option<f64> {
-        self.inner.failed_at()
     }
 
     fn portable(&self) -> Result<Portable, String> {

@@ -464,10 +464,11 @@ fn open(
         _ => None,
     };
     if let Some(old) = known {
-        let Some(journal) = solving::decode(&old) else {
-            bail!(BAD_OPTION, "`{}` is not a checkpoint", path.display(); help: "start again with `--fresh`")
+        let journal = solving::decode(&old).filter(|journal| journal.origins().is_some());
+        let Some(journal) = journal else {
+            return Err(checkpoint::refused(path, &old).help("start again with `--fresh`"));
         };
-        let changed = origins.changed_since(&journal.origins);
+        let changed = journal.origins().map_or_else(Vec::new, |old| origins.changed_since(old));
         if !changed.is_empty() {
             bail!(
                 BAD_OPTION,
@@ -476,8 +477,9 @@ fn open(
                 help: "undo the changes, or start again with `--fresh`"
             );
         }
-        run.resume(&journal.records)?;
-        let lost = match journal.lost {
+        let (whole, lost) = (journal.whole, journal.lost);
+        run.resume(&journal.records())?;
+        let lost = match lost {
             0 => String::new(),
             lost => format!("; {lost} damaged or incomplete bytes at its end are recomputed"),
         };
@@ -487,7 +489,7 @@ fn open(
             run.evaluations()
         );
         session.print(&text);
-        bytes = old[..journal.whole].to_vec();
+        bytes = old[..whole].to_vec();
     }
     if exists && !options.resume {
         keep_old(session, path)?;

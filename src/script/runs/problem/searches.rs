@@ -170,7 +170,7 @@ fn go_to_best(
     run.evaluation.parts = std::mem::take(&mut searched.run.evaluation.parts);
     let journal = decode(journal);
     let journal = journal.ok_or_else(|| fault!(BAD_OPTION, "the journal of a search is lost"))?;
-    run.resume(&journal.records)?;
+    run.resume(&journal.records())?;
     let reason = run.stop().unwrap_or_else(|| "the search ended".to_owned());
     searched.run = run;
     searched.ending = Ending { reason, is_interrupted: false };

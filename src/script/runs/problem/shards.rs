@@ -6,7 +6,7 @@ use crate::Session;
 use crate::access::policy::Grant;
 use crate::diag::Fault;
 use crate::identify::problem::{
-    Origins, Parts, Run, Shard, ShardFile, decode, listed, missing_shards, without_times,
+    Journal, Origins, Parts, Run, Shard, ShardFile, decode, listed, missing_shards, without_times,
 };
 use crate::registry::BAD_OPTION;
 use crate::{bail, fault};
@@ -139,7 +139,7 @@ fn agreeing(
     let Some((first_path, first)) = before.first() else { return Ok(file) };
     let changed = file.origins.changed_since(&first.origins);
     let records = |file: &ShardFile| {
-        let records = decode(&file.journal).map(|journal| journal.records).unwrap_or_default();
+        let records = decode(&file.journal).map(Journal::records).unwrap_or_default();
         records.into_iter().map(|record| (record.asked, record.answered)).collect::<Vec<_>>()
     };
     let differs = if !changed.is_empty() {
