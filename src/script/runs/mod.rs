@@ -7,6 +7,7 @@ mod changing;
 pub(crate) mod checkpoint;
 pub(crate) mod identification;
 pub mod journal;
+mod pause;
 pub mod problem;
 pub(crate) mod refinement;
 mod reseeding;

@@ -2,12 +2,14 @@
 //! type between two of them.
 
 use super::changing;
+use super::pause::reason;
 use super::view::{Drawn, Fitted, Progress, Spread, View};
 use crate::Session;
 use crate::builtins::Failure;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
 use crate::identify::{Compared, Quantity, Recorder, Study};
+use std::ops::ControlFlow;
 
 const HELP: &str = "\
 Paused. Type script statements, such as F_Mut := 0.3; they take effect from this generation on. \
@@ -55,22 +57,20 @@ impl Session {
                 .eprint("`Eval` is called in a function, whose variables cannot be changed\n");
             return Ok(());
         }
-        self.world.begin_pause(HELP);
-        while let Some(line) = self.world.ask(PROMPT).filter(|line| !line.trim().is_empty()) {
-            match self.typed(&line) {
+        self.pause_search([HELP, PROMPT], &mut |session, line| {
+            match session.typed(line) {
                 Ok(()) => {
-                    self.journal_typed(&line);
-                    self.world.changed(&line, Ok(()));
+                    session.journal_typed(line);
+                    Ok(ControlFlow::Continue(()))
                 }
                 // The run continues as it was.
                 Err(refused) => {
-                    let reason = std::iter::once(&refused.message).chain(&refused.helps);
-                    let reason: Vec<&str> = reason.map(String::as_str).collect();
-                    self.world.changed(&line, Err(&reason.join("; ")));
-                    self.report(refused.warning());
+                    let reason = reason(&refused.message, &refused.helps);
+                    session.report(refused.warning());
+                    Err(reason)
                 }
             }
-        }
+        });
         Ok(())
     }
 

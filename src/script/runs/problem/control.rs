@@ -6,6 +6,7 @@
 
 use crate::Session;
 use crate::identify::problem::Run;
+use crate::runs::pause::reason;
 use crate::world::Stamp;
 use indexmap::IndexMap;
 use std::path::PathBuf;
@@ -43,20 +44,29 @@ impl Watched {
             if self.known.get(&setting) == Some(&value) {
                 continue;
             }
-            change(session, run, &setting, value);
+            // What is refused has been reported.
+            let _ = change(session, run, &setting, value);
             self.known.insert(setting, value);
         }
     }
 }
 
 /// Changes one setting; what cannot be is reported and left.
-pub(super) fn change(session: &mut Session, run: &mut Run, setting: &str, value: f64) {
-    match run.change(setting, value) {
+///
+/// # Errors
+///
+/// Why it cannot be changed.
+pub(super) fn change(
+    session: &mut Session,
+    run: &mut Run,
+    setting: &str,
+    value: f64,
+) -> Result<(), String> {
+    let changed = run.change(setting, value).map_err(|fault| reason(&fault.message, &fault.helps));
+    match &changed {
         Ok(()) => session
             .print(&format!("{setting} = {value} from generation {} on\n", run.generations() + 1)),
-        Err(fault) => {
-            let help = fault.helps.iter().map(|help| format!("; {help}")).collect::<String>();
-            session.world.eprint(&format!("warning: {}{help}\n", fault.message));
-        }
+        Err(reason) => session.world.eprint(&format!("warning: {reason}\n")),
     }
+    changed
 }

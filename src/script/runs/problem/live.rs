@@ -5,6 +5,7 @@ use crate::identify::Quantity;
 use crate::identify::problem::Free;
 use crate::identify::problem::Run;
 use crate::runs::view::{Drawn, Fitted, Progress, Spread};
+use std::ops::ControlFlow;
 
 /// What a pause explains.
 const HELP: &str = "\
@@ -70,24 +71,20 @@ fn progress(run: &Run) -> Progress {
 
 /// Carries out what the user types during a pause. Whether the run shall end.
 pub(super) fn pause(session: &mut Session, run: &mut Run) -> bool {
-    session.world.eprint(HELP);
-    while let Some(line) = session.world.ask(PROMPT) {
-        match line.trim() {
-            "" => return false,
-            "stop" | "quit" | "end" => return true,
-            line => change(session, run, line),
-        }
-    }
-    false
+    session.pause_search([HELP, PROMPT], &mut |session, line| match line.trim() {
+        "stop" | "quit" | "end" => Ok(ControlFlow::Break(())),
+        line => change(session, run, line).map(ControlFlow::Continue),
+    })
 }
 
-fn change(session: &mut Session, run: &mut Run, line: &str) {
+fn change(session: &mut Session, run: &mut Run, line: &str) -> Result<(), String> {
     let pair = line.trim_end_matches(';').split_once('=');
     let pair = pair.map(|(name, value)| (name.trim().trim_end_matches(':'), value.trim()));
     let Some((setting, Ok(value))) = pair.map(|(name, value)| (name.trim(), value.parse::<f64>()))
     else {
-        session.world.eprint("expected NAME = NUMBER\n");
-        return;
+        let reason = "expected NAME = NUMBER";
+        session.world.eprint(&format!("{reason}\n"));
+        return Err(reason.to_owned());
     };
-    super::control::change(session, run, setting, value);
+    super::control::change(session, run, setting, value)
 }

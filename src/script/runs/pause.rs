@@ -1,0 +1,32 @@
+//! Pauses of a search: between two generations the user changes it, line by line.
+
+use crate::Session;
+use std::ops::ControlFlow;
+
+/// What became of a line: the search goes on or ends; or why the line was refused.
+pub(super) type Taken = Result<ControlFlow<()>, String>;
+
+impl Session {
+    /// Lets the user change a search until he types an empty line; whether the search is to end.
+    pub(super) fn pause_search(
+        &mut self,
+        [help, prompt]: [&str; 2],
+        take: &mut dyn FnMut(&mut Session, &str) -> Taken,
+    ) -> bool {
+        self.world.begin_pause(help);
+        while let Some(line) = self.world.ask(prompt).filter(|line| !line.trim().is_empty()) {
+            match take(self, &line) {
+                Ok(ControlFlow::Continue(())) => self.world.changed(&line, Ok(())),
+                Ok(ControlFlow::Break(())) => return true,
+                Err(reason) => self.world.changed(&line, Err(&reason)),
+            }
+        }
+        false
+    }
+}
+
+/// Why a change was refused, and what to do.
+pub(super) fn reason(message: &str, helps: &[String]) -> String {
+    let all: Vec<&str> = std::iter::once(message).chain(helps.iter().map(String::as_str)).collect();
+    all.join("; ")
+}
