@@ -17,7 +17,7 @@ fn genomes(values: &[f64]) -> Genomes {
 }
 
 fn simulate(x_name: &str, x: &[f64]) -> Vec<f64> {
-    let mut evaluator = Evaluator::new(Arc::new(Decay), question(x_name, x), 1).unwrap();
+    let evaluator = Evaluator::new(Arc::new(Decay), question(x_name, x), 1).unwrap();
     evaluator.evaluate(&genomes(&[0.7, 3.0])).unwrap().rows
 }
 
@@ -46,14 +46,14 @@ fn points_over_a_simulated_variable_are_interpolated() {
     };
     let found = simulate("s", &x[1..]);
     assert_close(&found, |k| 3.0 * (-0.7 * time_of(x[k + 1])).exp(), 1e-4);
-    let mut evaluator = Evaluator::new(Arc::new(Decay), question("s", &[9.0]), 1).unwrap();
+    let evaluator = Evaluator::new(Arc::new(Decay), question("s", &[9.0]), 1).unwrap();
     let failed = evaluator.evaluate(&genomes(&[0.7, 3.0])).unwrap();
     assert!(failed.messages()[0].contains("`s` = 9"), "{:?}", failed.failures);
 }
 
 #[test]
 fn a_failed_individual_does_not_disturb_the_others() {
-    let mut evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
+    let evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
     let simulated = evaluator.evaluate(&genomes(&[1.0, 2.0, 11.0, 2.0, 1.0, 4.0])).unwrap();
     assert!(simulated.rows[2].is_nan() && simulated.rows[3].is_nan());
     let messages = simulated.messages();
@@ -66,7 +66,7 @@ fn a_failed_individual_does_not_disturb_the_others() {
 fn threads_do_not_change_a_bit() {
     let values: Vec<f64> = (0..80).map(|k| 0.1 + 0.137 * f64::from(k)).collect();
     let all = |threads| {
-        let mut evaluator =
+        let evaluator =
             Evaluator::new(Arc::new(Decay), question("i", &[0.5, 1.5]), threads).unwrap();
         let simulated = evaluator.evaluate(&genomes(&values)).unwrap();
         let bits: Vec<u64> = simulated.rows.iter().map(|value| value.to_bits()).collect();
@@ -95,7 +95,7 @@ fn wrong_questions_are_refused() {
 
 #[test]
 fn wrong_populations_are_refused() {
-    let mut evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
+    let evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
     let three = Genomes::new(3, vec![1.0; 3]).unwrap();
     assert_eq!(evaluator.evaluate(&three).unwrap_err().code, SIZE_MISMATCH);
     let fault = evaluator.evaluate(&genomes(&[1.0, 2.0, 1.0, 101.0])).unwrap_err();

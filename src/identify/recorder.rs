@@ -257,12 +257,12 @@ impl Recorder {
 
     fn end_generation(&mut self, individuals: &[Vec<f64>], fitness: &[f64], sorted: bool) {
         self.generation_size = fitness.len();
+        let mut observed = std::mem::take(&mut self.observed);
         let mut comparison = None;
         let counts = |k: usize| {
             comparison = self.comparison_of(k, individuals, fitness, sorted);
             comparison.is_some()
         };
-        let mut observed = std::mem::take(&mut self.observed);
         if observed.generation(fitness, |k| individuals[k].clone(), counts) {
             self.comparison = comparison;
         }

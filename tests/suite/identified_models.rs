@@ -37,7 +37,7 @@ fn question(x: &[f64]) -> Question {
 fn polarization_curve_is_the_formula_at_exactly_the_measured_currents() {
     let model = polarization_curve("CaseStudies.PolarizationCurve(i_max = 1.46)");
     let x = [0.0, 0.0325, 0.107, 1.46];
-    let mut evaluator = Evaluator::new(std::sync::Arc::new(model), question(&x), 2).unwrap();
+    let evaluator = Evaluator::new(std::sync::Arc::new(model), question(&x), 2).unwrap();
     let names: Vec<&str> = evaluator.study().parameters.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["A", "In", "Io", "B", "R", "Ilim"]);
     assert_eq!(evaluator.study().y.unit, "V");

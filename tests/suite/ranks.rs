@@ -157,7 +157,7 @@ fn ball() -> (Arc<CompiledModel>, Question, Genomes) {
 /// Rows with their bits, and the causes of failures.
 fn answers(processors: &Processors) -> (Vec<u64>, Vec<String>) {
     let (model, question, genomes) = ball();
-    let mut evaluator = Evaluator::on(model, question, processors).unwrap();
+    let evaluator = Evaluator::on(model, question, processors).unwrap();
     assert_eq!(evaluator.alone(), None);
     let simulated = evaluator.evaluate(&genomes).unwrap();
     (simulated.rows.iter().map(|value| value.to_bits()).collect(), simulated.messages())

@@ -201,7 +201,7 @@ impl Run {
     }
 
     fn objective_elsewhere(&self, processors: &Processors) -> Result<(Option<f64>, u64), Fault> {
-        let Some(best) = &self.best else { return Ok((None, 0)) };
+        let Some(best) = &self.observed.best else { return Ok((None, 0)) };
         let mut evaluation = Evaluation::on(&self.problem, processors)?;
         evaluation.reweigh(&self.problem, self.evaluation.weights().to_vec());
         evaluation.cancel_by(self.evaluation.cancel());
@@ -224,7 +224,7 @@ impl Run {
     ///
     /// Those of the method's maker.
     pub(super) fn refit(&mut self) -> Result<bool, Fault> {
-        let Some(best) = &self.best else { return Ok(false) };
+        let Some(best) = &self.observed.best else { return Ok(false) };
         let before = best.fitness;
         let found = match Refit::new(&self.problem, &self.evaluation) {
             Some(mut refit) => {
@@ -236,7 +236,7 @@ impl Run {
         };
         let Ok(simulated) = self.evaluation.simulate(&found) else { return Ok(false) };
         let fitness = self.evaluation.objective(&self.problem, &simulated);
-        self.best = Some(Best { values: found, fitness });
+        self.observed.best = Some(Best { values: found, fitness });
         Ok(fitness < before)
     }
 }
