@@ -1,6 +1,5 @@
 //! A run as it is now: data for drawing it during the run.
 
-use crate::Session;
 use crate::identify::{Quantity, SearchRecord};
 
 /// How far a long piece of work is: data for drawing it.
@@ -70,23 +69,6 @@ pub(super) struct Drawn {
     pub title: String,
     pub spreads: Vec<Spread>,
     pub fitted: Vec<Fitted>,
-}
-
-impl Session {
-    /// Shows how far a search is, and draws it where that is requested; whether it was drawn.
-    pub(super) fn show_search(
-        &mut self,
-        progress: Progress,
-        record: &SearchRecord,
-        drawn: impl FnOnce() -> Drawn,
-    ) -> bool {
-        self.world.progress(&progress);
-        let is_drawn = self.world.wants_view();
-        if is_drawn {
-            self.world.show_view(&View::of(progress, record, drawn()));
-        }
-        is_drawn
-    }
 }
 
 impl Progress {

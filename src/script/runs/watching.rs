@@ -2,7 +2,7 @@
 //! type between two of them.
 
 use super::changing;
-use super::pause::reason;
+use super::interaction::reason;
 use super::view::{Drawn, Fitted, Progress, Spread, View};
 use crate::Session;
 use crate::builtins::Failure;

@@ -6,7 +6,7 @@
 
 use crate::Session;
 use crate::identify::problem::Run;
-use crate::runs::pause::reason;
+use crate::runs::interaction::reason;
 use crate::world::Stamp;
 use indexmap::IndexMap;
 use std::path::PathBuf;

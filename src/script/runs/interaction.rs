@@ -1,12 +1,30 @@
-//! Pauses of a search: between two generations the user changes it, line by line.
+//! What the user sees of a search while it goes on, and how he changes it between two generations:
+//! the same for scripts and for problems.
 
+use super::view::{Drawn, Progress, View};
 use crate::Session;
+use crate::identify::SearchRecord;
 use std::ops::ControlFlow;
 
 /// What became of a line: the search goes on or ends; or why the line was refused.
 pub(super) type Taken = Result<ControlFlow<()>, String>;
 
 impl Session {
+    /// Shows how far a search is, and draws it where that is requested; whether it was drawn.
+    pub(super) fn show_search(
+        &mut self,
+        progress: Progress,
+        record: &SearchRecord,
+        drawn: impl FnOnce() -> Drawn,
+    ) -> bool {
+        self.world.progress(&progress);
+        let is_drawn = self.world.wants_view();
+        if is_drawn {
+            self.world.show_view(&View::of(progress, record, drawn()));
+        }
+        is_drawn
+    }
+
     /// Lets the user change a search until he types an empty line; whether the search is to end.
     pub(super) fn pause_search(
         &mut self,
