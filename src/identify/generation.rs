@@ -1,8 +1,7 @@
 //! The individuals simulated since the last generation ended, experiment by experiment.
 //!
-//! What a script gives to `Fit` is a matrix of numbers. Whose they are is found by their bits: the
-//! rows of an `Eval` are known, and a row with the same bits is the same simulation, whatever order
-//! the script calls in and however it puts its matrices together.
+//! Every individual that `Eval` simulates has a number, which its row carries as a mark to `Fit`,
+//! whatever order the script calls in and however it puts the rows together.
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
@@ -16,8 +15,6 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default)]
 pub struct Generation {
     experiments: Vec<Simulations>,
-    /// Calls of `Eval`.
-    calls: u64,
 }
 
 /// Simulations of one model at the same points.
@@ -27,8 +24,8 @@ struct Simulations {
     x: Vec<f64>,
     genomes: Vec<Vec<f64>>,
     rows: Vec<Vec<f64>>,
-    /// When it was simulated last, as a count of calls.
-    latest: u64,
+    /// The numbers of the individuals, ascending.
+    numbers: Vec<u64>,
     /// The measured values that `Fit` compared with, and which individuals it got.
     ratings: Vec<(Vec<f64>, Vec<bool>)>,
 }
@@ -54,18 +51,24 @@ impl Generation {
         self.experiments.iter().map(|simulations| simulations.genomes.len()).sum()
     }
 
-    /// Adds what `Eval` has simulated.
-    pub fn add(&mut self, study: &Arc<Study>, x: &[f64], genomes: &Genomes, simulated: &Simulated) {
+    /// Adds what `Eval` has simulated; the individuals have the numbers from `first` on.
+    pub fn add(
+        &mut self,
+        (study, x): (&Arc<Study>, &[f64]),
+        genomes: &Genomes,
+        simulated: &Simulated,
+        first: u64,
+    ) {
         let known = self.experiments.iter().position(|known| known.is_of(study, x));
         let place = known.unwrap_or_else(|| {
             let (study, x) = (study.clone(), x.to_vec());
-            let (genomes, rows, ratings) = (Vec::new(), Vec::new(), Vec::new());
-            self.experiments.push(Simulations { study, x, genomes, rows, latest: 0, ratings });
+            let (genomes, rows) = (Vec::new(), Vec::new());
+            let (numbers, ratings) = (Vec::new(), Vec::new());
+            self.experiments.push(Simulations { study, x, genomes, rows, numbers, ratings });
             self.experiments.len() - 1
         });
-        self.calls += 1;
         let own = &mut self.experiments[place];
-        own.latest = self.calls;
+        own.numbers.extend((first..).take(genomes.len()));
         own.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
         own.rows.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
         let count = own.genomes.len();
@@ -82,27 +85,15 @@ impl Generation {
         }
     }
 
-    /// `Fit` has compared these rows with `measured`. They belong to the experiment that has all of
-    /// them, the one simulated last if several have (as where all simulations have failed); rows of
-    /// several experiments belong to the last that has each.
-    pub fn rate(&mut self, rows: &[f64], measured: &[f64]) {
-        let wanted: Vec<&[f64]> = rows.chunks_exact(measured.len().max(1)).collect();
-        let of_size = |own: &Simulations| own.x.len() == measured.len();
-        let mut found: Vec<(usize, Vec<Vec<usize>>)> = (0..self.experiments.len())
-            .filter(|&k| of_size(&self.experiments[k]))
-            .map(|k| (k, self.experiments[k].find(&wanted)))
-            .collect();
-        found.sort_by_key(|(k, _)| std::cmp::Reverse(self.experiments[*k].latest));
-        let has_all =
-            |(_, places): &&(usize, Vec<Vec<usize>>)| places.iter().all(|p| !p.is_empty());
-        let all: Vec<&(usize, Vec<Vec<usize>>)> = found.iter().filter(has_all).collect();
-        let open = all.iter().find(|(k, _)| !self.experiments[*k].is_rated());
-        if let Some((k, places)) = open.or(all.first()) {
-            return self.experiments[*k].note_rated(measured, &places.concat());
-        }
-        for row in 0..wanted.len() {
-            if let Some((k, places)) = found.iter().find(|(_, places)| !places[row].is_empty()) {
-                self.experiments[*k].note_rated(measured, &places[row]);
+    /// `Fit` has compared the individuals with these numbers with `measured`.
+    pub fn rate(&mut self, numbers: impl Iterator<Item = u64>, measured: &[f64]) {
+        for number in numbers {
+            let found = self.experiments.iter_mut().find_map(|own| {
+                let place = own.numbers.binary_search(&number).ok()?;
+                Some((own, place))
+            });
+            if let Some((own, place)) = found {
+                own.note_rated(measured, place);
             }
         }
     }
@@ -236,39 +227,26 @@ impl Simulations {
         !self.genomes.is_empty() && (0..self.genomes.len()).all(rated)
     }
 
-    /// The individuals with the bits of each of these rows.
-    fn find(&self, wanted: &[&[f64]]) -> Vec<Vec<usize>> {
-        let mut places: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
-        for (place, row) in self.rows.iter().enumerate() {
-            places.entry(key(row)).or_default().push(place);
-        }
-        let same = |row: &&[f64]| {
-            let places = places.get(&key(row)).into_iter().flatten().copied();
-            places.filter(|&place| same_bits(&self.rows[place], row)).collect()
-        };
-        wanted.iter().map(same).collect()
-    }
-
-    fn note_rated(&mut self, measured: &[f64], places: &[usize]) {
+    fn note_rated(&mut self, measured: &[f64], place: usize) {
         let count = self.genomes.len();
         let known = self.ratings.iter().position(|(known, _)| known == measured);
         let rating = known.unwrap_or_else(|| {
             self.ratings.push((measured.to_vec(), vec![false; count]));
             self.ratings.len() - 1
         });
-        places.iter().for_each(|&place| self.ratings[rating].1[place] = true);
+        self.ratings[rating].1[place] = true;
     }
 
     fn append(&mut self, more: &mut Simulations) {
         let first = self.genomes.len();
         self.genomes.append(&mut more.genomes);
         self.rows.append(&mut more.rows);
+        self.numbers.append(&mut more.numbers);
         let count = self.genomes.len();
         self.ratings.iter_mut().for_each(|(_, rated)| rated.resize(count, false));
         for (measured, rated) in &more.ratings {
             let places = rated.iter().enumerate().filter(|(_, rated)| **rated);
-            let places: Vec<usize> = places.map(|(place, _)| first + place).collect();
-            self.note_rated(measured, &places);
+            places.for_each(|(place, _)| self.note_rated(measured, first + place));
         }
     }
 
@@ -286,8 +264,4 @@ pub fn key(values: &[f64]) -> u64 {
     let mut hasher = FxHasher::default();
     values.iter().for_each(|value| hasher.write_u64(value.to_bits()));
     hasher.finish()
-}
-
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }

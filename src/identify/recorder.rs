@@ -56,13 +56,15 @@ pub struct Recorder {
     pub spanned: Option<(Vec<f64>, Vec<f64>)>,
     /// Number of simulations.
     pub evaluations: u64,
-    /// What the user changed while the run went on, and from which generation on.
+    /// What the user changed during the run, and from which generation on.
     pub changes: Vec<(usize, String)>,
     /// Whether operators of the genetic algorithm make one generation of the other; a script without
     /// them evaluates individuals that it chooses in another way.
     pub evolves: bool,
     measurements: Vec<Measurement>,
     seeds: Seeds,
+    /// Individuals simulated in this run and those before it.
+    numbered: u64,
     /// Individuals of the generation that ended last.
     generation_size: usize,
     sorted_by_fit_order: bool,
@@ -98,7 +100,8 @@ impl Recorder {
 
     /// Begins to record another run and returns the one before, finished.
     pub fn begin_next(&mut self) -> Recorder {
-        let next = Recorder { seeds: self.seeds.of_next_run(), ..Recorder::default() };
+        let (seeds, numbered) = (self.seeds.of_next_run(), self.numbered);
+        let next = Recorder { seeds, numbered, ..Recorder::default() };
         let mut before = std::mem::replace(self, next);
         before.finish();
         before
@@ -109,14 +112,14 @@ impl Recorder {
         self.ranges = Some((minima.to_vec(), maxima.to_vec()));
     }
 
-    /// `Eval` has simulated `genomes`.
+    /// `Eval` has simulated `genomes`; returns the number of the first, from which the others count.
     pub fn evaluated(
         &mut self,
         study: &Arc<Study>,
         x: &[f64],
         genomes: &Genomes,
         simulated: &Simulated,
-    ) {
+    ) -> u64 {
         let ends = !self.sorted_by_fit_order
             && self.pending.is_rated()
             && self.pending.has_rated(study, x);
@@ -133,13 +136,16 @@ impl Recorder {
             self.observed.failed(&failure.cause);
         }
         self.span(genomes);
-        self.pending.add(study, x, genomes, simulated);
+        let first = self.numbered + 1;
+        self.numbered += genomes.len() as u64;
+        self.pending.add((study, x), genomes, simulated, first);
+        first
     }
 
-    /// `Fit` has compared `rows`, those of some individuals one after the other, with `measured`.
-    /// Rows that no `Eval` has given, and those of generations that have ended, are none of ours.
-    pub fn rated(&mut self, rows: &[f64], measured: &[f64]) {
-        self.pending.rate(rows, measured);
+    /// `Fit` has compared the individuals with these numbers with `measured`. Those of generations
+    /// that have ended are none of ours.
+    pub fn rated(&mut self, numbers: impl IntoIterator<Item = u64>, measured: &[f64]) {
+        self.pending.rate(numbers.into_iter(), measured);
     }
 
     /// What is counted: generations, or evaluations where nothing evolves. Which of them it is shows
@@ -339,8 +345,8 @@ mod tests {
         let population = genomes(&[3.0, 1.0, 9.0]);
         let rows = simulated(&[3.0, 1.0, f64::NAN]);
         for _ in 0..2 {
-            recorder.evaluated(&study(), &[0.0], &population, &rows);
-            recorder.rated(&rows.rows, &[0.0]);
+            let first = recorder.evaluated(&study(), &[0.0], &population, &rows);
+            recorder.rated(first..first + 3, &[0.0]);
             recorder.ordered(&population, &[9.0, 1.0, 1e60]);
         }
         recorder.finish();
@@ -360,8 +366,9 @@ mod tests {
         for generation in 0..2 {
             for k in 0..3 {
                 let value = [f64::from(3 - k - generation)];
-                recorder.evaluated(&study(), &[0.0], &genomes(&value), &simulated(&value));
-                recorder.rated(&value, &[0.0]);
+                let one =
+                    recorder.evaluated(&study(), &[0.0], &genomes(&value), &simulated(&value));
+                recorder.rated([one], &[0.0]);
             }
             let population = genomes(&[3, 2, 1].map(|value| f64::from(value - generation)));
             recorder.ordered(&population, population.values());
@@ -387,7 +394,7 @@ mod tests {
 
     /// Two populations are simulated before either is compared, and compared the other way round.
     #[test]
-    fn genes_belong_to_the_rows_that_fit_was_given() {
+    fn genes_belong_to_the_individuals_that_fit_was_given() {
         let mut recorder = Recorder::default();
         recorder.evaluated(&study(), &[0.0], &genomes(&[1.1]), &simulated(&[1.1]));
         recorder.evaluated(
@@ -396,29 +403,46 @@ mod tests {
             &genomes(&[2.0, 3.0, 4.0]),
             &simulated(&[2.0, 3.0, 4.0]),
         );
-        recorder.rated(&[2.0, 3.0, 4.0], &[3.0]);
+        recorder.rated(2..=4, &[3.0]);
         assert!(recorder.observed.history.generations.is_empty());
-        recorder.rated(&[1.1], &[3.0]);
+        recorder.rated([1], &[3.0]);
         recorder.finish();
         let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (3.0, 0.0, 3.0));
         assert_eq!(recorder.observed.history.generations.len(), 1);
     }
 
-    /// Some rows of an `Eval`, and rows of several put together, are known as well.
+    /// Some individuals of an `Eval`, and those of several put together, are known as well.
     #[test]
-    fn rows_are_known_wherever_they_stand() {
+    fn individuals_are_known_wherever_they_stand() {
         let mut recorder = Recorder::default();
         recorder.evaluated(&study(), &[0.0], &genomes(&[1.0, 2.0]), &simulated(&[1.0, 2.0]));
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[5.0]));
-        recorder.rated(&[5.0, 2.0], &[4.0]);
+        recorder.rated([3, 2], &[4.0]);
         assert!(!recorder.pending.is_rated(), "one of three was not compared");
-        recorder.rated(&[17.0], &[4.0]);
-        assert!(!recorder.pending.is_rated(), "that row is not known");
-        recorder.rated(&[1.0], &[4.0]);
+        recorder.rated([17], &[4.0]);
+        assert!(!recorder.pending.is_rated(), "that individual is not known");
+        recorder.rated([1], &[4.0]);
         recorder.finish();
         let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (5.0, 1.0));
+    }
+
+    /// Rows without any digit of their own: whose they are, their numbers say.
+    #[test]
+    fn failed_individuals_belong_to_their_experiment() {
+        let mut recorder = Recorder::default();
+        let failed = simulated(&[f64::NAN, f64::NAN]);
+        let first = recorder.evaluated(&study(), &[0.0], &genomes(&[1.0, 2.0]), &failed);
+        let other = recorder.evaluated(&second(), &[0.0], &genomes(&[1.0, 2.0]), &failed);
+        recorder.rated([first, first + 1], &[4.0]);
+        assert!(!recorder.pending.is_rated(), "the other experiment was not compared");
+        recorder.rated([other, other + 1], &[4.0]);
+        assert!(recorder.pending.is_rated());
+        let before = recorder.begin_next();
+        assert_eq!(before.numbered, 4);
+        let later = recorder.evaluated(&study(), &[0.0], &genomes(&[1.0]), &simulated(&[1.0]));
+        assert_eq!(later, 5, "no number comes twice");
     }
 
     fn second() -> Arc<Study> {
@@ -432,10 +456,11 @@ mod tests {
             let genes: Vec<f64> =
                 [1.0, 2.0, 3.0, 4.0, 5.0].map(|g| g + f64::from(generation)).into();
             let (first, other): (Vec<f64>, Vec<f64>) = genes.iter().map(|g| (*g, 2.0 * g)).unzip();
-            recorder.evaluated(&study(), &[0.0], &genomes(&genes), &simulated(&first));
-            recorder.rated(&first, &[4.0]);
-            recorder.evaluated(&second(), &[0.0], &genomes(&genes), &simulated(&other));
-            recorder.rated(&other, &[9.0]);
+            let all = |first: u64| first..first + 5;
+            let own = recorder.evaluated(&study(), &[0.0], &genomes(&genes), &simulated(&first));
+            recorder.rated(all(own), &[4.0]);
+            let own = recorder.evaluated(&second(), &[0.0], &genomes(&genes), &simulated(&other));
+            recorder.rated(all(own), &[9.0]);
             let sums = genes.iter().map(|g| total((g - 4.0).powi(2), (2.0 * g - 9.0).powi(2)));
             recorder.ordered(&genomes(&genes), &sums.collect::<Vec<f64>>());
         }
@@ -468,10 +493,10 @@ mod tests {
     fn a_check_with_other_data_is_no_generation() {
         let mut recorder = Recorder::default();
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
-        recorder.rated(&[3.0], &[0.0]);
+        recorder.rated([1], &[0.0]);
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
         recorder.evaluated(&study(), &[1.0], &genomes(&[5.0]), &simulated(&[3.0]));
-        recorder.rated(&[3.0], &[3.0]);
+        recorder.rated([2], &[3.0]);
         recorder.finish();
         assert_eq!(recorder.observed.history.generations.len(), 1);
         assert_eq!(recorder.best().unwrap().fitness, 9.0);
@@ -482,8 +507,9 @@ mod tests {
     fn own_sorting_ends_a_generation_with_the_next_simulation() {
         let mut recorder = Recorder::default();
         for value in [3.0, 2.0] {
-            recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &simulated(&[value]));
-            recorder.rated(&[value], &[0.0]);
+            let one =
+                recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &simulated(&[value]));
+            recorder.rated([one], &[0.0]);
         }
         assert_eq!(recorder.observed.history.generations.len(), 1);
         recorder.finish();

@@ -78,8 +78,9 @@ const GONE_FROM_SOURCES: &[Word] = &[
     ("somebody", "another user, another program, the caller", 1),
     ("whoever", "the user, the caller, the host", 0),
     ("want", "request, require, expect", 3),
-    ("wants", "needs, requires, expects", 81),
-    ("wanted", "requested, required, expected, target", 258),
+    ("wants", "needs, requires, expects", 80),
+    ("wanted", "requested, required, expected, target", 250),
+    ("behind", "after, past, following", 15),
 ];
 
 /// Finds string literals, also in the arguments of macros; not those of tests and comments.

@@ -40,7 +40,7 @@ pub(crate) fn to_python<'py>(py: Python<'py>, value: Value) -> PyResult<Bound<'p
 }
 
 fn of_array<'py>(py: Python<'py>, array: ArrayValue) -> PyResult<Bound<'py, PyAny>> {
-    let ArrayValue { dims, elements } = array;
+    let ArrayValue { dims, elements, .. } = array;
     match elements {
         Elements::Real(values) => Ok(PyArray1::from_vec(py, values).reshape(dims)?.into_any()),
         Elements::Integer(values) => Ok(PyArray1::from_vec(py, values).reshape(dims)?.into_any()),
@@ -100,7 +100,7 @@ pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if dims.is_empty() {
         return scalar(elements).ok_or_else(|| unknown(value));
     }
-    Ok(Value::Array(ArrayValue { dims, elements }))
+    Ok(Value::Array(ArrayValue::new(dims, elements)))
 }
 
 fn scalar(elements: Elements) -> Option<Value> {

@@ -264,7 +264,7 @@ impl Memory {
             (Elements::Integer(v), true) => Value::Integer(v[0]),
             (Elements::Boolean(v), true) => Value::Boolean(v[0]),
             (Elements::Enumeration(v), true) => Value::Enumeration(v[0].clone()),
-            _ => return Ok(Value::Array(ArrayValue { dims, elements })),
+            _ => return Ok(Value::Array(ArrayValue::new(dims, elements))),
         };
         Ok(scalar)
     }

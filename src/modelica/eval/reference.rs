@@ -319,6 +319,7 @@ impl Evaluator<'_> {
             return Ok(None);
         }
         let offset = array.offset(positions).map_err(|f| named(part.name, f).at(target.span))?;
+        array.unmark(offset);
         match (&mut array.elements, value) {
             (Elements::Real(values), Value::Real(value)) => values[offset] = *value,
             (Elements::Real(values), Value::Integer(value)) => values[offset] = *value as f64,

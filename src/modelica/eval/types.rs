@@ -127,9 +127,9 @@ impl ValueType {
             (ValueType::Record(..), Value::Record(record)) => {
                 self.convert_record(record).map(Value::Record)
             }
-            (_, Value::Array(ArrayValue { dims, elements })) => {
+            (_, Value::Array(ArrayValue { dims, elements, marks })) => {
                 let elements = self.convert_elements(elements)?;
-                Ok(Value::Array(ArrayValue { dims, elements }))
+                Ok(Value::Array(ArrayValue { dims, elements, marks }))
             }
             (_, value) => Err(self.refuse(&value.type_name(), matches!(value, Value::Real(_)))),
         }

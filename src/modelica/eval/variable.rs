@@ -221,14 +221,14 @@ fn all_true(shadow: Value) -> Value {
     };
     match shadow {
         Value::Record(record) => Value::Record(in_record(record)),
-        Value::Array(ArrayValue { dims, elements }) => {
+        Value::Array(ArrayValue { dims, elements, .. }) => {
             let elements = match elements {
                 Elements::Record(records) => {
                     Elements::Record(records.into_iter().map(in_record).collect())
                 }
                 other => Elements::Boolean(vec![true; other.len()]),
             };
-            Value::Array(ArrayValue { dims, elements })
+            Value::Array(ArrayValue::new(dims, elements))
         }
         _ => Value::Boolean(true),
     }
@@ -249,7 +249,7 @@ pub(super) fn shadow_of(value: &Value, assigned: bool) -> Value {
                 }
                 other => Elements::Boolean(vec![assigned; other.len()]),
             };
-            Value::Array(ArrayValue { dims: array.dims.clone(), elements })
+            Value::Array(ArrayValue::new(array.dims.clone(), elements))
         }
         _ => Value::Boolean(assigned),
     }

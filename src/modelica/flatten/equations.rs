@@ -351,7 +351,7 @@ impl Instantiation<'_> {
 
     pub(crate) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
         match self.flat_value(range)? {
-            Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
+            Value::Array(ArrayValue { dims, elements, .. }) if dims.len() == 1 => {
                 Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
             }
             other => {

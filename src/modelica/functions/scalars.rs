@@ -16,12 +16,12 @@ pub(super) fn call(function: FunctionId, arguments: &[Value]) -> Result<Value, F
         [Value::Real(x), Value::Real(y)] => {
             real(function, &[*x, *y]).and_then(|z| typed(function, arguments, z))
         }
-        [Value::Array(ArrayValue { dims, elements: Elements::Real(values) })]
+        [Value::Array(ArrayValue { dims, elements: Elements::Real(values), .. })]
             if function.result != ResultType::Integer =>
         {
             let values = values.iter().map(|x| real(function, &[*x])).collect::<Result<_, _>>()?;
             let elements = Elements::Real(values);
-            Ok(Value::Array(ArrayValue { dims: dims.clone(), elements }))
+            Ok(Value::Array(ArrayValue::new(dims.clone(), elements)))
         }
         _ => each(function.name, arguments, &|scalars: &[Value]| scalar(function, scalars)),
     }

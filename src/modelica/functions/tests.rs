@@ -26,13 +26,13 @@ impl ArgumentShapes for Values<'_> {
 fn integers(dims: &[usize]) -> Value {
     let count: i64 = dims.iter().product::<usize>() as i64;
     let elements = Elements::Integer((1..=count).collect());
-    Value::Array(ArrayValue { dims: dims.to_vec(), elements })
+    Value::Array(ArrayValue::new(dims.to_vec(), elements))
 }
 
 fn real(value: Value) -> Value {
     match value {
-        Value::Array(ArrayValue { dims, elements }) => {
-            Value::Array(ArrayValue { dims, elements: elements.promoted() })
+        Value::Array(ArrayValue { dims, elements, .. }) => {
+            Value::Array(ArrayValue::new(dims, elements.promoted()))
         }
         other => other.promoted(),
     }
@@ -131,7 +131,9 @@ fn values_have_the_types_and_sizes_that_the_rules_say() {
 #[test]
 fn elements_stand_where_the_specification_puts_them() {
     let call = |name: &str, arguments: &[Value]| match super::call(name, arguments).unwrap() {
-        Value::Array(ArrayValue { dims, elements: Elements::Integer(values) }) => (dims, values),
+        Value::Array(ArrayValue { dims, elements: Elements::Integer(values), .. }) => {
+            (dims, values)
+        }
         other => panic!("{}", other.type_name()),
     };
     let turned = call("transpose", &[integers(&[2, 3])]);

@@ -59,7 +59,7 @@ impl Builtin {
         for at in 0..count {
             elements.push(&self.element(plan.element(at), arguments)?)?;
         }
-        Ok(Value::Array(ArrayValue { dims: plan.dims.clone(), elements }))
+        Ok(Value::Array(ArrayValue::new(plan.dims.clone(), elements)))
     }
 
     fn element(&self, element: Element, arguments: &[Value]) -> Result<Value, Fault> {
@@ -109,7 +109,7 @@ fn rearranged(
         Value::Array(array) if dims.is_empty() => Ok(array.elements.get(at(0))),
         Value::Array(array) => {
             let elements = array.elements.gathered((0..count).map(at));
-            Ok(Value::Array(ArrayValue { dims, elements }))
+            Ok(Value::Array(ArrayValue::new(dims, elements)))
         }
         scalar if dims.is_empty() => Ok(scalar.clone()),
         scalar => ArrayValue::filled(dims, scalar).map(Value::Array),

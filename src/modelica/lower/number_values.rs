@@ -56,6 +56,6 @@ pub(super) fn value_of(numbers: &[f64], dims: &[usize], expected: &ValueType) ->
     };
     match dims.is_empty() {
         true => (elements.len() == 1).then(|| elements.get(0)),
-        false => Some(Value::Array(ArrayValue { dims: dims.to_vec(), elements })),
+        false => Some(Value::Array(ArrayValue::new(dims.to_vec(), elements))),
     }
 }

@@ -1,7 +1,7 @@
 //! Arrays (MLS ch. 10): row-major, of one element type, stored unboxed.
 
 use super::errors::{ARRAY_TOO_LARGE, STRING_TOO_LONG, TYPE_MISMATCH};
-use super::{EnumerationValue, RecordValue, Value};
+use super::{EnumerationValue, Marks, RecordValue, Value};
 use crate::budget::has_memory;
 use crate::diag::Fault;
 use crate::{bail, fault};
@@ -17,6 +17,8 @@ pub struct ArrayValue {
     pub dims: Vec<usize>,
     /// The elements, last dimension fastest.
     pub elements: Elements,
+    /// What a host knows its rows by.
+    pub marks: Marks,
 }
 
 /// The elements of an array, all of one type.
@@ -65,22 +67,38 @@ macro_rules! map_elements {
 }
 
 impl ArrayValue {
+    /// An array of these sizes, whose product is the number of elements.
+    pub fn new(dims: Vec<usize>, elements: Elements) -> ArrayValue {
+        ArrayValue { dims, elements, marks: Marks::default() }
+    }
+
+    /// Number of rows, which are vectors along the last dimension, and their size.
+    pub(super) fn rows(&self) -> (usize, usize) {
+        let size = self.dims.last().copied().unwrap_or(1);
+        (self.elements.len() / size.max(1), size)
+    }
+
+    /// A single element is no longer what it was.
+    pub(crate) fn unmark(&mut self, offset: usize) {
+        self.marks.assign(self.rows(), &[offset], &Marks::default());
+    }
+
     /// A vector.
     pub fn vector(elements: Elements) -> ArrayValue {
-        ArrayValue { dims: vec![elements.len()], elements }
+        ArrayValue::new(vec![elements.len()], elements)
     }
 
     /// A matrix of Reals; `elements` row by row.
     pub fn matrix(rows: usize, columns: usize, elements: Vec<f64>) -> ArrayValue {
         debug_assert_eq!(rows * columns, elements.len());
-        ArrayValue { dims: vec![rows, columns], elements: Elements::Real(elements) }
+        ArrayValue::new(vec![rows, columns], Elements::Real(elements))
     }
 
     /// An array of these sizes with the same value everywhere (MLS §10.3.3 `fill`). `value` is
     /// a scalar or a record.
     pub fn filled(dims: Vec<usize>, value: &Value) -> Result<ArrayValue, Fault> {
         let count = element_count(&dims)?;
-        Ok(ArrayValue { dims, elements: Elements::repeated(value, count)? })
+        Ok(ArrayValue::new(dims, Elements::repeated(value, count)?))
     }
 
     /// Number of dimensions, at least one.

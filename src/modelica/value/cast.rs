@@ -107,8 +107,8 @@ impl Value {
     pub(crate) fn promoted(self) -> Value {
         match self {
             Value::Integer(value) => Value::Real(value as f64),
-            Value::Array(ArrayValue { dims, elements }) => {
-                Value::Array(ArrayValue { dims, elements: elements.promoted() })
+            Value::Array(ArrayValue { dims, elements, marks }) => {
+                Value::Array(ArrayValue { dims, elements: elements.promoted(), marks })
             }
             other => other,
         }
@@ -260,7 +260,7 @@ impl FromValue for Vec<f64> {
 impl FromValue for Vec<i64> {
     fn from_value(value: Value) -> Result<Vec<i64>, Fault> {
         match value {
-            Value::Array(ArrayValue { dims, elements: Elements::Integer(values) })
+            Value::Array(ArrayValue { dims, elements: Elements::Integer(values), .. })
                 if dims.len() == 1 =>
             {
                 Ok(values)
@@ -274,7 +274,7 @@ impl FromValue for Vec<i64> {
 impl FromValue for Vec<bool> {
     fn from_value(value: Value) -> Result<Vec<bool>, Fault> {
         match value {
-            Value::Array(ArrayValue { dims, elements: Elements::Boolean(values) })
+            Value::Array(ArrayValue { dims, elements: Elements::Boolean(values), .. })
                 if dims.len() == 1 =>
             {
                 Ok(values)
@@ -288,7 +288,7 @@ impl FromValue for Vec<bool> {
 impl FromValue for Vec<Arc<str>> {
     fn from_value(value: Value) -> Result<Vec<Arc<str>>, Fault> {
         match value {
-            Value::Array(ArrayValue { dims, elements: Elements::String(values) })
+            Value::Array(ArrayValue { dims, elements: Elements::String(values), .. })
                 if dims.len() == 1 =>
             {
                 Ok(values)

@@ -2,7 +2,7 @@
 
 use super::array::{element_count, sizes};
 use super::errors::{DOMAIN_ERROR, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::{ArrayValue, Elements, Value};
+use super::{ArrayValue, Elements, Marks, Value};
 use crate::diag::Fault;
 use crate::{bail, fault};
 
@@ -17,14 +17,13 @@ pub fn array(values: Vec<Value>) -> Result<Value, Fault> {
 pub fn shaped(dims: &[usize], values: Vec<Value>) -> Result<Value, Fault> {
     let mut values = values.into_iter();
     let Some(first) = values.next() else {
-        return Ok(Value::Array(ArrayValue {
-            dims: dims.to_vec(),
-            elements: Elements::Real(Vec::new()),
-        }));
+        return Ok(Value::Array(ArrayValue::new(dims.to_vec(), Elements::Real(Vec::new()))));
     };
+    let mut marks: Vec<(Marks, usize)> = marks_of(&first).into_iter().collect();
     let (inner, mut elements) = parts(first)?;
     element_count(&[dims, inner.as_slice()].concat())?;
     for value in values {
+        marks.extend(marks_of(&value));
         let (dims, more) = parts(value)?;
         if dims != inner {
             bail!(
@@ -36,7 +35,16 @@ pub fn shaped(dims: &[usize], values: Vec<Value>) -> Result<Value, Fault> {
         }
         elements.append(more)?;
     }
-    Ok(Value::Array(ArrayValue { dims: [dims, inner.as_slice()].concat(), elements }))
+    let marks = Marks::joined(marks.iter().map(|(marks, rows)| (marks, *rows)));
+    Ok(Value::Array(ArrayValue { dims: [dims, inner.as_slice()].concat(), elements, marks }))
+}
+
+/// The marks of the rows of an array, and how many there are.
+fn marks_of(value: &Value) -> Option<(Marks, usize)> {
+    match value {
+        Value::Array(array) => Some((array.marks.clone(), array.rows().0)),
+        _ => None,
+    }
 }
 
 fn shape(dims: &[usize]) -> String {
@@ -58,10 +66,10 @@ pub fn split(dims: &[usize], value: Value) -> Result<Vec<Value>, Fault> {
             let (count, each) = (element_count(dims)?, element_count(inner)?);
             let entry = |at: usize| match inner.is_empty() {
                 true => array.elements.get(at),
-                false => Value::Array(ArrayValue {
-                    dims: inner.to_vec(),
-                    elements: array.elements.slice(at * each, each),
-                }),
+                false => {
+                    let elements = array.elements.slice(at * each, each);
+                    Value::Array(ArrayValue::new(inner.to_vec(), elements))
+                }
             };
             Ok((0..count).map(entry).collect())
         }
@@ -101,12 +109,12 @@ pub(crate) fn promote(value: Value, rank: usize) -> Result<Value, Fault> {
             value.rank()
         );
     }
-    if rank == 0 {
+    if rank == value.rank() {
         return Ok(value);
     }
     let (mut dims, elements) = parts(value)?;
     dims.resize(rank, 1);
-    Ok(Value::Array(ArrayValue { dims, elements }))
+    Ok(Value::Array(ArrayValue::new(dims, elements)))
 }
 
 /// `cat(k, A, B, …)` (MLS §10.4.2): `dimension` counted from 1; the other sizes agree.
@@ -151,7 +159,14 @@ pub fn cat(dimension: usize, values: Vec<Value>) -> Result<Value, Fault> {
     if outer == 0 && arrays.iter().any(|a| matches!(a.elements, Elements::Real(_))) {
         elements = elements.promoted();
     }
-    Ok(Value::Array(ArrayValue { dims, elements }))
+    let marks = match arrays.as_slice() {
+        [only] => only.marks.clone(),
+        _ if axis == 0 && dims.len() > 1 => {
+            Marks::joined(arrays.iter().map(|array| (&array.marks, array.rows().0)))
+        }
+        _ => Marks::default(),
+    };
+    Ok(Value::Array(ArrayValue { dims, elements, marks }))
 }
 
 /// The values of `start : step : stop` (MLS §10.4.3), not yet built.

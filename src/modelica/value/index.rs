@@ -2,7 +2,7 @@
 
 use super::array::{element_count, sizes};
 use super::errors::{INDEX_OUT_OF_RANGE, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::{ArrayValue, Elements, Value};
+use super::{ArrayValue, Elements, Marks, Value};
 use crate::bail;
 use crate::diag::Fault;
 
@@ -25,7 +25,7 @@ impl Index {
             Value::Integer(position) => Index::One(position),
             Value::Boolean(position) => Index::One(i64::from(position) + 1),
             Value::Enumeration(position) => Index::One(position.ordinal),
-            Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => match elements {
+            Value::Array(ArrayValue { dims, elements, .. }) if dims.len() == 1 => match elements {
                 Elements::Integer(positions) => Index::Many(positions),
                 Elements::Boolean(positions) => {
                     Index::Many(positions.into_iter().map(|p| i64::from(p) + 1).collect())
@@ -78,8 +78,13 @@ impl ArrayValue {
         if selection.dims.is_empty() {
             return Ok(self.elements.get(selection.offsets[0]));
         }
+        let (_, size) = self.rows();
+        let marks = match selection.dims.last() {
+            Some(last) if *last == size => self.marks.selected(&selection.offsets, size),
+            _ => Marks::default(),
+        };
         let elements = self.elements.gathered(selection.offsets.into_iter());
-        Ok(Value::Array(ArrayValue { dims: selection.dims, elements }))
+        Ok(Value::Array(ArrayValue { dims: selection.dims, elements, marks }))
     }
 
     /// Overwrites the element or slice that the subscripts name; the value's sizes must be those
@@ -99,9 +104,14 @@ impl ArrayValue {
                         }
                     );
                 }
-                self.elements.scatter(&selection.offsets, source.elements)
+                self.elements.scatter(&selection.offsets, source.elements)?;
+                self.marks.assign(self.rows(), &selection.offsets, &source.marks);
+                Ok(())
             }
-            scalar if selection.dims.is_empty() => self.elements.set(selection.offsets[0], scalar),
+            scalar if selection.dims.is_empty() => {
+                self.unmark(selection.offsets[0]);
+                self.elements.set(selection.offsets[0], scalar)
+            }
             scalar => bail!(
                 SIZE_MISMATCH,
                 "cannot assign a single {} to a slice with the sizes {}",

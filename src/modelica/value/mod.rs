@@ -8,6 +8,7 @@ pub mod errors;
 mod external_object;
 pub mod format;
 mod index;
+mod marks;
 pub mod ops;
 mod path;
 mod record;
@@ -20,6 +21,7 @@ pub use array::{ArrayValue, Elements, MAX_ELEMENTS, check_length, element_count,
 pub use cast::{FromValue, RealMatrix};
 pub use external_object::ExternalObject;
 pub use index::Index;
+pub use marks::Marks;
 pub use path::Step;
 pub use record::RecordValue;
 

@@ -24,7 +24,7 @@ impl Value {
             (Step::Field(name), Value::Record(record)) => record.field(*name)?.part(rest),
             (
                 Step::Field(name),
-                Value::Array(ArrayValue { dims, elements: Elements::Record(records) }),
+                Value::Array(ArrayValue { dims, elements: Elements::Record(records), .. }),
             ) => {
                 let part = |record: &RecordValue| record.field(*name)?.part(rest);
                 let parts = records.iter().map(part).collect::<Result<Vec<_>, Fault>>()?;

@@ -138,7 +138,7 @@ fn simulate_multi_results_model(session: &mut Session, mut args: Args) -> Result
 }
 
 fn cube(dims: [usize; 3], elements: Vec<f64>) -> Value {
-    Value::Array(ArrayValue { dims: dims.to_vec(), elements: Elements::Real(elements) })
+    Value::Array(ArrayValue::new(dims.to_vec(), Elements::Real(elements)))
 }
 
 fn check_count(names: &[String], values: usize) -> Result<(), Fault> {

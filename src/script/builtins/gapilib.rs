@@ -18,7 +18,7 @@ use crate::runs::identification::Request;
 use crate::runs::refinement::Refinement;
 use crate::teach::MutationCall;
 use crate::value::errors::TYPE_MISMATCH;
-use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
+use crate::value::{ArrayValue, FromValue, Marks, RealMatrix, Value};
 
 /// The functions of the paper.
 pub(super) const FAMILY: Family = Family {
@@ -39,8 +39,8 @@ pub(super) const FAMILY: Family = Family {
 /// More numbers than this in one call are a mistake.
 const MOST_NUMBERS: i64 = 100_000_000;
 
-/// A matrix; a vector is one row.
-struct Rows(RealMatrix);
+/// A matrix and the marks of its rows; a vector is one row.
+struct Rows(RealMatrix, Marks);
 
 /// Whole numbers: one, or a vector of them, also as Reals.
 pub(super) struct WholeNumbers(pub(super) Vec<i64>);
@@ -48,12 +48,16 @@ pub(super) struct WholeNumbers(pub(super) Vec<i64>);
 impl FromValue for Rows {
     fn from_value(value: Value) -> Result<Rows, Fault> {
         let value = match value {
-            Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
-                Value::Array(ArrayValue { dims: vec![1, dims[0]], elements })
+            Value::Array(array) if array.rank() == 1 => {
+                Value::Array(ArrayValue { dims: vec![1, array.dims[0]], ..array })
             }
             other => other,
         };
-        RealMatrix::from_value(value).map(Rows)
+        let marks = match &value {
+            Value::Array(array) => array.marks.clone(),
+            _ => Marks::default(),
+        };
+        Ok(Rows(RealMatrix::from_value(value)?, marks))
     }
 }
 
@@ -77,7 +81,7 @@ pub(super) fn genomes_value(genomes: Genomes) -> Value {
 }
 
 pub(super) fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
-    let Rows(matrix) = args.take(name)?;
+    let Rows(matrix, _) = args.take(name)?;
     if matrix.columns == 0 {
         bail!(SIZE_MISMATCH, "`{name}` has no columns; it needs one column per gene");
     }
@@ -178,12 +182,15 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         return Err(note.into());
     }
     let columns = request.question.x.len();
-    let simulated = session.evaluate_population(request, &genomes)?;
+    let (simulated, first) = session.evaluate_population(request, &genomes)?;
     let messages = simulated.messages();
     session.generation_simulated()?;
     session.pause()?;
-    let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
-    Ok(Value::Tuple(vec![rows.into(), messages.into()]))
+    let rows = ArrayValue {
+        marks: Marks::from(first, genomes.len()),
+        ..ArrayValue::matrix(genomes.len(), columns, simulated.rows)
+    };
+    Ok(Value::Tuple(vec![Value::Array(rows), messages.into()]))
 }
 
 fn take_request(args: &mut Args) -> Result<Request, Fault> {
@@ -208,7 +215,7 @@ end Fit;
 "#;
 
 fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let Rows(simulated) = args.take("DATASim_Int")?;
+    let Rows(simulated, marks) = args.take("DATASim_Int")?;
     let mut measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
     if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
@@ -217,12 +224,13 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if measured.is_empty() {
         bail!(BAD_DATA, "`Yexp` is empty"; help: "read them with `Exp_Adq_SISO`");
     }
-    if let Some(converted) = session.fitted(simulated.row(0), &measured) {
+    let individuals: Vec<Option<u64>> = (0..simulated.rows).map(|row| marks.of(row)).collect();
+    if let Some(converted) = session.fitted(&individuals, &measured) {
         measured = converted;
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
-    session.identification().recorder.rated(&simulated.elements, &measured);
+    session.identification().recorder.rated(individuals.into_iter().flatten(), &measured);
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())
@@ -303,7 +311,7 @@ end Mutation;
 fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut genomes = take_genomes(&mut args, "Nparameters")?;
     let factor: f64 = args.take("F_Mut")?;
-    let Rows(numbers) = args.take("RamMut")?;
+    let Rows(numbers, _) = args.take("RamMut")?;
     let minima: Option<Vec<f64>> = args.optional("Param_Min")?;
     let maxima: Option<Vec<f64>> = args.optional("Param_Max")?;
     let elites: i64 = args.take("Elitism")?;

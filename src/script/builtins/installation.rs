@@ -80,7 +80,7 @@ fn get_loaded_libraries(session: &mut Session, _: Args) -> Result<Value, Failure
         elements.extend([name.to_string().into(), file.into()]);
     }
     let dims = vec![roots.len(), 2];
-    Ok(Value::Array(ArrayValue { dims, elements: Elements::String(elements) }))
+    Ok(Value::Array(ArrayValue::new(dims, Elements::String(elements))))
 }
 
 const NUM_PROCESSORS: &str = r#"

@@ -4,9 +4,10 @@
 
 use crate::Session;
 use crate::identify::errors::UNITS_DIFFER;
-use crate::identify::{Quantity, Simulated, Study};
+use crate::identify::{Quantity, Study};
 use crate::units::{Conversion, written};
 use std::collections::{BTreeSet, VecDeque};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Columns and simulations remembered: scripts fit several experiments in each generation.
@@ -28,9 +29,9 @@ struct Column {
     values: Vec<f64>,
 }
 
-/// The first row of a simulated population and what it was simulated of.
+/// The individuals of a population and what they were simulated of.
 struct Output {
-    row: Vec<f64>,
+    individuals: Range<u64>,
     study: Arc<Study>,
     /// Whether the compared variable is a difference, whose unit converts without an offset.
     is_relative: bool,
@@ -57,16 +58,14 @@ impl Session {
     pub(crate) fn population_simulated(
         &mut self,
         study: &Arc<Study>,
-        points: usize,
-        simulated: &Simulated,
+        individuals: Range<u64>,
         is_relative: bool,
     ) {
         let units = self.extension::<Units>();
         if units.columns.is_empty() {
             return;
         }
-        let row = simulated.rows.get(..points).unwrap_or_default().to_vec();
-        units.simulated.push_back(Output { row, study: study.clone(), is_relative });
+        units.simulated.push_back(Output { individuals, study: study.clone(), is_relative });
         if units.simulated.len() > REMEMBERED {
             units.simulated.pop_front();
         }
@@ -74,9 +73,14 @@ impl Session {
 
     /// Measured values in the unit of the simulated ones that a script compares them with; `None`
     /// where they are in it, or nothing is known of them.
-    pub(crate) fn fitted(&mut self, row: &[f64], measured: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn fitted(
+        &mut self,
+        individuals: &[Option<u64>],
+        measured: &[f64],
+    ) -> Option<Vec<f64>> {
+        let first = individuals.iter().flatten().next()?;
         let simulated = &self.extension::<Units>().simulated;
-        let own = simulated.iter().rev().find(|output| same(&output.row, row))?;
+        let own = simulated.iter().find(|output| output.individuals.contains(first))?;
         let (study, is_relative) = (own.study.clone(), own.is_relative);
         self.in_unit_of(measured, &study.model, (&study.y, is_relative))
     }

@@ -50,7 +50,7 @@ pub(super) fn value_of(base: &BaseType, dims: Vec<usize>, numbers: Vec<f64>) -> 
     };
     match dims.is_empty() {
         true => (!elements.is_empty()).then(|| elements.get(0)),
-        false => Some(Value::Array(ArrayValue { dims, elements })),
+        false => Some(Value::Array(ArrayValue::new(dims, elements))),
     }
 }
 

@@ -161,12 +161,13 @@ impl Session {
         Ok(())
     }
 
-    /// Simulates a population; the evaluator is kept for the next one.
+    /// Simulates a population, whose individuals have numbers from the second value on; the evaluator
+    /// is kept for the next one.
     pub(crate) fn evaluate_population(
         &mut self,
         request: Request,
         genomes: &Genomes,
-    ) -> Result<Simulated, Failure> {
+    ) -> Result<(Simulated, u64), Failure> {
         let mut prepared = match self.take_prepared(&request)? {
             Some(prepared) => prepared,
             None => self.prepare(&request)?,
@@ -193,15 +194,17 @@ impl Session {
             }
         };
         let identification = self.identification();
-        identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
+        let recorder = &mut identification.recorder;
+        let first = recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         let is_relative = evaluator.model().is_relative(&study.y.name);
         identification.prepared.push(prepared);
-        self.population_simulated(&study, x.len(), &simulated, is_relative);
+        let individuals = first..first + genomes.len() as u64;
+        self.population_simulated(&study, individuals, is_relative);
         self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_run(&study, genomes);
         self.stop_if_all_fail((&study, &x), genomes, &simulated)?;
-        Ok(simulated)
+        Ok((simulated, first))
     }
 
     /// Simulates one individual once more, with the model and at the points of the last `Eval`: Y

@@ -31,8 +31,8 @@ pub(crate) struct Refinement {
 /// Everything simulated so far, as one generation.
 struct Simulations {
     genomes: Genomes,
-    /// Their simulated points, one after the other.
-    rows: Vec<f64>,
+    /// Their numbers.
+    numbers: Vec<u64>,
     fitness: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Session {
         let refinement = &refinement;
         let n_genes = starts.n_genes();
         let genomes = Genomes::with_capacity(n_genes, 0);
-        let mut done = Simulations { genomes, rows: vec![], fitness: vec![] };
+        let mut done = Simulations { genomes, numbers: vec![], fitness: vec![] };
         let noise = self.noise(&refinement.request)?;
         for start in starts.rows() {
             let mut search = descent(refinement, start, noise)?;
@@ -58,7 +58,7 @@ impl Session {
         }
         let count = done.fitness.len() as u64;
         let recorder = &mut self.identification().recorder;
-        recorder.rated(&done.rows, &refinement.measured);
+        recorder.rated(done.numbers, &refinement.measured);
         recorder.ordered(&done.genomes, &done.fitness);
         match best(&done.genomes, &done.fitness).filter(|found| !has_failed(found.fitness)) {
             Some(found) => Ok((found, count)),
@@ -155,10 +155,10 @@ impl Session {
             let value = |(free, &u): (&Free, &f64)| free.value(u);
             genomes.push(&refinement.ranges.iter().zip(point).map(value).collect::<Vec<f64>>());
         }
-        let simulated = self.evaluate_population(refinement.request.clone(), &genomes)?;
+        let (simulated, first) = self.evaluate_population(refinement.request.clone(), &genomes)?;
         let rows = simulated.rows.chunks(measured.len());
         done.fitness.extend(rows.map(|row| sum_of_squares(row, measured)));
-        done.rows.extend_from_slice(&simulated.rows);
+        done.numbers.extend((first..).take(genomes.len()));
         genomes.rows().for_each(|genome| done.genomes.push(genome));
         let points = simulated.rows.iter().zip(measured.iter().cycle());
         Ok(points.map(|(simulated, measured)| simulated - measured).collect())

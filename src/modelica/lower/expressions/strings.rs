@@ -240,7 +240,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Strings(strings) => {
                 let is_known = strings.strings.iter().all(|text| !text.contains(UNKNOWN_TEXT));
                 let elements = Elements::String(strings.strings.to_vec());
-                is_known.then(|| Value::Array(ArrayValue { dims: strings.dims.clone(), elements }))
+                is_known.then(|| Value::Array(ArrayValue::new(strings.dims.clone(), elements)))
             }
             Lowered::Record(fields) => self.known_record(fields, expected, evaluates),
             Lowered::Numbered(_) => None,
@@ -316,7 +316,7 @@ impl<T: Target> Lowering<'_, T> {
             Some(RecordValue { type_name: of_arrays.type_name.clone(), fields })
         };
         let records = (0..dims.iter().product()).map(record).collect::<Option<Vec<_>>>()?;
-        Some(Value::Array(ArrayValue { dims, elements: Elements::Record(records) }))
+        Some(Value::Array(ArrayValue::new(dims, Elements::Record(records))))
     }
 
     /// A value of the interpreter; `None` for arrays of records and external objects.
@@ -328,7 +328,7 @@ impl<T: Target> Lowering<'_, T> {
             let field = |(name, value): (&Ident, &Value)| Some((*name, self.lowered_value(value)?));
             return record.fields.iter().map(field).collect::<Option<_>>().map(Lowered::Record);
         }
-        if let Value::Array(ArrayValue { dims, elements: Elements::String(strings) }) = value {
+        if let Value::Array(ArrayValue { dims, elements: Elements::String(strings), .. }) = value {
             let strings = strings.as_slice().into();
             return Some(Lowered::Strings(StringArray { dims: dims.clone(), strings }));
         }

@@ -209,7 +209,7 @@ fn value<'s>(
         return Some(Value::String(call.strings.get(first)?.clone()));
     }
     let elements = Elements::String(call.strings.get(first..first + slot.len())?.to_vec());
-    Some(Value::Array(ArrayValue { dims, elements }))
+    Some(Value::Array(ArrayValue::new(dims, elements)))
 }
 
 /// What the interpreter says, and which function in the call said it.

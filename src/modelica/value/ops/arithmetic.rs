@@ -92,7 +92,7 @@ pub(crate) fn negate(value: &Value) -> Result<Value, Fault> {
     match value {
         Value::Real(value) => Ok(Value::Real(-value)),
         Value::Integer(value) => negated(*value).map(Value::Integer),
-        Value::Array(ArrayValue { dims, elements }) => {
+        Value::Array(ArrayValue { dims, elements, .. }) => {
             let elements = match elements {
                 Elements::Real(values) => Elements::Real(values.iter().map(|v| -v).collect()),
                 Elements::Integer(values) => {
@@ -100,7 +100,7 @@ pub(crate) fn negate(value: &Value) -> Result<Value, Fault> {
                 }
                 _ => return Err(not_a_number("-", value)),
             };
-            Ok(Value::Array(ArrayValue { dims: dims.clone(), elements }))
+            Ok(Value::Array(ArrayValue::new(dims.clone(), elements)))
         }
         _ => Err(not_a_number("-", value)),
     }

@@ -75,9 +75,7 @@ pub fn numeric(
             let (dims, values) = zip(symbol, left, right, a, b, on_integers)?;
             Ok(match dims {
                 None => Value::Integer(values[0]),
-                Some(dims) => {
-                    Value::Array(ArrayValue { dims, elements: Elements::Integer(values) })
-                }
+                Some(dims) => Value::Array(ArrayValue::new(dims, Elements::Integer(values))),
             })
         }
         _ => real(symbol, left, right, on_reals),
@@ -97,7 +95,7 @@ fn real(
     let (dims, values) = zip(symbol, left, right, &a, &b, operation)?;
     Ok(match dims {
         None => Value::Real(values[0]),
-        Some(dims) => Value::Array(ArrayValue { dims, elements: Elements::Real(values) }),
+        Some(dims) => Value::Array(ArrayValue::new(dims, Elements::Real(values))),
     })
 }
 
@@ -112,7 +110,7 @@ fn join(left: &Value, right: &Value) -> Result<Value, Fault> {
     let (dims, mut values) = zip("+", left, right, &a, &b, concatenated)?;
     Ok(match dims {
         None => Value::String(values.remove(0)),
-        Some(dims) => Value::Array(ArrayValue { dims, elements: Elements::String(values) }),
+        Some(dims) => Value::Array(ArrayValue::new(dims, Elements::String(values))),
     })
 }
 

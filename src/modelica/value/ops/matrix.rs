@@ -47,7 +47,7 @@ pub fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
     };
     Ok(match dims.is_empty() {
         true => elements.get(0),
-        false => Value::Array(ArrayValue { dims, elements }),
+        false => Value::Array(ArrayValue::new(dims, elements)),
     })
 }
 
@@ -105,7 +105,7 @@ fn identity_like(base: &ArrayValue, size: usize) -> Result<ArrayValue, Fault> {
         }
         other => bail!(TYPE_MISMATCH, "`^` is not defined for an array of {}", other.type_name()),
     };
-    Ok(ArrayValue { dims: vec![size, size], elements })
+    Ok(ArrayValue::new(vec![size, size], elements))
 }
 
 /// Multiplications from which on nalgebra's blocked product is worth its setting up.

@@ -74,9 +74,9 @@ fn compare_mixed(integer: i64, real: f64) -> Option<Ordering> {
 pub fn not(value: &Value) -> Result<Value, Fault> {
     match value {
         Value::Boolean(value) => Ok(Value::Boolean(!value)),
-        Value::Array(ArrayValue { dims, elements: Elements::Boolean(values) }) => {
+        Value::Array(ArrayValue { dims, elements: Elements::Boolean(values), .. }) => {
             let elements = Elements::Boolean(values.iter().map(|value| !value).collect());
-            Ok(Value::Array(ArrayValue { dims: dims.clone(), elements }))
+            Ok(Value::Array(ArrayValue::new(dims.clone(), elements)))
         }
         other => Err(fault!(TYPE_MISMATCH, "`not` is not defined for {}", other.type_name())),
     }
@@ -101,8 +101,8 @@ fn logical(
     match (left, right) {
         (Value::Boolean(a), Value::Boolean(b)) => Ok(Value::Boolean(operation(*a, *b))),
         (
-            Value::Array(ArrayValue { dims, elements: Elements::Boolean(a) }),
-            Value::Array(ArrayValue { dims: others, elements: Elements::Boolean(b) }),
+            Value::Array(ArrayValue { dims, elements: Elements::Boolean(a), .. }),
+            Value::Array(ArrayValue { dims: others, elements: Elements::Boolean(b), .. }),
         ) => {
             if dims != others {
                 return Err(fault!(
@@ -114,7 +114,7 @@ fn logical(
             }
             let elements =
                 Elements::Boolean(a.iter().zip(b).map(|(a, b)| operation(*a, *b)).collect());
-            Ok(Value::Array(ArrayValue { dims: dims.clone(), elements }))
+            Ok(Value::Array(ArrayValue::new(dims.clone(), elements)))
         }
         _ => Err(unsuitable(symbol, left, right)),
     }
