@@ -30,7 +30,7 @@ pub(super) fn walk_through(
     let mut terminal = ratatui::try_init()?;
     let walked = (|| {
         loop {
-            if let Some((generation, change)) = screen.take_wish() {
+            if let Some((generation, change)) = screen.take_change() {
                 // The run prints and shows its progress; the screen returns after it.
                 leave();
                 let branch = run_again(generation, &change);

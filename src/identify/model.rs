@@ -91,8 +91,8 @@ pub trait Instance: Send {
     /// # Errors
     ///
     /// Why there are none, in words that follow on "because"; then it observes values alone.
-    fn differentiate(&mut self, wanted: bool) -> Result<(), String> {
-        match wanted {
+    fn differentiate(&mut self, with_derivatives: bool) -> Result<(), String> {
+        match with_derivatives {
             true => Err("the model has no equations to differentiate".to_owned()),
             false => Ok(()),
         }

@@ -204,9 +204,9 @@ impl Instance for CompiledInstance {
         &mut self.system
     }
 
-    fn differentiate(&mut self, wanted: bool) -> Result<(), String> {
+    fn differentiate(&mut self, with_derivatives: bool) -> Result<(), String> {
         self.system.differentiate(None);
-        if wanted {
+        if with_derivatives {
             let program = self.system.program();
             let code = self.sensitivities.code(program, &self.slots, &self.positions)?;
             self.system.differentiate(Some(&code));

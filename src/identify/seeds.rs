@@ -135,9 +135,9 @@ mod tests {
     fn a_run_that_goes_on_with_the_saved_state_has_this_seed() {
         let mut first = Seeds::default();
         let state = run(&mut first, 1.0, 4);
-        let mut behind = first.of_next_run();
-        draw(&mut behind, state, 1, false);
-        assert_eq!(behind.seed, Some(seed(state)), "data, then population");
+        let mut next = first.of_next_run();
+        draw(&mut next, state, 1, false);
+        assert_eq!(next.seed, Some(seed(state)), "data, then population");
         draw(&mut first, state, 1, true);
         draw(&mut first, state + 1.0, 1, true);
         let mut before = first.of_next_run();

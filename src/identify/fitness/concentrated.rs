@@ -163,8 +163,8 @@ mod tests {
             let h = 1e-6;
             let expected = (square(0.2 + h).0 - square(0.2 - h).0) / (2.0 * h);
             let (_, r, f) = square(0.2);
-            let slope = [1.0, 0.0, -1.0, 0.4, -2.0, 1.0];
-            let found: f64 = (0..6).map(|k| 2.0 * f[k] * r[k] * slope[k]).sum();
+            let derivative = [1.0, 0.0, -1.0, 0.4, -2.0, 1.0];
+            let found: f64 = (0..6).map(|k| 2.0 * f[k] * r[k] * derivative[k]).sum();
             assert!((found - expected).abs() < 1e-6 * expected.abs(), "{found} {expected}");
         }
     }

@@ -275,8 +275,8 @@ mod tests {
             assert!((sum - value).abs() < 1e-10 * value, "{} {sum} {value}", entry.name);
             let h = 1e-6;
             let expected = (square(0.2 + h).0 - square(0.2 - h).0) / (2.0 * h);
-            let slope = [1.0, 0.0, -1.0, 0.0, 1.0, -0.4, 0.0, 2.0];
-            let found: f64 = (0..8).map(|k| 2.0 * f0[k] * r0[k] * slope[k]).sum();
+            let derivative = [1.0, 0.0, -1.0, 0.0, 1.0, -0.4, 0.0, 2.0];
+            let found: f64 = (0..8).map(|k| 2.0 * f0[k] * r0[k] * derivative[k]).sum();
             assert!((found - expected).abs() < 1e-5 * expected.abs(), "{found} {expected}");
         }
     }

@@ -165,10 +165,10 @@ fn about(run: &Run, values: &[f64], reach: f64) -> Option<(Curvature, u64)> {
 }
 
 /// Half a gradient and the sum of squares.
-type Slope = (Vec<f64>, f64);
+type Gradient = (Vec<f64>, f64);
 
 /// Half the gradients of the sum of squares by the fractions of the ranges, and the sums.
-fn gradients(run: &Run, places: &[Vec<f64>]) -> Option<(Vec<Slope>, u64)> {
+fn gradients(run: &Run, places: &[Vec<f64>]) -> Option<(Vec<Gradient>, u64)> {
     let mut simulations = 0;
     let one = |(values, found): (&Vec<f64>, Result<super::Linearization, _>)| {
         let found = found.ok()?;

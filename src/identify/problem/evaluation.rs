@@ -225,13 +225,16 @@ impl Evaluation {
         found: &Linearization,
     ) -> Vec<f64> {
         let ranges = problem.parameters.iter().zip(values);
-        let slopes: Vec<f64> = ranges.map(|(free, value)| free.slope(*value)).collect();
+        let range_derivatives: Vec<f64> =
+            ranges.map(|(free, value)| free.derivative(*value)).collect();
         let points = self.measured.len();
         let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
         self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
         let rows = found.derivatives.chunks_exact(values.len()).zip(&scales);
-        rows.flat_map(|(row, scale)| row.iter().zip(&slopes).map(move |(d, s)| d * s * scale))
-            .collect()
+        rows.flat_map(|(row, scale)| {
+            row.iter().zip(&range_derivatives).map(move |(d, s)| d * s * scale)
+        })
+        .collect()
     }
 
     fn without(&self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {

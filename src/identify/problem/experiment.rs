@@ -447,8 +447,8 @@ impl Stage {
             let [a, b] = ends;
             dy[row] - (y[b] - y[a]) / (x[b] - x[a]) * dx[row]
         };
-        let (before, behind) = (at_given_x(k, [first, k + 1]), at_given_x(k + 1, [k, last]));
-        Some(before + share * (behind - before))
+        let (before, after) = (at_given_x(k, [first, k + 1]), at_given_x(k + 1, [k, last]));
+        Some(before + share * (after - before))
     }
 
     fn attempt(

@@ -101,8 +101,8 @@ fn a_step_has_the_interval_of_all_steps_that_fit() {
         let square = |part: &[(f64, f64)]| {
             part.iter().map(|point| (point.1 - mean(part)).powi(2)).sum::<f64>()
         };
-        let (before, behind) = points.split_at(after);
-        (square(before) + square(behind), mean(behind) - mean(before))
+        let (early, late) = points.split_at(after);
+        (square(early) + square(late), mean(late) - mean(early))
     };
     let freedom = (NOISE.len() - 3) as f64;
     let all: Vec<(usize, f64, f64)> =

@@ -97,12 +97,12 @@ impl Evaluation {
                 again.extend(stencil.next(problem, &places[stencil.place]));
                 continue;
             }
-            let slope = problem.parameters[stencil.parameter]
-                .coordinate_slope(places[stencil.place][stencil.parameter]);
+            let derivative = problem.parameters[stencil.parameter]
+                .coordinate_derivative(places[stencil.place][stencil.parameter]);
             for point in 0..into.simulated.len() {
                 let parts = own.iter().flatten().zip(stencil.points());
                 let sum: f64 = parts.map(|(row, (_, weight))| weight * row[point]).sum();
-                into.derivatives[point * n + stencil.parameter] = sum * slope;
+                into.derivatives[point * n + stencil.parameter] = sum * derivative;
             }
         }
         again

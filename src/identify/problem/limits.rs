@@ -60,7 +60,7 @@ pub(crate) fn active_constraints(problem: &Problem, values: &[f64]) -> Vec<Strin
 impl Along {
     fn of(problem: &Problem, values: &[f64], held: &[&Constraint]) -> Option<Along> {
         let n = values.len();
-        let slope = |own: &Constraint, k: usize| {
+        let derivative = |own: &Constraint, k: usize| {
             let free = &problem.parameters[k];
             let at = free.fraction(values[k]);
             let [low, high] = [at - DIFFERENCE, at + DIFFERENCE].map(|end| end.clamp(0.0, 1.0));
@@ -71,7 +71,7 @@ impl Along {
             };
             (margin(high) - margin(low)) / (high - low)
         };
-        let gradients = DMatrix::from_fn(held.len(), n, |row, k| slope(held[row], k));
+        let gradients = DMatrix::from_fn(held.len(), n, |row, k| derivative(held[row], k));
         // Rows of zeros make the null space part of the decomposition.
         let rows = held.len().max(n);
         let padded =

@@ -189,9 +189,9 @@ pub fn missing_shards(files: &[ShardFile], count: usize) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    fn squares(parts: &Parts, wanted: &mut Vec<usize>) -> Option<Vec<f64>> {
+    fn squares(parts: &Parts, missing_parts: &mut Vec<usize>) -> Option<Vec<f64>> {
         parts.all(("squares", &[1.0]), 7, |missing| {
-            wanted.extend(missing);
+            missing_parts.extend(missing);
             missing.iter().map(|part| (part * part) as f64).collect()
         })
     }

@@ -144,8 +144,8 @@ impl<'a> Refit<'a> {
             let (mut residuals, mut factors) = (vec![0.0; self.n_points], vec![0.0; self.n_points]);
             self.evaluation.scaled(self.problem, &found.simulated, &mut residuals, &mut factors);
             for (row, scale) in found.derivatives.chunks_exact(n).zip(&factors) {
-                let slope = |k: usize| self.problem.parameters[k].slope(place[k]);
-                jacobians.extend(varied.iter().map(|&k| row[k] * scale * slope(k)));
+                let derivative = |k: usize| self.problem.parameters[k].derivative(place[k]);
+                jacobians.extend(varied.iter().map(|&k| row[k] * scale * derivative(k)));
             }
         }
         jacobians

@@ -61,7 +61,7 @@ impl Term {
     }
 
     /// The derivative by its own parameter.
-    fn slope(&self, values: &[f64]) -> f64 {
+    fn derivative(&self, values: &[f64]) -> f64 {
         let value = values[self.parameter];
         let own = match self.power == 0.0 {
             true => value.recip(),
@@ -145,10 +145,10 @@ impl Combination {
     /// Whether the ratios at another point are those of the combination.
     fn predicts(&self, point: &Sensitivities, members: &[usize]) -> bool {
         let Some(found) = ratios(point, members) else { return false };
-        let first = self.terms[0].slope(&point.values);
+        let first = self.terms[0].derivative(&point.values);
         let pairs = self.terms[1..].iter().zip(found);
         pairs
-            .map(|(term, ratio)| (term.slope(&point.values) / first, ratio))
+            .map(|(term, ratio)| (term.derivative(&point.values) / first, ratio))
             .all(|(own, ratio)| (own - ratio).abs() <= PREDICTED * ratio.abs())
     }
 
@@ -197,7 +197,7 @@ impl Combination {
         for term in &self.terms {
             let own = term.coefficient(values) * term.own(values);
             sum += own;
-            gradient[term.parameter] += term.slope(values);
+            gradient[term.parameter] += term.derivative(values);
             for (k, exponent) in &term.others {
                 gradient[*k] += exponent * own / values[*k];
             }

@@ -95,12 +95,12 @@ impl Free {
     }
 
     /// The derivative of the coordinate by the value.
-    pub(super) fn coordinate_slope(&self, value: f64) -> f64 {
+    pub(super) fn coordinate_derivative(&self, value: f64) -> f64 {
         if self.logarithmic { value.abs().recip() } else { 1.0 }
     }
 
     /// The derivative of the value by the fraction, at a value.
-    pub fn slope(&self, value: f64) -> f64 {
+    pub fn derivative(&self, value: f64) -> f64 {
         match self.logarithmic {
             true => value * elementary::ln(self.max / self.min),
             false => self.max - self.min,
@@ -120,8 +120,8 @@ mod tests {
                 assert!((free.fraction(free.value(u)) - u).abs() < 1e-12);
             }
             let (value, h) = (free.value(0.3), 1e-6);
-            let slope = (free.value(0.3 + h) - free.value(0.3 - h)) / (2.0 * h);
-            assert!((free.slope(value) - slope).abs() < 1e-6 * slope);
+            let quotient = (free.value(0.3 + h) - free.value(0.3 - h)) / (2.0 * h);
+            assert!((free.derivative(value) - quotient).abs() < 1e-6 * quotient);
         }
         assert!((free(true).value(0.5) - 0.1).abs() < 1e-12);
     }
@@ -138,11 +138,11 @@ mod tests {
                 (free.value_at_coordinate(free.coordinate(value)) - value).abs() < 1e-12 * -value
             );
             let h = 1e-6;
-            let slope = (free.value(u + h) - free.value(u)) / h;
-            assert!((free.slope(value) - slope).abs() < 1e-4 * slope);
+            let quotient = (free.value(u + h) - free.value(u)) / h;
+            assert!((free.derivative(value) - quotient).abs() < 1e-4 * quotient);
             let along =
                 (free.coordinate(value * (1.0 - h)) - free.coordinate(value)) / (-value * h);
-            assert!((free.coordinate_slope(value) - along).abs() < 1e-4 * along, "{along}");
+            assert!((free.coordinate_derivative(value) - along).abs() < 1e-4 * along, "{along}");
         }
     }
 

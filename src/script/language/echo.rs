@@ -42,8 +42,8 @@ impl Session {
 
     /// The statement itself, which Dymola repeats in its log.
     pub(crate) fn echo_input(&mut self, span: Span) {
-        let wanted = self.options.echo == Echo::Everything && self.dialect() == Dialect::Dymola;
-        if wanted && self.may_echo() {
+        let is_echoed = self.options.echo == Echo::Everything && self.dialect() == Dialect::Dymola;
+        if is_echoed && self.may_echo() {
             let end = if self.sources.is_followed_by(span, ';') { ";" } else { "" };
             let line = format!("{}{end}\n", self.sources.text(span));
             self.world.print(&line);
@@ -98,14 +98,14 @@ impl Session {
 
     /// The word in Dymola's log between a simulation and its answer.
     fn echo_finished(&mut self, expression: &Expression, value: &Value) {
-        let is_wanted = matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
+        let is_echoed = matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.dialect() == Dialect::Dymola
             && *value == Value::Boolean(true);
         let ExpressionKind::Call { function, .. } = &expression.kind else { return };
         let name = function.name();
         let simulates =
             name.last().is_some_and(|last| matches!(last.as_str(), "simulateModel" | "simulate"));
-        if is_wanted && simulates && builtins::find(&name, self.dialect()).is_some() {
+        if is_echoed && simulates && builtins::find(&name, self.dialect()).is_some() {
             self.print("Finished\n");
         }
     }
@@ -149,10 +149,10 @@ impl Session {
 
     /// A variable that an assignment made, as Dymola announces it.
     pub(crate) fn echo_declaration(&mut self, name: Ident) {
-        let wanted = self.dialect() == Dialect::Dymola
+        let is_echoed = self.dialect() == Dialect::Dymola
             && matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.may_echo();
-        let Some(value) = self.workspace.variables.get(name).filter(|_| wanted) else { return };
+        let Some(value) = self.workspace.variables.get(name).filter(|_| is_echoed) else { return };
         let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();
         let dims = match sizes.is_empty() {
             true => String::new(),

@@ -138,14 +138,14 @@ pub(crate) fn lines_agree(expected: &str, actual: &str, tolerance: Tolerance) ->
     }
     let (mut a, mut b) = (expected, actual);
     loop {
-        let (text_a, number_a, rest_a) = next_number(a);
-        let (text_b, number_b, rest_b) = next_number(b);
+        let (prefix_a, number_a, rest_a) = next_number(a);
+        let (prefix_b, number_b, rest_b) = next_number(b);
         let numbers = match (number_a, number_b) {
-            (None, None) => return text_a == text_b,
+            (None, None) => return prefix_a == prefix_b,
             (Some(a), Some(b)) => a.agrees_with(b, tolerance),
             _ => false,
         };
-        if text_a != text_b || !numbers {
+        if prefix_a != prefix_b || !numbers {
             return false;
         }
         (a, b) = (rest_a, rest_b);

@@ -312,9 +312,9 @@ impl Session {
                 found = exact;
                 continue;
             }
-            let wanted = component.as_os_str().to_string_lossy().into_owned();
+            let name = component.as_os_str().to_string_lossy().into_owned();
             let entries = self.world.list_dir(&found).ok()?;
-            found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&wanted))?);
+            found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&name))?);
         }
         (!self.world.is_dir(&found)).then_some(found)
     }

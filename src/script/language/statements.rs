@@ -169,8 +169,8 @@ impl Session {
             }
             // The grammar knows no other command.
             _ => {
-                let wanted = argument.node.trim().trim_matches('"');
-                self.change_directory(wanted).at(name.span)?;
+                let folder = argument.node.trim().trim_matches('"');
+                self.change_directory(folder).at(name.span)?;
             }
         }
         Ok(())

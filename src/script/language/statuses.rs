@@ -123,7 +123,7 @@ fn is_negative(answer: &Value) -> bool {
         Value::Boolean(value) => !value,
         Value::String(text) => text.is_empty(),
         Value::Array(array) => match &array.elements {
-            Elements::String(texts) => texts.iter().all(|text| text.is_empty()),
+            Elements::String(strings) => strings.iter().all(|text| text.is_empty()),
             _ => false,
         },
         Value::Record(record) => record.fields.values().next().is_some_and(is_negative),

@@ -45,14 +45,14 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
         );
     };
     let mut events = Vec::new();
-    while let Some((length, behind)) = rest.split_first_chunk::<4>() {
+    while let Some((length, following)) = rest.split_first_chunk::<4>() {
         let length = u32::from_le_bytes(*length) as usize;
-        let frame = behind.get(..length).filter(|_| length <= LONGEST);
+        let frame = following.get(..length).filter(|_| length <= LONGEST);
         match frame.and_then(|frame| postcard::from_bytes(frame).ok()) {
             Some(event) => events.push(event),
             None => return Ok((events, false)),
         }
-        rest = &behind[length..];
+        rest = &following[length..];
     }
     Ok((events, rest.is_empty()))
 }

@@ -119,7 +119,7 @@ fn damaged_traces_of_operators_are_no_panic() {
 fn a_page_is_whole_and_needs_no_network() {
     let trace = Trace::read(&sample::run(3, 12345.0).bytes).unwrap();
     let text = page::page(trace, Some(r#"{"parameters": []}"#), None);
-    assert!(text.contains("default-src 'none'"), "the browser may ask somebody");
+    assert!(text.contains("default-src 'none'"), "the browser may load from elsewhere");
     // The policy refuses attributes with styles.
     assert!(!text.contains("style:") && !text.contains(" style="));
     assert!(!text.contains("src=") && !text.contains("@import") && !text.contains("url("));

@@ -8,7 +8,7 @@
 //! Reference: [Seber & Wild 1989](gapilib_base::bibliography#seber-wild-1989), section 5.1.
 
 use super::predictions::linear;
-use super::{Local, Predict, Reach, Wanted};
+use super::{CurveRequest, Local, Predict, Reach};
 use crate::diag::Fault;
 use crate::problem::Problem;
 use crate::table::significant;
@@ -54,8 +54,8 @@ pub fn bands(
     refusals: &mut Vec<String>,
 ) -> Result<Vec<Band>, Fault> {
     let variables = &problem.inference.band_variables;
-    let wanted = Wanted { variables, reach: Reach::Measured, points: POINTS };
-    let (curves, linear) = linear(problem, predict, &local.values, &wanted)?;
+    let request = CurveRequest { variables, reach: Reach::Measured, points: POINTS };
+    let (curves, linear) = linear(problem, predict, &local.values, &request)?;
     refusals.extend(curves.refusals);
     let linear = match linear {
         Ok(linear) => linear,

@@ -14,7 +14,7 @@
 
 use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
-use super::{Curve, Local, PRIOR, Reach, Wanted};
+use super::{Curve, CurveRequest, Local, PRIOR, Reach};
 use crate::diag::Fault;
 use crate::problem::Problem;
 use crate::registry::BAD_OPTION;
@@ -118,8 +118,8 @@ pub fn next_measurement(
     let Some(predict) = &problem.inference.predict else { return Ok(None) };
     let variables: Vec<String> = settings.outputs.iter().map(|(name, _)| name.clone()).collect();
     let reach = settings.range.map_or(Reach::Simulated, Reach::Range);
-    let wanted = Wanted { variables: &variables, reach, points: GRID };
-    let (curves, linear) = linear(problem, predict.as_ref(), &local.values, &wanted)?;
+    let request = CurveRequest { variables: &variables, reach, points: GRID };
+    let (curves, linear) = linear(problem, predict.as_ref(), &local.values, &request)?;
     let linear = match linear {
         Ok(linear) if !curves.curves.is_empty() => linear,
         Ok(_) => {

@@ -99,7 +99,7 @@ impl Data<'_> {
                 .parameters
                 .iter()
                 .zip(&values)
-                .map(|(free, value)| free.slope(*value))
+                .map(|(free, value)| free.derivative(*value))
                 .collect();
             let entry = |j: usize, k: usize| self.scales[j] * flat[j * n + k] * unit[k];
             return Some(DMatrix::from_fn(points, n, entry));

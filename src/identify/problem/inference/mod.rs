@@ -33,7 +33,7 @@ pub use inferred::Inferred;
 pub use likelihood::{Likelihood, logarithms};
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
-pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
+pub use predictions::{Curve, CurveRequest, Curves, ModelPredictions, Predict, Reach};
 pub use term::{Function, Operator, Term};
 
 use super::{FindingKind, Run, Solution};

@@ -23,7 +23,7 @@ pub enum Reach {
 
 /// What is to be predicted.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wanted<'a> {
+pub struct CurveRequest<'a> {
     /// Variables beside the measured ones.
     pub variables: &'a [String],
     /// The range of X.
@@ -64,7 +64,7 @@ pub trait Predict: Send + Sync {
     /// # Errors
     ///
     /// Variables that there are not.
-    fn curves(&self, around: &[Vec<f64>], wanted: &Wanted<'_>) -> Result<Curves, Fault>;
+    fn curves(&self, around: &[Vec<f64>], request: &CurveRequest<'_>) -> Result<Curves, Fault>;
 }
 
 /// Values of curves and how they change with the parameters.
@@ -84,12 +84,12 @@ pub fn linear(
     problem: &Problem,
     predict: &dyn Predict,
     values: &[f64],
-    wanted: &Wanted<'_>,
+    request: &CurveRequest<'_>,
 ) -> Result<(Curves, Result<Linear, Failed>), Fault> {
     let ends = ends(&problem.parameters, values, problem.noise);
     let around: Vec<Vec<f64>> =
         std::iter::once(values.to_vec()).chain(ends.iter().cloned()).collect();
-    let mut curves = predict.curves(&around, wanted)?;
+    let mut curves = predict.curves(&around, request)?;
     let points = curves.curves.iter().map(|curve| curve.points.len()).sum();
     let mut linear = differentiate(curves.simulator.as_mut(), values, &ends, points);
     if let Ok(linear) = &mut linear {
@@ -169,13 +169,13 @@ pub struct ModelPredictions {
 }
 
 impl Predict for ModelPredictions {
-    fn curves(&self, around: &[Vec<f64>], wanted: &Wanted<'_>) -> Result<Curves, Fault> {
+    fn curves(&self, around: &[Vec<f64>], request: &CurveRequest<'_>) -> Result<Curves, Fault> {
         let (mut curves, mut kept, mut refusals) = (Vec::new(), Vec::new(), Vec::new());
         let mut first = 0;
         for experiment in &self.experiments {
             let series = first;
             first += experiment.observations.len();
-            match dense(experiment, around, wanted)? {
+            match dense(experiment, around, request)? {
                 Ok(dense) => {
                     curves.extend(described(experiment, &dense, series));
                     kept.push(dense);
@@ -194,26 +194,26 @@ impl Predict for ModelPredictions {
 fn dense(
     experiment: &Experiment,
     around: &[Vec<f64>],
-    wanted: &Wanted<'_>,
+    request: &CurveRequest<'_>,
 ) -> Result<Result<Experiment, String>, Fault> {
     let mut settings = experiment.settings.clone();
-    if let (Reach::Range([_, end]), "time") = (wanted.reach, experiment.x_name.as_str()) {
+    if let (Reach::Range([_, end]), "time") = (request.reach, experiment.x_name.as_str()) {
         settings.stop = settings.stop.max(end);
     }
     let dense = Experiment { settings, ..experiment.clone() };
     if experiment.model.driven().is_some_and(|(driven, _)| driven == experiment.x_name) {
-        return over_input(&dense, around, wanted);
+        return over_input(&dense, around, request);
     }
     let simulated = match simulated_range(&dense, around)? {
         Ok(range) => range,
         Err(failed) => return Ok(Err(failed.cause)),
     };
-    let range = match wanted.reach {
+    let range = match request.reach {
         Reach::Simulated => simulated,
         Reach::Measured => cut(measured_range(experiment, BEYOND), simulated),
         Reach::Range(range) => cut(range, simulated),
     };
-    on_grid(dense, around, wanted, range)
+    on_grid(dense, around, request, range)
 }
 
 /// The grid over an input, which may take any value: beyond the measured points as far as requested
@@ -221,17 +221,17 @@ fn dense(
 fn over_input(
     experiment: &Experiment,
     around: &[Vec<f64>],
-    wanted: &Wanted<'_>,
+    request: &CurveRequest<'_>,
 ) -> Result<Result<Experiment, String>, Fault> {
-    if let Reach::Range(range) = wanted.reach {
-        return on_grid(experiment.clone(), around, wanted, range);
+    if let Reach::Range(range) = request.reach {
+        return on_grid(experiment.clone(), around, request, range);
     }
     // A next measurement is proposed where some have been possible.
-    let beyond = if wanted.reach == Reach::Measured { BEYOND } else { 0.0 };
+    let beyond = if request.reach == Reach::Measured { BEYOND } else { 0.0 };
     let beyond = measured_range(experiment, beyond);
-    match on_grid(experiment.clone(), around, wanted, beyond)? {
+    match on_grid(experiment.clone(), around, request, beyond)? {
         Ok(dense) => Ok(Ok(dense)),
-        Err(_) => on_grid(experiment.clone(), around, wanted, measured_range(experiment, 0.0)),
+        Err(_) => on_grid(experiment.clone(), around, request, measured_range(experiment, 0.0)),
     }
 }
 
@@ -239,18 +239,18 @@ fn over_input(
 fn on_grid(
     mut dense: Experiment,
     around: &[Vec<f64>],
-    wanted: &Wanted<'_>,
+    request: &CurveRequest<'_>,
     range: [f64; 2],
 ) -> Result<Result<Experiment, String>, Fault> {
     let Some([low, high]) = range.filter_increasing() else {
         return Ok(Err(format!("`{}` does not vary there", dense.x_name)));
     };
-    let last = (wanted.points.max(2) - 1) as f64;
+    let last = (request.points.max(2) - 1) as f64;
     let x: Vec<f64> = (0..=last as usize).map(|k| low + (high - low) * (k as f64 / last)).collect();
     let own = dense.observations.iter().map(|observation| observation.y_name.clone());
     let mut names: Vec<String> = own.collect();
     for variable in
-        wanted.variables.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
+        request.variables.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
     {
         names.push(variable);
     }

@@ -32,11 +32,11 @@ struct Formulas {
 }
 
 impl Predict for Formulas {
-    fn curves(&self, _: &[Vec<f64>], wanted: &Wanted<'_>) -> Result<Curves, Fault> {
-        let range = if let Reach::Range(range) = wanted.reach { range } else { [0.0, self.end] };
-        let last = (wanted.points - 1) as f64;
+    fn curves(&self, _: &[Vec<f64>], request: &CurveRequest<'_>) -> Result<Curves, Fault> {
+        let range = if let Reach::Range(range) = request.reach { range } else { [0.0, self.end] };
+        let last = (request.points - 1) as f64;
         let place = |k: usize| range[0] + (range[1] - range[0]) * k as f64 / last;
-        let points: Vec<f64> = (0..wanted.points).map(place).collect();
+        let points: Vec<f64> = (0..request.points).map(place).collect();
         let curve = |name: &str, series| Curve {
             experiment: "a".into(),
             y: [name.to_owned(), "V".into()],
@@ -47,7 +47,7 @@ impl Predict for Formulas {
         let mut curves = vec![curve("y", Some(0))];
         let mut functions = vec![(self.measured, points.clone())];
         for (name, function) in &self.others {
-            if wanted.variables.iter().any(|wanted| wanted == name) {
+            if request.variables.iter().any(|requested| requested == name) {
                 curves.push(curve(name, None));
                 functions.push((*function, points.clone()));
             }

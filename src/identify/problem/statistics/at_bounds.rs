@@ -113,16 +113,17 @@ impl AtBounds {
         }
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         // Elsewhere the sum is at its minimum, but for rounding.
-        let slope = |k: usize| {
+        let component = |k: usize| {
             residuals.filter(|_| inward[k].is_some()).map_or(0.0, |r| dot(&columns[k], r))
         };
         let quadratic = Quadratic {
-            slopes: (0..n).map(slope).collect(),
+            gradient: (0..n).map(component).collect(),
             gram: DMatrix::from_fn(n, n, |k, l| dot(&columns[k], &columns[l])),
             inward: inward.to_vec(),
         };
         let pull = |k: usize| {
-            -inward[k].unwrap_or(0.0) * quadratic.slopes[k] * full.standard_deviations[k] / variance
+            -inward[k].unwrap_or(0.0) * quadratic.gradient[k] * full.standard_deviations[k]
+                / variance
         };
         let ends = at_ends.iter().map(|&k| AtEnd {
             parameter: k,
@@ -206,7 +207,7 @@ fn others_alone(
 /// S(δ) − S(0) = δᵀHδ − 2 sᵀδ.
 struct Quadratic {
     gram: DMatrix<f64>,
-    slopes: Vec<f64>,
+    gradient: Vec<f64>,
     inward: Vec<Option<f64>>,
 }
 
@@ -237,7 +238,7 @@ impl Quadratic {
 
     /// The sum as a function of parameter `k`, first, and of those at ends, the others at their best.
     fn reduced(&self, k: usize) -> Option<Reduced> {
-        let n = self.slopes.len();
+        let n = self.gradient.len();
         let kept: Vec<usize> = std::iter::once(k)
             .chain((0..n).filter(|&l| l != k && self.inward[l].is_some()))
             .collect();
@@ -258,15 +259,15 @@ impl Quadratic {
             return None;
         }
         // The gradient components of the free ones are zero.
-        let slopes = DVector::from_iterator(kept.len(), kept.iter().map(|&l| self.slopes[l]));
+        let gradient = DVector::from_iterator(kept.len(), kept.iter().map(|&l| self.gradient[l]));
         let signs = kept.iter().skip(1).map(|&l| self.inward[l].unwrap_or(0.0)).collect();
-        Some(Reduced { gram, slopes, signs })
+        Some(Reduced { gram, gradient, signs })
     }
 }
 
 struct Reduced {
     gram: DMatrix<f64>,
-    slopes: DVector<f64>,
+    gradient: DVector<f64>,
     /// Directions in which all but the first may move.
     signs: Vec<f64>,
 }
@@ -274,17 +275,17 @@ struct Reduced {
 impl Reduced {
     /// The least sum, less that of the fit, where the first parameter has moved by `distance`.
     fn least(&self, distance: f64) -> f64 {
-        let n = self.slopes.len();
+        let n = self.gradient.len();
         let mut by = DVector::zeros(n);
         by[0] = distance;
         for _ in 0..if n > 1 { SWEEPS } else { 0 } {
             for k in 1..n {
                 let rest = self.gram.row(k).dot(&by.transpose()) - self.gram[(k, k)] * by[k];
-                let wanted = (self.slopes[k] - rest) / self.gram[(k, k)];
-                by[k] = if wanted * self.signs[k - 1] > 0.0 { wanted } else { 0.0 };
+                let minimum = (self.gradient[k] - rest) / self.gram[(k, k)];
+                by[k] = if minimum * self.signs[k - 1] > 0.0 { minimum } else { 0.0 };
             }
         }
-        (&self.gram * &by).dot(&by) - 2.0 * self.slopes.dot(&by)
+        (&self.gram * &by).dot(&by) - 2.0 * self.gradient.dot(&by)
     }
 }
 

@@ -23,7 +23,7 @@ fn markdown_of_the_chapter_is_read() {
     let read = blocks(text);
     assert_eq!(read.len(), 3, "{read:?}");
     let all: String = read.iter().map(|block| block.markup().into_string()).collect();
-    let wanted = "<h3 id=\"guide-a-b\">A b</h3><p>One <em>two</em> <code>x*y</code> &lt; 3.</p>\
+    let expected = "<h3 id=\"guide-a-b\">A b</h3><p>One <em>two</em> <code>x*y</code> &lt; 3.</p>\
                   <ul><li>p</li><li>q</li></ul>";
-    assert_eq!(all, wanted);
+    assert_eq!(all, expected);
 }

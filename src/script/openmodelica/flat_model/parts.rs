@@ -199,7 +199,7 @@ impl Apart<'_> {
         match name.as_str() {
             "zeros" => filled(sizes()?, literal(0.0)),
             "ones" => filled(sizes()?, literal(1.0)),
-            "fill" => filled(sizes_behind_first(arguments)?, self.only(&arguments.positional[0])?),
+            "fill" => filled(sizes_after_first(arguments)?, self.only(&arguments.positional[0])?),
             "transpose" => transposed(all?.pop()?),
             "sum" => {
                 let terms = all?.pop()?.scalars.into_iter();
@@ -235,7 +235,7 @@ impl Apart<'_> {
     }
 }
 
-fn sizes_behind_first(arguments: &Arguments) -> Option<Vec<usize>> {
+fn sizes_after_first(arguments: &Arguments) -> Option<Vec<usize>> {
     arguments.positional.get(1..)?.iter().map(size).collect()
 }
 

@@ -48,8 +48,8 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
         }
     }
     let block = Block::new().borders(Borders::TOP);
-    let told = question.unwrap_or_else(|| explain(&screen.walk));
-    let text = Paragraph::new(told).wrap(Wrap { trim: true }).block(block);
+    let message = question.unwrap_or_else(|| explain(&screen.walk));
+    let text = Paragraph::new(message).wrap(Wrap { trim: true }).block(block);
     frame.render_widget(text, story);
     frame.render_widget(Paragraph::new(last_line(screen)), bottom);
 }

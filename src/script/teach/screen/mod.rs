@@ -141,7 +141,7 @@ impl Screen {
     }
 
     /// The change that is to be tried now, and from which generation on, counted from 1.
-    pub fn take_wish(&mut self) -> Option<(usize, String)> {
+    pub fn take_change(&mut self) -> Option<(usize, String)> {
         self.wish.take()
     }
 

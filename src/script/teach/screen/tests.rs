@@ -186,8 +186,8 @@ fn a_changed_run_is_compared_and_walked_through() {
         assert!(keys.iter().all(|key| screen.press(*key)), "the screen has ended");
     };
     press(&mut screen, &[&[Key::Down][..], &typed('w', "F_Mut := 1")].concat());
-    assert_eq!(screen.take_wish(), Some((2, "F_Mut := 1".to_owned())));
-    assert_eq!(screen.take_wish(), None);
+    assert_eq!(screen.take_change(), Some((2, "F_Mut := 1".to_owned())));
+    assert_eq!(screen.take_change(), None);
     let changed = Trace::read(&sample::run(3, 54321.0).bytes).unwrap();
     screen.branched(2, "F_Mut := 1".to_owned(), Ok(changed));
     let text = drawn(&screen);

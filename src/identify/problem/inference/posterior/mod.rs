@@ -207,7 +207,7 @@ fn merged(problem: &Problem, chains: &[Drawn]) -> Posterior {
 fn start_covariance(problem: &Problem, local: &Local) -> DMatrix<f64> {
     let n = local.values.len();
     let unit: Vec<f64> =
-        problem.parameters.iter().zip(&local.values).map(|(free, v)| free.slope(*v)).collect();
+        problem.parameters.iter().zip(&local.values).map(|(free, v)| free.derivative(*v)).collect();
     let widest = OPEN * OPEN;
     if let Some(covariance) = local.information.covariance() {
         let cube = DMatrix::from_fn(n, n, |k, l| covariance[(k, l)] / (unit[k] * unit[l]));
