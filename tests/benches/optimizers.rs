@@ -6,7 +6,7 @@
 
 use gapilib::internals::elementary;
 use gapilib::internals::ga::optimizer::{
-    Answers, METHODS, Method, Polished, Setup, Wants, survivors,
+    Answers, METHODS, Method, Polished, Required, Setup, survivors,
 };
 use gapilib::internals::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
 use gapilib::internals::registry::{self, Options};

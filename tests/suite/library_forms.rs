@@ -315,7 +315,7 @@ fn a_string_of_an_operator_record_is_that_of_its_operator() {
     assert_eq!(at_end(text), 3.0);
 }
 
-/// MLS §3.8.4 wants discrete-time expressions for Integers; functions that sort return both.
+/// MLS §3.8.4 requires discrete-time expressions for Integers; functions that sort return both.
 #[test]
 fn integers_among_several_outputs_may_change_between_events() {
     let text = "function largest input Real u[:]; output Real y; output Integer at; algorithm \
@@ -884,7 +884,7 @@ fn parameters_of_functions_with_computed_sizes_are_evaluated() {
 }
 
 /// FrequencySweepVoltageSource of the standard library 4.0.0 declares what it inherits again, without
-/// its attribute `min`; MLS §7.1 wants declarations that are identical.
+/// its attribute `min`; MLS §7.1 requires declarations that are identical.
 #[test]
 fn what_is_inherited_and_declared_may_differ_in_attributes() {
     let model = |value: &str| {

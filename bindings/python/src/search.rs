@@ -2,7 +2,7 @@
 
 use crate::errors::raised_fault;
 use crate::values;
-use gapilib::internals::ga::optimizer::{Answers, METHODS, Optimizer as Search, Setup, Wants};
+use gapilib::internals::ga::optimizer::{Answers, METHODS, Optimizer as Search, Setup, Required};
 use gapilib::internals::ga::{Gene, Genomes, Mrg32k3a};
 use gapilib::internals::registry::{Choice, Options, find};
 use indexmap::IndexMap;
@@ -131,10 +131,10 @@ impl Optimizer {
     /// "jacobians" (both).
     #[getter]
     fn wants(&self) -> &'static str {
-        match self.state().search.wants() {
-            Wants::Objectives => "fitness",
-            Wants::Residuals => "residuals",
-            Wants::Jacobians => "jacobians",
+        match self.state().search.required() {
+            Required::Objectives => "fitness",
+            Required::Residuals => "residuals",
+            Required::Jacobians => "jacobians",
         }
     }
 
@@ -164,15 +164,15 @@ impl Optimizer {
         if objectives.len() != n_objectives * count || n_objectives == 0 {
             return Err(PyValueError::new_err(format!("{count} individuals need {count} answers")));
         }
-        let wants = search.wants();
+        let required = search.required();
         let n_residuals = residuals.len() / count;
-        if wants >= Wants::Residuals && (residuals.is_empty() || residuals.len() % count != 0) {
+        if required >= Required::Residuals && (residuals.is_empty() || residuals.len() % count != 0) {
             return Err(PyValueError::new_err(
                 "this question wants `residuals`, a row for each individual",
             ));
         }
         let n_genes = self.genes.len();
-        if wants == Wants::Jacobians && jacobians.len() != count * n_residuals * n_genes {
+        if required == Required::Jacobians && jacobians.len() != count * n_residuals * n_genes {
             return Err(PyValueError::new_err(
                 "this question wants `jacobians`: individuals × residuals × genes",
             ));

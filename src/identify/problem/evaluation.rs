@@ -4,7 +4,7 @@
 use super::{Failed, Linearization, Parts, Problem, Simulate};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::ga::optimizer::Wants;
+use crate::ga::optimizer::Required;
 use crate::ga::{Genomes, has_failed};
 use crate::ranks::{Asked, Batch, Processors, Simulation};
 use crate::simulators::Simulators;
@@ -163,11 +163,11 @@ impl Evaluation {
         &mut self,
         problem: &Problem,
         batch: &Genomes,
-        wants: Wants,
+        required: Required,
     ) -> Option<Answered> {
-        let answered = match wants {
-            Wants::Jacobians => self.with_jacobians(problem, batch),
-            _ => self.without(problem, batch, wants == Wants::Residuals),
+        let answered = match required {
+            Required::Jacobians => self.with_jacobians(problem, batch),
+            _ => self.without(problem, batch, required == Required::Residuals),
         };
         if self.is_cancelled() {
             return None;
@@ -181,9 +181,9 @@ impl Evaluation {
         &self,
         problem: &Problem,
         genome: &[f64],
-        wants: Wants,
+        required: Required,
     ) -> Vec<f64> {
-        if wants == Wants::Jacobians {
+        if required == Required::Jacobians {
             let single = Genomes::new(genome.len(), genome.to_vec());
             return single.map_or(Vec::new(), |one| self.with_jacobians(problem, &one).objectives);
         }

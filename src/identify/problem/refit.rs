@@ -2,7 +2,7 @@
 
 use super::{Best, Evaluation, Free, Problem, Run, Simulate};
 use crate::diag::Fault;
-use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
+use crate::ga::optimizer::{Answers, METHODS, Required, Setup};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
 use crate::ranks::Processors;
 use crate::registry::{self, Options};
@@ -79,8 +79,8 @@ impl<'a> Refit<'a> {
             let failed = vec![f64::NAN; self.n_points];
             let flat: Vec<f64> =
                 rows.into_iter().flat_map(|row| row.unwrap_or_else(|| failed.clone())).collect();
-            let jacobians = match search.wants() {
-                Wants::Jacobians => self.jacobians(&points, &varied),
+            let jacobians = match search.required() {
+                Required::Jacobians => self.jacobians(&points, &varied),
                 _ => Vec::new(),
             };
             let answers = Answers {

@@ -4,7 +4,7 @@ use super::evaluation::{Answered, Evaluation};
 use super::{Failed, FailureKind, Fingerprint, Problem, Record, Stop};
 use crate::diag::Fault;
 use crate::ga::optimizer::{
-    Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
+    Answers, DescentReport, Optimizer, Polished, Required, Scale, Setup, non_dominated,
 };
 use crate::ga::{Gene, Genomes, Mrg32k3a, has_failed};
 use crate::ranks::Processors;
@@ -283,8 +283,8 @@ impl Run {
         if self.converged {
             return None;
         }
-        let wants = self.optimizer.wants();
-        let answered = self.evaluation.evaluate(&self.problem, &self.batch, wants)?;
+        let required = self.optimizer.required();
+        let answered = self.evaluation.evaluate(&self.problem, &self.batch, required)?;
         let record = Record {
             seconds,
             changes: std::mem::take(&mut self.changes),
@@ -330,7 +330,7 @@ impl Run {
         let m = self.problem.objectives.len();
         let before = record.answered.objectives.get(row * m..(row + 1) * m).unwrap_or_default();
         let genome = self.batch.row(row);
-        let now = self.evaluation.objectives_anew(&self.problem, genome, self.optimizer.wants());
+        let now = self.evaluation.objectives_anew(&self.problem, genome, self.optimizer.required());
         let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         // What a cancelled simulation says is not compared.
         let have_failed = now.iter().chain(before).all(|value| has_failed(*value));
@@ -382,9 +382,9 @@ impl Run {
 
     /// Whether these can be the answers to what was asked.
     fn is_answer(&self, answered: &Answered) -> bool {
-        let (count, wants) = (self.batch.len(), self.optimizer.wants());
-        let residuals = if wants >= Wants::Residuals { self.problem.n_points() } else { 0 };
-        let genes = if wants == Wants::Jacobians { self.problem.parameters.len() } else { 0 };
+        let (count, required) = (self.batch.len(), self.optimizer.required());
+        let residuals = if required >= Required::Residuals { self.problem.n_points() } else { 0 };
+        let genes = if required == Required::Jacobians { self.problem.parameters.len() } else { 0 };
         answered.objectives.len() == count * self.problem.objectives.len()
             && answered.residuals.len() == count * residuals
             && answered.jacobians.len() == count * residuals * genes

@@ -6,7 +6,7 @@ use crate::Session;
 use crate::builtins::Failure;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_POPULATION;
-use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup, Wants};
+use crate::ga::optimizer::{Answers, METHODS, Optimizer, Required, Setup};
 use crate::ga::{Gene, Genomes, Individual, Mrg32k3a, best, has_failed};
 use crate::identify::fitness::sum_of_squares;
 use crate::identify::problem::{Free, NOISE_OF_FORMULAS};
@@ -94,8 +94,8 @@ impl Session {
             let first = done.fitness.len();
             let residuals = self.residuals(refinement, &question, done)?;
             let answered = done.fitness.len();
-            let jacobians = match search.wants() {
-                Wants::Jacobians => self.jacobians(refinement, &question, noise, done)?,
+            let jacobians = match search.required() {
+                Required::Jacobians => self.jacobians(refinement, &question, noise, done)?,
                 _ => Vec::new(),
             };
             let objectives = &done.fitness[first..answered];

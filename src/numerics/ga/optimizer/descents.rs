@@ -6,7 +6,7 @@
 //! not yet seen is expected to be w (w + 1) / (n (n − 1)).
 
 use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
-use super::{Answers, DescentEnd, DescentReport, Wants};
+use super::{Answers, DescentEnd, DescentReport, Required};
 use crate::elementary;
 use crate::ga::Genomes;
 
@@ -55,7 +55,7 @@ pub struct Pool {
     active: Vec<usize>,
     /// Individuals that each of the active ones asked in the last question.
     shares: Vec<usize>,
-    wants: Wants,
+    required: Required,
     accuracy: Accuracy,
     /// Descents and the smallest sum of squares at the begin of each round.
     rounds: Vec<(usize, f64)>,
@@ -69,7 +69,7 @@ impl Pool {
             independent: Vec::new(),
             active: Vec::new(),
             shares: Vec::new(),
-            wants: Wants::Jacobians,
+            required: Required::Jacobians,
             accuracy,
             rounds: Vec::new(),
         }
@@ -114,11 +114,11 @@ impl Pool {
 
     /// Asks for the next individuals; without any the round is over.
     pub fn ask(&mut self, batch: &mut Genomes) {
-        for wants in [Wants::Residuals, Wants::Jacobians] {
-            self.wants = wants;
+        for required in [Required::Residuals, Required::Jacobians] {
+            self.required = required;
             for (&k, share) in self.active.iter().zip(&mut self.shares) {
                 let before = batch.len();
-                if self.descents[k].wants_now() == wants {
+                if self.descents[k].required_now() == required {
                     self.descents[k].ask_next(batch);
                 }
                 *share = batch.len() - before;
@@ -130,8 +130,8 @@ impl Pool {
         self.active.clear();
     }
 
-    pub fn wants(&self) -> Wants {
-        self.wants
+    pub fn required(&self) -> Required {
+        self.required
     }
 
     pub fn tell(&mut self, count: usize, answers: &Answers<'_>) {

@@ -9,7 +9,7 @@
 //! [Nocedal & Wright 2006](gapilib_base::bibliography#nocedal-wright-2006), §10.3.
 
 use super::linear_model::{LinearModel, Offset, Step};
-use super::{Answers, DescentEnd, DescentReport, ERRORS, Method, Optimizer, Setup, Wants};
+use super::{Answers, DescentEnd, DescentReport, ERRORS, Method, Optimizer, Required, Setup};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Genomes;
@@ -414,10 +414,10 @@ pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) 
 
 impl Descent {
     /// What the next request needs to be evaluated.
-    pub(crate) fn wants_now(&self) -> Wants {
+    pub(crate) fn required_now(&self) -> Required {
         match self.asked {
-            Request::Start | Request::Jacobian => Wants::Jacobians,
-            Request::Probe | Request::Trial => Wants::Residuals,
+            Request::Start | Request::Jacobian => Required::Jacobians,
+            Request::Probe | Request::Trial => Required::Residuals,
         }
     }
 
@@ -466,8 +466,8 @@ impl Optimizer for Descent {
         self.take(answers);
     }
 
-    fn wants(&self) -> Wants {
-        self.wants_now()
+    fn required(&self) -> Required {
+        self.required_now()
     }
 
     fn phase(&self) -> &'static str {

@@ -42,8 +42,8 @@ pub trait Optimizer: Send {
     /// The answers to the last question, one for each individual in its order.
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>);
     /// What the answers to the last question must hold besides the objectives.
-    fn wants(&self) -> Wants {
-        Wants::Objectives
+    fn required(&self) -> Required {
+        Required::Objectives
     }
     /// The descents by least squares so far, in their order.
     fn descents(&self) -> Vec<DescentReport> {
@@ -68,9 +68,10 @@ pub trait Optimizer: Send {
     fn rescale(&mut self, _gene: usize, _offset: f64, _scale: f64) {}
 }
 
-/// What a question wants to know of each individual; each kind holds the ones before it.
+/// What the answers to a request must contain of each individual; each kind contains the ones
+/// before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Wants {
+pub enum Required {
     /// Its objectives.
     Objectives,
     /// Its weighted residuals.

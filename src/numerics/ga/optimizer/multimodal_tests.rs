@@ -130,8 +130,8 @@ impl Case {
         let failed = || vec![f64::NAN; self.data.len()];
         let residuals: Vec<f64> =
             rows.into_iter().flat_map(|row| row.unwrap_or_else(failed)).collect();
-        let jacobians: Vec<f64> = match search.wants() {
-            Wants::Jacobians => batch.rows().flat_map(|row| self.jacobian(row)).collect(),
+        let jacobians: Vec<f64> = match search.required() {
+            Required::Jacobians => batch.rows().flat_map(|row| self.jacobian(row)).collect(),
             _ => Vec::new(),
         };
         let answers = Answers {

@@ -8,7 +8,7 @@
 use super::descents::{FEWEST, Pool, is_far};
 use super::exchange::{Exchanges, Scale};
 use super::levenberg_marquardt::Accuracy;
-use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
+use super::{Answers, DescentReport, Optimizer, Required, Setup, has_failed, key};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::sampling::latin_hypercube;
@@ -305,11 +305,11 @@ impl Optimizer for Polished {
         self.next_stage();
     }
 
-    fn wants(&self) -> Wants {
+    fn required(&self) -> Required {
         match (self.stage, &self.search) {
-            (Stage::Descents, _) => self.pool.wants(),
-            (Stage::Search(_), Some(search)) => search.wants(),
-            _ => Wants::Objectives,
+            (Stage::Descents, _) => self.pool.required(),
+            (Stage::Search(_), Some(search)) => search.required(),
+            _ => Required::Objectives,
         }
     }
 

@@ -2,8 +2,8 @@
 
 // What includes this file, a test or a benchmark, names these in its own way.
 use super::{
-    Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup, Wants, hypervolume,
-    survivors,
+    Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Required, Setup,
+    hypervolume, survivors,
 };
 use crate::elementary;
 
@@ -54,7 +54,7 @@ pub(crate) fn minimum(
         let rows: Vec<f64> =
             rows.into_iter().flat_map(|row| row.unwrap_or_else(|| vec![f64::NAN; m])).collect();
         let mut jacobians = Vec::new();
-        if search.wants() == Wants::Jacobians {
+        if search.required() == Required::Jacobians {
             used += 2 * (n * batch.len()) as u64;
             jacobians = batch.rows().flat_map(|genome| differences(genome, m, residuals)).collect();
         }
