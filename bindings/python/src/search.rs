@@ -2,7 +2,7 @@
 
 use crate::errors::raised_fault;
 use crate::values;
-use gapilib::internals::ga::optimizer::{Answers, METHODS, Optimizer as Search, Setup, Required};
+use gapilib::internals::ga::optimizer::{Answers, METHODS, Optimizer as Search, Required, Setup};
 use gapilib::internals::ga::{Gene, Genomes, Mrg32k3a};
 use gapilib::internals::registry::{Choice, Options, find};
 use indexmap::IndexMap;

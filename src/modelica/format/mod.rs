@@ -131,7 +131,7 @@ fn laid_out(lexed: &Lexed<'_>, language: Language, line_end: &str) -> String {
     text
 }
 
-/// Whether two source texts consist of the same tokens and comments, and statements end at the same
+/// Whether two sources consist of the same tokens and comments, and statements end at the same
 /// ones.
 fn same_lexemes(one: &Lexed<'_>, other: &Lexed<'_>) -> bool {
     let same = |at: usize| {

@@ -10,7 +10,7 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Access to the files of a library. Implementations decode and number the source texts.
+/// Access to the files of a library. Implementations decode and number the source files.
 pub trait LibraryFiles: Debug + Send + Sync {
     /// The text of a file, and its number.
     ///
