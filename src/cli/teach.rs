@@ -16,7 +16,7 @@ use gapilib_script::teach::branches::Branches;
 use gapilib_script::teach::page::WhatIf;
 use gapilib_script::teach::quiz::{self, Score};
 use gapilib_script::teach::screen::Screen;
-use gapilib_script::teach::{Trace, Walk, page, picture, plain};
+use gapilib_script::teach::{Trace, TraceCursor, page, picture, plain};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -125,7 +125,7 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
             let what_if = what_if(arguments, global)?;
             write_page(trace, page, (&results(arguments)?, is_script), what_if.as_ref())
         }
-        None => show(Walk::new(trace), session, arguments, global),
+        None => show(TraceCursor::new(trace), session, arguments, global),
     }
 }
 
@@ -301,7 +301,7 @@ fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
 
 /// On the screen of a terminal; as text where there is none.
 fn show(
-    mut walk: Walk,
+    mut walk: TraceCursor,
     mut session: Option<Session>,
     arguments: &TeachArgs,
     global: &Global,
@@ -346,7 +346,7 @@ fn show(
 /// So many evaluations of a script without a genetic algorithm are printed.
 const MOST_EVALUATIONS: usize = 5;
 
-fn print(mut walk: Walk, arguments: &TeachArgs) {
+fn print(mut walk: TraceCursor, arguments: &TeachArgs) {
     let count = walk.trace().generations.len();
     let all = match walk.generation() {
         generation if generation.is_call => count,
@@ -371,7 +371,7 @@ fn print(mut walk: Walk, arguments: &TeachArgs) {
 }
 
 /// Asks what the step will do, if there is something to ask and someone to answer.
-fn ask(walk: &Walk, score: &mut Score) {
+fn ask(walk: &TraceCursor, score: &mut Score) {
     let Some(question) = quiz::question(walk) else { return };
     terminal::print(&format!("? {}\n> ", question.text));
     loop {

@@ -126,7 +126,7 @@ pub fn profiles(
     let Some(refit) = Refit::new(problem, evaluation).filter(|_| known.freedom >= 1.0) else {
         return Ok(None);
     };
-    let mut walk = Walk {
+    let mut walk = ProfileWalk {
         refit,
         limit: 0.0,
         last: known.budget,
@@ -220,7 +220,7 @@ pub fn limit(
     }
 }
 
-struct Walk<'a> {
+struct ProfileWalk<'a> {
     refit: Refit<'a>,
     limit: f64,
     /// The last simulation of the budget.
@@ -262,7 +262,7 @@ impl Piece {
     }
 }
 
-impl Walk<'_> {
+impl ProfileWalk<'_> {
     /// The profile of parameter `k` about the best values and their sum of squares.
     fn one(&mut self, k: usize, known: &Known<'_>, best: (&[f64], f64)) -> Result<One, Fault> {
         let free = self.refit.parameter(k).clone();

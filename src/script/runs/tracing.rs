@@ -4,7 +4,7 @@ use crate::Session;
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::{Quantity, Study};
 use crate::source::Span;
-use crate::teach::{Place, Subject, Tracer};
+use crate::teach::{ScriptLine, Subject, Tracer};
 use std::path::{Path, PathBuf};
 
 /// A trace that has as many bytes unwritten is written.
@@ -39,7 +39,10 @@ impl Session {
     }
 
     /// Tells the tracer, if there is one, what the call at hand has done.
-    pub(crate) fn traced(&mut self, record: impl FnOnce(&mut Tracer, Place)) -> Result<(), Fault> {
+    pub(crate) fn traced(
+        &mut self,
+        record: impl FnOnce(&mut Tracer, ScriptLine),
+    ) -> Result<(), Fault> {
         let Some((path, mut tracer)) = self.extension::<Tracing>().active.take() else {
             return Ok(());
         };
@@ -56,13 +59,13 @@ impl Session {
         written
     }
 
-    fn place_of_call(&self, tracer: &mut Tracer) -> Place {
+    fn place_of_call(&self, tracer: &mut Tracer) -> ScriptLine {
         let span = self.call_site();
         match (self.sources.get(span.source), self.sources.line_column(span)) {
             (Some(source), Some(at)) => {
                 tracer.place(Path::new(&*source.name), &source.text, at.line)
             }
-            _ => Place::default(),
+            _ => ScriptLine::default(),
         }
     }
 }

@@ -6,7 +6,7 @@
 //! genes from the numbers and the factor.
 
 use super::operation::Operation;
-pub use super::place::Place;
+pub use super::place::ScriptLine;
 use serde::{Deserialize, Serialize};
 
 /// Genomes that an event was given: what the run has produced already is not stored again.
@@ -73,7 +73,7 @@ pub enum Event {
     /// `Ram_Gen_ARENA` has drawn numbers.
     Draw {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// The state it began with.
         seed: [f64; 6],
         /// How many numbers.
@@ -82,7 +82,7 @@ pub enum Event {
     /// `Eval` has simulated individuals. Expected: what `Mutation` gave.
     Simulate {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// Number of genes of each individual.
         n_genes: u32,
         /// The individuals.
@@ -93,7 +93,7 @@ pub enum Event {
     /// `Fit` has compared them with the measured data.
     Rate {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// The fitness of each individual.
         fitness: Vec<f64>,
         /// Simulated Y of the best of them at every measured point; empty where all failed.
@@ -102,7 +102,7 @@ pub enum Event {
     /// `Fit_Order` has sorted them. Expected: what `Eval` got and `Fit` gave.
     Sort {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// The individuals.
         genes: Genes,
         /// Their fitness.
@@ -115,7 +115,7 @@ pub enum Event {
     /// `Cross` has made children. Expected: what `Fit_Order` gave.
     Cross {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// The individuals, best first.
         genes: Genes,
         /// Number of parents.
@@ -128,7 +128,7 @@ pub enum Event {
     /// `Mutation` has changed genes. Expected: what `Cross` gave, and the numbers of the last draw.
     Mutate {
         /// Where it was called.
-        place: Place,
+        place: ScriptLine,
         /// The individuals.
         genes: Genes,
         /// One number for each gene.

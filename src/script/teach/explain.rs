@@ -5,13 +5,13 @@ use super::generation::{Generation, mate};
 use super::operation_text;
 use super::scaling::{Scaling, scaling};
 use super::step::Step;
-use super::walk::Walk;
+use super::walk::TraceCursor;
 use super::words::counted;
 pub use super::words::short;
 use crate::ga::has_failed;
 
 /// What happens in the step that `walk` stands at, and why.
-pub fn explain(walk: &Walk) -> String {
+pub fn explain(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     match walk.step() {
         Step::Draw => draw(walk),
@@ -28,7 +28,7 @@ pub fn explain(walk: &Walk) -> String {
     }
 }
 
-fn draw(walk: &Walk) -> String {
+fn draw(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     let numbers: usize = generation.drawn.iter().map(|drawn| drawn.numbers.len()).sum();
     let individuals = counted(generation.len(), "individual");
@@ -45,7 +45,7 @@ fn draw(walk: &Walk) -> String {
 }
 
 /// What the script has done with the numbers, as far as they show it.
-fn used(walk: &Walk, count: usize) -> String {
+fn used(walk: &TraceCursor, count: usize) -> String {
     let generation = walk.generation();
     let Some(formula) = placed(walk) else {
         return "The script makes the genes of them.".to_owned();
@@ -71,7 +71,7 @@ fn used(walk: &Walk, count: usize) -> String {
 }
 
 /// The formula for a gene, as the end of a sentence; `None` where no known one gives all genes.
-fn placed(walk: &Walk) -> Option<String> {
+fn placed(walk: &TraceCursor) -> Option<String> {
     let generation = walk.generation();
     let numbers = generation.numbers_of_genes()?;
     if numbers == generation.genes {
@@ -98,7 +98,7 @@ fn placed(walk: &Walk) -> Option<String> {
 }
 
 /// The crossing points of the run, where the first numbers give them by the formula of the paper.
-fn crossing_points(walk: &Walk, count: usize) -> Option<String> {
+fn crossing_points(walk: &TraceCursor, count: usize) -> Option<String> {
     let drawn = &walk.generation().drawn;
     let numbers = drawn.iter().flat_map(|drawn| &drawn.numbers).take(count);
     let last = walk.generation().n_genes.checked_sub(1)? as f64;
@@ -109,7 +109,7 @@ fn crossing_points(walk: &Walk, count: usize) -> Option<String> {
     (crossed.points == expected).then(|| names.join(", "))
 }
 
-fn simulate(walk: &Walk) -> String {
+fn simulate(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     let (individuals, failed) = (generation.len(), generation.failures.len());
     let subject = &walk.trace().subject;
@@ -132,7 +132,7 @@ fn simulate(walk: &Walk) -> String {
     }
 }
 
-fn rate(walk: &Walk) -> String {
+fn rate(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     let Some((k, fitness)) = generation.best().filter(|(_, fitness)| !has_failed(*fitness)) else {
         return "No individual could be simulated, so there is no best one.".to_owned();
@@ -200,7 +200,7 @@ fn cross(generation: &Generation, rank: usize) -> String {
     )
 }
 
-fn mutate(walk: &Walk, row: usize) -> String {
+fn mutate(walk: &TraceCursor, row: usize) -> String {
     let generation = walk.generation();
     let Some(mutated) = &generation.mutated else { return String::new() };
     let names = &walk.trace().subject.parameters;
@@ -233,7 +233,7 @@ fn mutate(walk: &Walk, row: usize) -> String {
     }
 }
 
-fn complete(walk: &Walk, row: usize) -> String {
+fn complete(walk: &TraceCursor, row: usize) -> String {
     let numbers: Vec<String> = walk
         .next_generation()
         .and_then(|next| next.random_numbers(row))
@@ -250,7 +250,7 @@ fn complete(walk: &Walk, row: usize) -> String {
     )
 }
 
-fn renew(walk: &Walk) -> String {
+fn renew(walk: &TraceCursor) -> String {
     let Some(next) = walk.next_generation() else { return String::new() };
     let individuals = counted(next.len(), "individual");
     if next.has_parents() {
@@ -268,7 +268,7 @@ fn renew(walk: &Walk) -> String {
     }
 }
 
-fn operate(walk: &Walk, row: usize) -> String {
+fn operate(walk: &TraceCursor, row: usize) -> String {
     let Some(operation) = walk.operation() else { return String::new() };
     let text = operation_text::text(operation, row, &walk.trace().subject.parameters);
     match walk.is_last() && walk.trace().full {
@@ -277,7 +277,7 @@ fn operate(walk: &Walk, row: usize) -> String {
     }
 }
 
-fn stop(walk: &Walk) -> String {
+fn stop(walk: &TraceCursor) -> String {
     if walk.generation().is_call {
         return "The operator leaves all individuals as they are.".to_owned();
     }
@@ -302,7 +302,7 @@ fn stop(walk: &Walk) -> String {
 }
 
 /// The end of a script that simulates and compares, without a genetic algorithm.
-fn last_evaluation(walk: &Walk) -> String {
+fn last_evaluation(walk: &TraceCursor) -> String {
     let all = &walk.trace().generations;
     let individuals: usize = all.iter().map(Generation::len).sum();
     let best = all.iter().enumerate().filter_map(|(number, g)| Some((number, g.best()?)));

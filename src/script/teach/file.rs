@@ -60,10 +60,10 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::teach::event::{Genes, Place};
+    use crate::teach::event::{Genes, ScriptLine};
 
     fn some_events() -> Vec<Event> {
-        let place = Place { script: 0, line: 7 };
+        let place = ScriptLine { script: 0, line: 7 };
         vec![
             Event::Draw { place, seed: [12345.0; 6], count: 3 },
             Event::Simulate {

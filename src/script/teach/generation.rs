@@ -1,6 +1,6 @@
 //! One generation, put together from the events of a trace.
 
-use super::event::Place;
+use super::event::ScriptLine;
 use super::operation::Operation;
 
 /// How an individual came into its generation.
@@ -30,7 +30,7 @@ pub enum Origin {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mutated {
     /// Where it was called.
-    pub place: Place,
+    pub place: ScriptLine,
     /// Elites and children before it, row by row.
     pub before: Vec<f64>,
     /// The same after it.
@@ -53,7 +53,7 @@ pub struct Mutated {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crossed {
     /// Where it was called.
-    pub place: Place,
+    pub place: ScriptLine,
     /// Number of parents.
     pub parents: usize,
     /// Number of elites.
@@ -68,7 +68,7 @@ pub struct Crossed {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sorted {
     /// Where it was called.
-    pub place: Place,
+    pub place: ScriptLine,
     /// Indices of the individuals, best first.
     pub order: Vec<usize>,
     /// Number of parents.
@@ -81,7 +81,7 @@ pub struct Sorted {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// Where it was called.
-    pub place: Place,
+    pub place: ScriptLine,
     /// The state of the generator before them.
     pub seed: [f64; 6],
     /// The numbers.
@@ -133,7 +133,7 @@ pub struct Generation {
     /// How each individual came here.
     pub origins: Vec<Origin>,
     /// Where they were simulated.
-    pub simulated: Place,
+    pub simulated: ScriptLine,
     /// Why simulations failed: indices from 0.
     pub failures: Vec<(usize, String)>,
     /// Their fitness, if it is known; smaller is better.
@@ -141,7 +141,7 @@ pub struct Generation {
     /// How often they were compared with measurements once more: with others, perhaps.
     pub(crate) more_ratings: usize,
     /// Where it was computed.
-    pub rated: Option<Place>,
+    pub rated: Option<ScriptLine>,
     /// Simulated Y of the best individual at every measured point; empty where it is not known.
     pub(crate) best_simulated: Vec<f64>,
     /// Their order.

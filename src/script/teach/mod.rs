@@ -4,7 +4,7 @@
 //! through.
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
-//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
+//! run has left. A [`TraceCursor`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
 //! makes a page of them all, [`picture`] a picture of one generation, [`screen`] a terminal's full
 //! of each step. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have
 //! been, [`bands`] does so over many seeds.
@@ -42,10 +42,10 @@ mod tracer;
 mod walk;
 mod words;
 
-pub use event::{Event, Place, Subject};
+pub use event::{Event, ScriptLine, Subject};
 pub use generation::{Generation, Origin};
 pub use operation::{Action, Operation};
 pub use step::Step;
 pub use trace::Trace;
 pub(crate) use tracer::{MutationCall, Tracer};
-pub use walk::Walk;
+pub use walk::TraceCursor;

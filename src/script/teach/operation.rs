@@ -2,14 +2,14 @@
 //! What the operator did in between is not recorded, so that it may be a function of the script as
 //! well.
 
-use super::place::Place;
+use super::place::ScriptLine;
 use serde::{Deserialize, Serialize};
 
 /// A call of an operator by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Operation {
     /// Where it was called.
-    pub place: Place,
+    pub place: ScriptLine,
     /// The operator with its settings, as the script names it.
     pub operator: String,
     /// Whether it is a function of the script.
@@ -75,7 +75,7 @@ pub enum Action {
 
 /// What kind of operator a step is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum OperationKind {
     /// Samples individuals.
     Sampling,
     /// Selects parents.
@@ -88,39 +88,39 @@ pub enum Kind {
     Survival,
 }
 
-impl Kind {
+impl OperationKind {
     /// What a step of this kind is called.
     pub fn title(self) -> &'static str {
         match self {
-            Kind::Sampling => "sampling",
-            Kind::Selection => "selection",
-            Kind::Crossover => "crossover",
-            Kind::Mutation => "mutation",
-            Kind::Survival => "survivor selection",
+            OperationKind::Sampling => "sampling",
+            OperationKind::Selection => "selection",
+            OperationKind::Crossover => "crossover",
+            OperationKind::Mutation => "mutation",
+            OperationKind::Survival => "survivor selection",
         }
     }
 
     /// The command of the script.
     pub fn command(self) -> &'static str {
         match self {
-            Kind::Sampling => "Op_Sampling",
-            Kind::Selection => "Op_Selection",
-            Kind::Crossover => "Op_Crossover",
-            Kind::Mutation => "Op_Mutation",
-            Kind::Survival => "Op_Survival",
+            OperationKind::Sampling => "Op_Sampling",
+            OperationKind::Selection => "Op_Selection",
+            OperationKind::Crossover => "Op_Crossover",
+            OperationKind::Mutation => "Op_Mutation",
+            OperationKind::Survival => "Op_Survival",
         }
     }
 }
 
 impl Operation {
     /// What kind of operator was called.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> OperationKind {
         match self.action {
-            Action::Sampling { .. } => Kind::Sampling,
-            Action::Selection { .. } => Kind::Selection,
-            Action::Crossover { .. } => Kind::Crossover,
-            Action::Mutation { .. } => Kind::Mutation,
-            Action::Survival { .. } => Kind::Survival,
+            Action::Sampling { .. } => OperationKind::Sampling,
+            Action::Selection { .. } => OperationKind::Selection,
+            Action::Crossover { .. } => OperationKind::Crossover,
+            Action::Mutation { .. } => OperationKind::Mutation,
+            Action::Survival { .. } => OperationKind::Survival,
         }
     }
 

@@ -16,7 +16,7 @@ use super::quiz;
 use super::scaling::{Scaling, scaling};
 use super::step::Step;
 use super::trace::Trace;
-use super::walk::Walk;
+use super::walk::TraceCursor;
 use crate::page::Page;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -289,7 +289,7 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
 /// The data of the page with the id of their element: as they are, or compressed, with as many
 /// generations as there is room for.
 fn fitting(trace: Trace, result: &Value) -> (&'static str, String) {
-    let mut walk = Walk::new(trace);
+    let mut walk = TraceCursor::new(trace);
     let mut most = MOST_DATA;
     loop {
         let kept = kept(&walk.trace().generations, most);
@@ -314,7 +314,7 @@ fn packed(data: &str) -> String {
     format!("\"{}\"", BASE64.encode(written.unwrap_or_default()))
 }
 
-fn data(walk: &mut Walk, chosen: &Kept, result: &Value) -> Value {
+fn data(walk: &mut TraceCursor, chosen: &Kept, result: &Value) -> Value {
     let kept = &chosen.numbers;
     let steps: Vec<Value> = (0..kept.len()).flat_map(|g| steps(walk, kept, g)).collect();
     let trace = walk.trace();
@@ -388,7 +388,7 @@ fn relative(member: &Member, generation: &Generation) -> Value {
 
 /// The steps of the kept generation `g`. Where the one after it is not on the page, how that came to
 /// be is not shown.
-fn steps(walk: &mut Walk, kept: &[usize], g: usize) -> Vec<Value> {
+fn steps(walk: &mut TraceCursor, kept: &[usize], g: usize) -> Vec<Value> {
     let number = kept[g];
     walk.go_to(number);
     let of = walk.trace().generations.len();
@@ -404,7 +404,7 @@ fn steps(walk: &mut Walk, kept: &[usize], g: usize) -> Vec<Value> {
     steps
 }
 
-fn step(walk: &Walk, g: usize) -> Value {
+fn step(walk: &TraceCursor, g: usize) -> Value {
     let step = walk.step();
     let place = walk.place();
     let of = match step {
@@ -427,7 +427,7 @@ fn step(walk: &Walk, g: usize) -> Value {
 }
 
 /// What an operator was given and what it returned.
-fn table(walk: &Walk, row: usize) -> Value {
+fn table(walk: &TraceCursor, row: usize) -> Value {
     let Some(operation) = walk.operation() else { return Value::Null };
     let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
     let row = |row: &Row| {

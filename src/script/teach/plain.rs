@@ -4,7 +4,7 @@ use super::explain::{explain, short};
 use super::generation::{Generation, Origin};
 use super::operation_table::{self, Row};
 use super::step::Step;
-use super::walk::Walk;
+use super::walk::TraceCursor;
 use crate::ga::has_failed;
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ const SUMMED: usize = 4;
 
 /// The step that `walk` stands at: its heading, its sentence, the line of the script, and a table
 /// where one helps.
-pub fn step(walk: &Walk) -> String {
+pub fn step(walk: &TraceCursor) -> String {
     let (at, of) = walk.progress();
     let title = title(walk);
     let heading = format!("{}, step {} of {of}: {title}", place_in_run(walk), at + 1);
@@ -32,7 +32,7 @@ pub fn step(walk: &Walk) -> String {
 }
 
 /// Which generation it is, or which call of operators where nothing is simulated.
-pub(crate) fn place_in_run(walk: &Walk) -> String {
+pub(crate) fn place_in_run(walk: &TraceCursor) -> String {
     format!("{} {}", unit(walk.generation()), walk.number() + 1)
 }
 
@@ -46,7 +46,7 @@ pub fn unit(generation: &Generation) -> &'static str {
 }
 
 /// What a step is called.
-pub fn title(walk: &Walk) -> &'static str {
+pub fn title(walk: &TraceCursor) -> &'static str {
     match walk.step() {
         Step::Draw if walk.generation().is_evaluation => "sampling",
         Step::Draw => "initial population",
@@ -64,7 +64,7 @@ pub fn title(walk: &Walk) -> &'static str {
 }
 
 /// One line for each generation: the best fitness, the mean of those that were simulated, failures.
-pub fn summary(walk: &Walk) -> String {
+pub fn summary(walk: &TraceCursor) -> String {
     let generations = &walk.trace().generations;
     let unit = unit(walk.generation()).to_lowercase();
     let mut text = format!("{unit:>10}  {:>12}  {:>12}  {:>8}\n", "best", "mean", "failed");
@@ -99,7 +99,7 @@ fn is_shown(number: usize, of: usize) -> bool {
     count <= 10 || count == of || matches!(leading, 1 | 2 | 5)
 }
 
-fn table(walk: &Walk) -> String {
+fn table(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     match walk.step() {
         Step::Draw => individuals(walk, generation, &in_sequence(generation), Known::Genes),
@@ -139,7 +139,12 @@ fn in_sequence(generation: &Generation) -> Vec<usize> {
 }
 
 /// A table of individuals in this order, with no more than is known.
-fn individuals(walk: &Walk, generation: &Generation, order: &[usize], known: Known) -> String {
+fn individuals(
+    walk: &TraceCursor,
+    generation: &Generation,
+    order: &[usize],
+    known: Known,
+) -> String {
     let last = if known == Known::Rank { "becomes" } else { "came as" };
     let mut text = heading(walk, &["no", "fitness"], last);
     for (rank, &k) in order.iter().take(LISTED).enumerate() {
@@ -177,7 +182,7 @@ fn role(generation: &Generation, rank: usize) -> &'static str {
 
 /// How the best individual got its fitness, as a sum. Nothing where another function than the
 /// built-in `Fit` has computed it.
-fn sum_of_best(walk: &Walk) -> String {
+fn sum_of_best(walk: &TraceCursor) -> String {
     let (Some((k, fitness)), measured) = (walk.generation().best(), &walk.trace().measured.1)
     else {
         return String::new();
@@ -197,7 +202,7 @@ fn sum_of_best(walk: &Walk) -> String {
     wrapped(&format!("fitness of {} = {terms}{more} = {}", k + 1, short(fitness)))
 }
 
-fn elites(walk: &Walk) -> String {
+fn elites(walk: &TraceCursor) -> String {
     let generation = walk.generation();
     let Some(crossed) = &generation.crossed else { return String::new() };
     let order = generation.order();
@@ -206,7 +211,7 @@ fn elites(walk: &Walk) -> String {
 }
 
 /// The random numbers of one individual and the genes they give.
-fn completed(walk: &Walk, row: usize) -> String {
+fn completed(walk: &TraceCursor, row: usize) -> String {
     let Some(next) = walk.next_generation() else { return String::new() };
     let mut text = heading(walk, &["", ""], "");
     if let Some(numbers) = next.random_numbers(row) {
@@ -231,7 +236,7 @@ fn origin(generation: &Generation, k: usize) -> String {
 }
 
 /// Two parents above their children, `|` at the crossing points.
-fn family(walk: &Walk, rank: usize) -> String {
+fn family(walk: &TraceCursor, rank: usize) -> String {
     let generation = walk.generation();
     let Some(crossed) = &generation.crossed else { return String::new() };
     let mate = super::generation::mate(rank, crossed.parents);
@@ -254,7 +259,7 @@ fn family(walk: &Walk, rank: usize) -> String {
 }
 
 /// The numbers of one child, and its genes before and after.
-fn mutation(walk: &Walk, row: usize) -> String {
+fn mutation(walk: &TraceCursor, row: usize) -> String {
     let generation = walk.generation();
     let Some(mutated) = &generation.mutated else { return String::new() };
     let n = generation.n_genes;
@@ -280,7 +285,7 @@ fn mutation(walk: &Walk, row: usize) -> String {
 }
 
 /// What an operator was given and what it returned.
-fn operated(walk: &Walk, row: usize) -> String {
+fn operated(walk: &TraceCursor, row: usize) -> String {
     let Some(operation) = walk.operation() else { return String::new() };
     let table = operation_table::table(operation, row, &walk.trace().subject.parameters);
     if table.rows.is_empty() {
@@ -303,7 +308,7 @@ fn operated(walk: &Walk, row: usize) -> String {
     text
 }
 
-fn heading(walk: &Walk, first: &[&str; 2], last: &str) -> String {
+fn heading(walk: &TraceCursor, first: &[&str; 2], last: &str) -> String {
     let names = walk.trace().subject.parameters.iter().take(walk.generation().n_genes);
     let names: String = names.map(|name| format!(" {:>10}", shortened(name))).collect();
     let line = format!("{:>5} {:>10}{names}  {last}", first[0], first[1]);

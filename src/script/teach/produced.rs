@@ -2,7 +2,7 @@
 //! to name only what does not follow from the events before.
 
 use super::event::{Event, Genes, Numbers};
-use super::operation::Kind;
+use super::operation::OperationKind;
 use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 
 /// The results of the paper's functions, as the next ones usually get them.
@@ -138,7 +138,7 @@ impl Produced {
                 *self = Produced { n_genes, numbers, ended: true, ..Produced::default() };
             }
             // What is sampled may belong to the generation at hand; all else makes the next one.
-            Event::Operate(operation) => self.ended |= operation.kind() != Kind::Sampling,
+            Event::Operate(operation) => self.ended |= operation.kind() != OperationKind::Sampling,
             Event::Script { .. } | Event::Subject(_) | Event::Measured { .. } | Event::Full => {}
         }
         Some(())

@@ -7,7 +7,7 @@
 use super::explain::short;
 use super::generation::{Generation, mate};
 use super::step::Step;
-use super::walk::Walk;
+use super::walk::TraceCursor;
 use serde::Serialize;
 
 /// Up to so many parents the learner names all of them.
@@ -69,7 +69,7 @@ impl std::fmt::Display for Score {
 }
 
 /// The question before the step that `walk` stands at, if there is one.
-pub fn question(walk: &Walk) -> Option<Question> {
+pub fn question(walk: &TraceCursor) -> Option<Question> {
     let generation = walk.generation();
     let is_even = walk.number().is_multiple_of(2);
     match walk.step() {
@@ -142,7 +142,7 @@ fn numbers(answer: &str) -> Option<Vec<usize>> {
     Some(named)
 }
 
-fn selection(walk: &Walk) -> Option<Question> {
+fn selection(walk: &TraceCursor) -> Option<Question> {
     let generation = walk.generation();
     let sorted = generation.sorted.as_ref()?;
     (generation.fitness.len() == generation.len()).then_some(())?;
@@ -244,7 +244,7 @@ fn heritage(generation: &Generation, rank: usize) -> Option<Question> {
     Some(Question { text, answer: Answer::Letters { right } })
 }
 
-fn mutation(walk: &Walk, row: usize) -> Option<Question> {
+fn mutation(walk: &TraceCursor, row: usize) -> Option<Question> {
     let generation = walk.generation();
     let mutated = generation.mutated.as_ref()?;
     let j = walk.number() % generation.n_genes;
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn where_parents_were_cut_is_asked_of_three_genes() {
         let crossed = |n: usize| super::super::generation::Crossed {
-            place: crate::teach::Place::default(),
+            place: crate::teach::ScriptLine::default(),
             parents: 4,
             elites: 0,
             points: vec![n - 1],
@@ -351,7 +351,7 @@ mod tests {
             fitness: (0..20).map(f64::from).collect(),
             origins: vec![crate::teach::Origin::Script; 20],
             sorted: Some(super::super::generation::Sorted {
-                place: crate::teach::Place::default(),
+                place: crate::teach::ScriptLine::default(),
                 order: (0..20).collect(),
                 parents,
                 elites: 1,
@@ -359,7 +359,7 @@ mod tests {
             ..crate::teach::Generation::default()
         };
         let generations: Vec<_> = (0..12).map(|_| generation(12)).collect();
-        let mut walk = Walk::new(crate::teach::Trace { generations, ..Default::default() });
+        let mut walk = TraceCursor::new(crate::teach::Trace { generations, ..Default::default() });
         let mut answers = Vec::new();
         loop {
             if let Some(question) = question(&walk) {

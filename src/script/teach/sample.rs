@@ -1,9 +1,9 @@
 //! A small run for the tests: two genes, a straight line to fit, the paper's loop.
 
-use super::event::Place;
+use super::event::ScriptLine;
 use super::operation::{Action, Operation};
 use super::tracer::{MutationCall, Tracer};
-use super::{Subject, Trace, Walk};
+use super::{Subject, Trace, TraceCursor};
 use crate::elementary;
 use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 use std::path::Path;
@@ -64,20 +64,20 @@ pub(super) fn snapshots() -> insta::Settings {
 }
 
 /// A walk at the first step of three generations.
-pub(super) fn walk() -> Walk {
-    Walk::new(Trace::read(&run(3, 12345.0).bytes).expect("a trace"))
+pub(super) fn walk() -> TraceCursor {
+    TraceCursor::new(Trace::read(&run(3, 12345.0).bytes).expect("a trace"))
 }
 
-fn tracer_place(line: u32) -> Place {
-    Place { script: 0, line }
+fn tracer_place(line: u32) -> ScriptLine {
+    ScriptLine { script: 0, line }
 }
 
-fn drawn(count: usize, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: Place) -> Vec<f64> {
+fn drawn(count: usize, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: ScriptLine) -> Vec<f64> {
     tracer.drawn(place, rng.state(), count);
     (0..count).map(|_| rng.uniform()).collect()
 }
 
-fn complete(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: Place) {
+fn complete(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: ScriptLine) {
     while population.len() < POPULATION {
         let u = drawn(2, rng, tracer, place);
         let gene = |j: usize| MINIMA[j] + (MAXIMA[j] - MINIMA[j]) * u[j];
@@ -88,7 +88,7 @@ fn complete(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, p
 fn simulate(
     population: &Genomes,
     tracer: &mut Tracer,
-    place: &mut impl FnMut(u32) -> Place,
+    place: &mut impl FnMut(u32) -> ScriptLine,
 ) -> (Vec<f64>, Vec<f64>) {
     let subject = Subject {
         model: "Line".to_owned(),
@@ -112,7 +112,7 @@ fn simulate(
     (rows, fitness)
 }
 
-fn mutate(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: Place) {
+fn mutate(population: &mut Genomes, rng: &mut Mrg32k3a, tracer: &mut Tracer, place: ScriptLine) {
     let numbers = drawn(population.values().len(), rng, tracer, place);
     let call = MutationCall {
         genes: population.values(),

@@ -62,7 +62,11 @@ mod tests {
             n_genes: 2,
             origins: vec![Origin::Random; genes.len() / 2],
             genes,
-            drawn: vec![Drawn { place: crate::teach::Place::default(), seed: [1.0; 6], numbers }],
+            drawn: vec![Drawn {
+                place: crate::teach::ScriptLine::default(),
+                seed: [1.0; 6],
+                numbers,
+            }],
             ..Generation::default()
         }
     }

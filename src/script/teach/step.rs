@@ -1,8 +1,8 @@
 //! The steps in which a generation is explained.
 
-use super::event::Place;
+use super::event::ScriptLine;
 use super::generation::{Generation, Origin, Part, mate};
-use super::operation::Kind;
+use super::operation::OperationKind;
 
 /// One step of a generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub enum Step {
         /// Which of the calls of the generation, from 0.
         call: usize,
         /// What kind of operator it is.
-        kind: Kind,
+        kind: OperationKind,
         /// The first of the rows that the step is about, from 0.
         row: usize,
     },
@@ -66,17 +66,17 @@ impl Step {
             Step::Mutate(_) => Phase::Mutating,
             Step::Complete(_) | Step::Renew | Step::Stop => Phase::Renewing,
             Step::Operate { kind, .. } => match kind {
-                Kind::Sampling => Phase::Drawing,
-                Kind::Selection => Phase::Selecting,
-                Kind::Crossover => Phase::Crossing,
-                Kind::Mutation => Phase::Mutating,
-                Kind::Survival => Phase::Renewing,
+                OperationKind::Sampling => Phase::Drawing,
+                OperationKind::Selection => Phase::Selecting,
+                OperationKind::Crossover => Phase::Crossing,
+                OperationKind::Mutation => Phase::Mutating,
+                OperationKind::Survival => Phase::Renewing,
             },
         }
     }
 
     /// The script line of the step, where one is known.
-    pub fn place(self, generation: &Generation, next: Option<&Generation>) -> Option<Place> {
+    pub fn place(self, generation: &Generation, next: Option<&Generation>) -> Option<ScriptLine> {
         let sorted = generation.sorted.as_ref().map(|sorted| sorted.place);
         let crossed = generation.crossed.as_ref().map(|crossed| crossed.place);
         let mutated = generation.mutated.as_ref().map(|mutated| mutated.place);

@@ -1,7 +1,7 @@
 //! Traces written, read and walked.
 
 use super::sample::{self, POPULATION};
-use super::{Step, Trace, Walk, page, plain};
+use super::{Step, Trace, TraceCursor, page, plain};
 use base64::Engine as _;
 use proptest::prelude::*;
 use std::io::Read as _;
@@ -68,7 +68,7 @@ fn a_trace_cut_anywhere_is_read_up_to_there() {
             Ok(trace) => {
                 assert!(trace.generations.len() >= generations, "cut at {cut}");
                 generations = trace.generations.len();
-                let mut walk = Walk::new(trace);
+                let mut walk = TraceCursor::new(trace);
                 while walk.forward() {
                     plain::step(&walk);
                 }
@@ -88,7 +88,7 @@ fn damaged_traces_are_no_panic() {
             let mut damaged = bytes.clone();
             damaged[at] ^= flip;
             if let Ok(trace) = Trace::read(&damaged) {
-                let mut walk = Walk::new(trace);
+                let mut walk = TraceCursor::new(trace);
                 while walk.forward() {
                     plain::step(&walk);
                 }
@@ -106,7 +106,7 @@ fn damaged_traces_of_operators_are_no_panic() {
             damaged[at] ^= flip;
             if let Ok(trace) = Trace::read(&damaged) {
                 page::page(trace.clone(), None, None);
-                let mut walk = Walk::new(trace);
+                let mut walk = TraceCursor::new(trace);
                 while walk.forward() {
                     plain::step(&walk);
                 }

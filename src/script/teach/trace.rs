@@ -4,7 +4,7 @@ use super::errors::BAD_TRACE;
 use super::event::{Event, Genes, Numbers, Subject};
 use super::file;
 use super::generation::{Called, Crossed, Drawn, Generation, Mutated, Origin, Part, Sorted};
-use super::operation::{Kind, Operation};
+use super::operation::{Operation, OperationKind};
 use super::produced::Produced;
 use crate::bail;
 use crate::diag::Fault;
@@ -80,7 +80,7 @@ struct Reading {
 fn makes_children(event: &Event) -> bool {
     match event {
         Event::Sort { .. } | Event::Cross { .. } | Event::Mutate { .. } => true,
-        Event::Operate(operation) => operation.kind() != Kind::Sampling,
+        Event::Operate(operation) => operation.kind() != OperationKind::Sampling,
         _ => false,
     }
 }

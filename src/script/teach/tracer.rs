@@ -1,6 +1,6 @@
 //! Writes a trace while scripts run.
 
-use super::event::{Event, Genes, Numbers, Place, Subject};
+use super::event::{Event, Genes, Numbers, ScriptLine, Subject};
 use super::file;
 use super::operation::Operation;
 use super::produced::Produced;
@@ -77,20 +77,20 @@ impl Tracer {
     }
 
     /// The place of a line in a script; its text is recorded when it is named first.
-    pub fn place(&mut self, path: &Path, text: &str, line: usize) -> Place {
+    pub fn place(&mut self, path: &Path, text: &str, line: usize) -> ScriptLine {
         let line = line as u32;
         if let Some(&script) = self.scripts.get(path) {
-            return Place { script, line };
+            return ScriptLine { script, line };
         }
         let script = self.scripts.len() as u32;
         self.scripts.insert(path.to_owned(), script);
         let name = path.display().to_string();
         self.push(&Event::Script { name, text: text.to_owned() });
-        Place { script, line }
+        ScriptLine { script, line }
     }
 
     /// `Ram_Gen_ARENA` has drawn `count` numbers.
-    pub fn drawn(&mut self, place: Place, seed: [f64; 6], count: usize) {
+    pub fn drawn(&mut self, place: ScriptLine, seed: [f64; 6], count: usize) {
         self.push(&Event::Draw { place, seed, count: count as u32 });
     }
 
@@ -98,7 +98,7 @@ impl Tracer {
     /// those that failed, from 0, and why.
     pub fn simulated(
         &mut self,
-        place: Place,
+        place: ScriptLine,
         (subject, x): (&Subject, &[f64]),
         genes: &[f64],
         failures: Vec<(u32, String)>,
@@ -117,7 +117,13 @@ impl Tracer {
     }
 
     /// `Fit` has compared individuals with `measured`; `simulated` has one row for each.
-    pub fn rated(&mut self, place: Place, fitness: &[f64], simulated: &[f64], measured: &[f64]) {
+    pub fn rated(
+        &mut self,
+        place: ScriptLine,
+        fitness: &[f64],
+        simulated: &[f64],
+        measured: &[f64],
+    ) {
         if self.points.0.len() == measured.len() && self.points.1 != measured {
             self.points.1 = measured.to_vec();
             let (x, y) = self.points.clone();
@@ -134,7 +140,7 @@ impl Tracer {
     /// `Fit_Order` has sorted individuals.
     pub fn sorted(
         &mut self,
-        place: Place,
+        place: ScriptLine,
         (genes, fitness): (&[f64], &[f64]),
         (parents, elites): (usize, usize),
     ) {
@@ -148,7 +154,7 @@ impl Tracer {
     /// `Cross` has made children of individuals with `n_genes` genes each.
     pub fn crossed(
         &mut self,
-        place: Place,
+        place: ScriptLine,
         (genes, n_genes): (&[f64], usize),
         (parents, elites): (usize, usize),
         points: &[usize],
@@ -161,7 +167,7 @@ impl Tracer {
     }
 
     /// `Mutation` has changed genes.
-    pub fn mutated(&mut self, place: Place, call: &MutationCall) {
+    pub fn mutated(&mut self, place: ScriptLine, call: &MutationCall) {
         self.alone(call.minima.len());
         let genes = Genes::of(call.genes, &self.produced.crossed, self.produced.n_genes);
         let numbers = Numbers::of(call.numbers, &self.produced.numbers);

@@ -1,6 +1,6 @@
 //! Walking through a trace, forward and back.
 
-use super::event::Place;
+use super::event::ScriptLine;
 use super::generation::Generation;
 use super::operation::Operation;
 use super::step::{Step, steps};
@@ -9,17 +9,17 @@ use super::trace::{Script, Trace};
 
 /// A place in a trace: one step of one generation.
 #[derive(Debug, Clone)]
-pub struct Walk {
+pub struct TraceCursor {
     trace: Trace,
     generation: usize,
     steps: Vec<Step>,
     at: usize,
 }
 
-impl Walk {
+impl TraceCursor {
     /// At the first step of a trace.
-    pub fn new(trace: Trace) -> Walk {
-        let mut walk = Walk { trace, generation: 0, steps: Vec::new(), at: 0 };
+    pub fn new(trace: Trace) -> TraceCursor {
+        let mut walk = TraceCursor { trace, generation: 0, steps: Vec::new(), at: 0 };
         walk.enter(0);
         walk
     }
@@ -81,14 +81,14 @@ impl Walk {
     }
 
     /// The same as a place. The stop test is where the loop of the generations begins.
-    pub fn place(&self) -> Option<Place> {
+    pub fn place(&self) -> Option<ScriptLine> {
         let place = self.step().place(self.generation(), self.next_generation())?;
         let script = self.trace.scripts.get(place.script as usize)?;
         let head = match self.step() {
             Step::Renew | Step::Stop => loop_around(&script.lines, place.line as usize),
             _ => None,
         };
-        Some(head.map_or(place, |line| Place { line: line as u32, ..place }))
+        Some(head.map_or(place, |line| ScriptLine { line: line as u32, ..place }))
     }
 
     /// One step on; whether there was one.
@@ -141,7 +141,7 @@ impl Walk {
     }
 
     /// On to the next step where `condition` holds; back where it was if there is none.
-    pub fn until(&mut self, condition: impl Fn(&Walk) -> bool) -> bool {
+    pub fn until(&mut self, condition: impl Fn(&TraceCursor) -> bool) -> bool {
         let (generation, at) = (self.generation, self.at);
         while self.forward() {
             if condition(self) {

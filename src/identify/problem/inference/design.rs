@@ -99,7 +99,7 @@ struct Candidate {
 }
 
 /// The present information, and what is compared with it.
-struct Search<'a> {
+struct DesignSearch<'a> {
     local: &'a Local,
     /// Parameter by relative parameter: |value|, or 1 where it is 0.
     units: Vec<f64>,
@@ -131,7 +131,7 @@ pub fn next_measurement(
             return Ok(None);
         }
     };
-    let search = Search::new(problem, local, settings.points);
+    let search = DesignSearch::new(problem, local, settings.points);
     let candidates = candidates(problem, settings, &search, curves.curves, &linear)?;
     let mut proposals = search.windows(&candidates);
     let optimal = ["D", "A"].map(|criterion| search.exchange(&candidates, criterion));
@@ -163,7 +163,7 @@ fn unbounded(problem: &Problem, plan: &Proposal) -> Option<String> {
 fn candidates(
     problem: &Problem,
     settings: &DesignSettings,
-    search: &Search<'_>,
+    search: &DesignSearch<'_>,
     curves: Vec<Curve>,
     linear: &Linear,
 ) -> Result<Vec<Candidate>, Fault> {
@@ -212,13 +212,13 @@ impl Candidate {
     }
 }
 
-impl<'a> Search<'a> {
-    fn new(problem: &Problem, local: &'a Local, points: usize) -> Search<'a> {
+impl<'a> DesignSearch<'a> {
+    fn new(problem: &Problem, local: &'a Local, points: usize) -> DesignSearch<'a> {
         let unit = |value: &f64| if *value == 0.0 { 1.0 } else { value.abs() };
         let units: Vec<f64> = local.values.iter().map(unit).collect();
         let n = units.len();
         let gram = local.jacobian.tr_mul(&local.jacobian) / local.variance;
-        Search {
+        DesignSearch {
             present: DMatrix::from_fn(n, n, |k, l| gram[(k, l)] * units[k] * units[l]),
             tolerance: Local::tolerance(problem.noise),
             local,

@@ -13,7 +13,7 @@ mod tests;
 
 use super::branches::Branches;
 use super::trace::Trace;
-use super::walk::Walk;
+use super::walk::TraceCursor;
 use asking::Quiz;
 use prompt::Prompt;
 
@@ -71,7 +71,7 @@ struct Branch {
 /// The state of the screen.
 #[derive(Debug, Clone)]
 pub struct Screen {
-    walk: Walk,
+    walk: TraceCursor,
     view: View,
     /// The individual that is followed, from 0, in the generation of the walk.
     followed: Option<usize>,
@@ -93,7 +93,7 @@ pub struct Screen {
 
 impl Screen {
     /// A screen at the place of `walk`.
-    pub fn new(walk: Walk, colour: bool) -> Screen {
+    pub fn new(walk: TraceCursor, colour: bool) -> Screen {
         let message = String::new();
         Screen {
             walk,
@@ -178,7 +178,7 @@ impl Screen {
     fn exchange(&mut self) {
         let Some(branch) = &mut self.branch else { return };
         let number = self.walk.number();
-        let mut walk = Walk::new(branch.trace.clone());
+        let mut walk = TraceCursor::new(branch.trace.clone());
         walk.go_to(number.min(branch.trace.generations.len() - 1));
         branch.trace = std::mem::replace(&mut self.walk, walk).into_trace();
         branch.is_walked = !branch.is_walked;

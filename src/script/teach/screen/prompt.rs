@@ -3,7 +3,7 @@
 use super::{Key, Screen, View, inspect};
 use crate::ga::has_failed;
 use crate::teach::step::Step;
-use crate::teach::walk::Walk;
+use crate::teach::walk::TraceCursor;
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,7 +88,7 @@ pub fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, String>
 }
 
 /// The index of the individual that was named, from 0.
-fn individual(walk: &Walk, text: &str) -> Result<usize, String> {
+fn individual(walk: &TraceCursor, text: &str) -> Result<usize, String> {
     let generation = walk.generation();
     if text.is_empty() {
         let best = generation.best().map(|(k, _)| k);
@@ -101,9 +101,10 @@ fn individual(walk: &Walk, text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("the individuals are 1 to {}", generation.len()))
 }
 
-fn until(walk: &mut Walk, text: &str) -> Result<String, String> {
-    let best = |walk: &Walk| walk.generation().best().map_or(f64::INFINITY, |(_, fitness)| fitness);
-    let rated = |walk: &Walk| walk.step() == Step::Rate;
+fn until(walk: &mut TraceCursor, text: &str) -> Result<String, String> {
+    let best =
+        |walk: &TraceCursor| walk.generation().best().map_or(f64::INFINITY, |(_, fitness)| fitness);
+    let rated = |walk: &TraceCursor| walk.step() == Step::Rate;
     let (here, now) = (walk.number(), best(walk));
     let found = match text {
         "better" => walk.until(|walk| rated(walk) && walk.number() > here && best(walk) < now),

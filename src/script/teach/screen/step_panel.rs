@@ -4,7 +4,7 @@ use super::Screen;
 use crate::ga::has_failed;
 use crate::teach::explain::short;
 use crate::teach::generation::{Generation, Origin, mate};
-use crate::teach::operation::Kind;
+use crate::teach::operation::OperationKind;
 use crate::teach::operation_table::{self, Row, Table};
 use crate::teach::step::{Phase, Step};
 use ratatui::style::{Color, Modifier, Style};
@@ -197,12 +197,14 @@ fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
 
 /// What an operator was given and what it returned: one gene a line for a family, whose rows are
 /// few, else one individual a line.
-fn operation(screen: &Screen, kind: Kind, row: usize) -> Vec<Line<'static>> {
+fn operation(screen: &Screen, kind: OperationKind, row: usize) -> Vec<Line<'static>> {
     let Some(operation) = screen.walk.operation() else { return Vec::new() };
     let table = operation_table::table(operation, row, &screen.walk.trace().subject.parameters);
     let mut lines = match kind {
-        Kind::Crossover | Kind::Mutation => genes_down(screen, &table),
-        Kind::Sampling | Kind::Selection | Kind::Survival => rows_down(&table),
+        OperationKind::Crossover | OperationKind::Mutation => genes_down(screen, &table),
+        OperationKind::Sampling | OperationKind::Selection | OperationKind::Survival => {
+            rows_down(&table)
+        }
     };
     lines.extend(table.legend.split("; ").map(Line::from).filter(|line| line.width() > 0));
     lines

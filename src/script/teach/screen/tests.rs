@@ -51,7 +51,7 @@ fn screens_of_operators() {
     let cases = [("crossover", 0), ("mutation", 3), ("survival", 4)];
     for (name, steps) in cases {
         let trace = Trace::read(&sample::operators()).unwrap();
-        let mut screen = Screen::new(crate::teach::Walk::new(trace), false);
+        let mut screen = Screen::new(crate::teach::TraceCursor::new(trace), false);
         (0..steps).for_each(|_| assert!(screen.press(Key::Right)));
         let text = drawn(&screen);
         sample::snapshots().bind(|| insta::assert_snapshot!(format!("screen_op_{name}"), text));
