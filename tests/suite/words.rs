@@ -27,7 +27,7 @@ const GONE: &[Word] = &[
     ("may stand", "is allowed", 0),
     ("take it away", "remove it", 0),
     ("nobody", "no one is a person here: name the cause", 0),
-    ("goes on", "continues", 21),
+    ("goes on", "continues", 18),
     ("went on", "continued", 0),
     ("comes back", "returns", 1),
     ("anew", "again", 12),

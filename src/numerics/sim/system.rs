@@ -142,8 +142,8 @@ pub trait Events {
     fn set_uncertainty(&mut self, _crossings: &[f64]) {}
 }
 
-/// How a [`DaeSystem`] goes on where its events are chattering; a system that cannot leaves all methods
-/// as they are.
+/// How a [`DaeSystem`] continues where its events are chattering; a system that cannot leaves all
+/// methods as they are.
 pub trait Modes {
     /// Prepares to be evaluated on either side of surfaces, in all combinations;
     /// whether it can: not where values of events remember on which side they were before.

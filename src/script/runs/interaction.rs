@@ -1,4 +1,4 @@
-//! What the user sees of a search while it goes on, and how he changes it between two generations:
+//! What users see of a search in progress, and how they change it between two generations:
 //! the same for scripts and for problems.
 
 use super::view::{Drawn, Progress, View};
@@ -6,7 +6,7 @@ use crate::Session;
 use crate::identify::SearchRecord;
 use std::ops::ControlFlow;
 
-/// What became of a line: the search goes on or ends; or why the line was refused.
+/// What became of a line: the search continues or ends; or why the line was refused.
 pub(super) type Taken = Result<ControlFlow<()>, String>;
 
 impl Session {
