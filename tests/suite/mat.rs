@@ -521,49 +521,67 @@ fn archive(entries: &[(&str, &str)]) -> Vec<u8> {
     bytes
 }
 
-/// Twenty cells share a text of 16 MiB.
-#[test]
-fn texts_that_cells_share_are_counted_as_often_as_they_are_read() {
+/// A book with these rows in its only sheet, and this shared text.
+fn book(rows: &str, text: &str) -> Vec<u8> {
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     const OFFICE: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006";
-    let book = |text: &str| {
-        let relation = |id: &str, kind: &str, target: &str| {
-            format!("<Relationship Id=\"{id}\" Type=\"{OFFICE}/{kind}\" Target=\"{target}\"/>")
-        };
-        let relations = |all: &str| {
-            format!("<Relationships xmlns=\"{PACKAGE}/relationships\">{all}</Relationships>")
-        };
-        let rows: String = (1..=20)
-            .map(|row| format!("<row r=\"{row}\"><c r=\"A{row}\" t=\"s\"><v>0</v></c></row>"))
-            .collect();
-        archive(&[
-            ("[Content_Types].xml", &format!("<Types xmlns=\"{PACKAGE}/content-types\"/>")),
-            ("_rels/.rels", &relations(&relation("rId1", "officeDocument", "xl/workbook.xml"))),
-            (
-                "xl/workbook.xml",
-                &format!(
-                    "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets><sheet name=\"S\" \
-                     sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
-                ),
-            ),
-            (
-                "xl/_rels/workbook.xml.rels",
-                &relations(
-                    &(relation("rId1", "worksheet", "worksheets/sheet1.xml")
-                        + &relation("rId2", "sharedStrings", "sharedStrings.xml")),
-                ),
-            ),
-            (
-                "xl/sharedStrings.xml",
-                &format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>"),
-            ),
-            (
-                "xl/worksheets/sheet1.xml",
-                &format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>"),
-            ),
-        ])
+    let relation = |id: &str, kind: &str, target: &str| {
+        format!("<Relationship Id=\"{id}\" Type=\"{OFFICE}/{kind}\" Target=\"{target}\"/>")
     };
-    let message = mat::read_named("large.xlsx", &book(&"a".repeat(16 << 20))).unwrap_err().message;
+    let relations = |all: &str| {
+        format!("<Relationships xmlns=\"{PACKAGE}/relationships\">{all}</Relationships>")
+    };
+    archive(&[
+        ("[Content_Types].xml", &format!("<Types xmlns=\"{PACKAGE}/content-types\"/>")),
+        ("_rels/.rels", &relations(&relation("rId1", "officeDocument", "xl/workbook.xml"))),
+        (
+            "xl/workbook.xml",
+            &format!(
+                "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets><sheet name=\"S\" \
+                 sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+            ),
+        ),
+        (
+            "xl/_rels/workbook.xml.rels",
+            &relations(
+                &(relation("rId1", "worksheet", "worksheets/sheet1.xml")
+                    + &relation("rId2", "sharedStrings", "sharedStrings.xml")),
+            ),
+        ),
+        ("xl/sharedStrings.xml", &format!("<sst xmlns=\"{MAIN}\"><si><t>{text}</t></si></sst>")),
+        (
+            "xl/worksheets/sheet1.xml",
+            &format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData></worksheet>"),
+        ),
+    ])
+}
+
+/// Twenty cells share a text of 16 MiB.
+#[test]
+fn texts_that_cells_share_are_counted_as_often_as_they_are_read() {
+    let rows: String = (1..=20)
+        .map(|row| format!("<row r=\"{row}\"><c r=\"A{row}\" t=\"s\"><v>0</v></c></row>"))
+        .collect();
+    let large = book(&rows, &"a".repeat(16 << 20));
+    let message = mat::read_named("large.xlsx", &large).unwrap_err().message;
     assert_eq!(message, "`large.xlsx`: the cells of the sheet `S` contain more than 256 MiB");
+}
+
+/// With 32 bits, MWLQKWW2 is A2, and row 4294967299 is row 3.
+#[test]
+fn references_outside_of_all_spreadsheets_are_no_other_cells() {
+    let read = |second: &str, third: &str| {
+        let rows = format!(
+            "<row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c></row><row r=\"2\"><c r=\"{second}\">\
+             <v>5</v></c></row><row r=\"{third}\"><c><v>7</v></c></row>"
+        );
+        mat::read_named("data.xlsx", &book(&rows, "U"))
+    };
+    assert_eq!(read("A2", "3").unwrap().matrix("U").unwrap().values, [5.0, 7.0]);
+    for (second, third, shown) in [("MWLQKWW2", "3", "MWLQ"), ("A2", "4294967299", "4294967")] {
+        let message = read(second, third).unwrap_err().message;
+        let expected = format!("a cell reference that begins with `{shown}`");
+        assert!(message.contains(&expected), "{message}");
+    }
 }

@@ -15,28 +15,36 @@ const HEADER: usize = 30;
 /// The bytes that all entries have when they are inflated; `None` if they have more than `limit`.
 pub fn inflated(bytes: &[u8], limit: u64) -> Option<u64> {
     let mut total = 0;
-    let mut rest = bytes;
-    while let Some(at) = rest.windows(LOCAL.len()).position(|window| window == LOCAL) {
-        total += size_of_entry(&rest[at..], limit - total + 1);
+    for entry in entries(bytes) {
+        let mut counted = Counted(0);
+        // What is not compressed or damaged is no longer than the file; its reader finds out.
+        let _ = io::copy(&mut entry.take(limit - total + 1), &mut counted);
+        total += counted.0;
         if total > limit {
             return None;
         }
-        rest = &rest[at + LOCAL.len()..];
     }
     Some(total)
 }
 
-/// The bytes that the entry with this header has when it is inflated, at most `most`.
-fn size_of_entry(header: &[u8], most: u64) -> u64 {
+/// What follows each local header, inflated while it is read.
+pub fn entries(bytes: &[u8]) -> impl Iterator<Item = DeflateDecoder<&[u8]>> {
+    let mut rest = bytes;
+    std::iter::from_fn(move || {
+        let at = rest.windows(LOCAL.len()).position(|window| window == LOCAL)?;
+        let header = &rest[at..];
+        rest = &header[LOCAL.len()..];
+        Some(DeflateDecoder::new(data(header)))
+    })
+}
+
+/// The bytes after a header.
+fn data(header: &[u8]) -> &[u8] {
     let length = |place: usize| match header.get(place..place + 2) {
         Some(bytes) => usize::from(u16::from_le_bytes([bytes[0], bytes[1]])),
         None => 0,
     };
-    let Some(data) = header.get(HEADER + length(26) + length(28)..) else { return 0 };
-    let mut counted = Counted(0);
-    // What is not compressed or damaged is no longer than the file; its reader finds out.
-    let _ = io::copy(&mut DeflateDecoder::new(data).take(most), &mut counted);
-    counted.0
+    header.get(HEADER + length(26) + length(28)..).unwrap_or_default()
 }
 
 /// Counts what is written.

@@ -23,6 +23,8 @@ pub mod errors;
 mod matrix;
 mod number;
 mod reader;
+#[cfg(feature = "xlsx")]
+mod references;
 mod signatures;
 #[cfg(feature = "xlsx")]
 mod spreadsheet;

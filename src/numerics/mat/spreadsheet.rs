@@ -3,6 +3,7 @@
 use super::archive;
 use super::errors::BAD_TABLE;
 use super::matrix::MatFile;
+use super::references;
 use super::table;
 use super::v5::MAX_INFLATED;
 use crate::diag::Fault;
@@ -27,14 +28,7 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         fault!(BAD_TABLE, "the spreadsheet cannot be read: {error}")
             .help("save it as .xlsx or .csv")
     };
-    if archive::inflated(bytes, MAX_INFLATED).is_none() {
-        bail!(
-            BAD_TABLE,
-            "the compressed data of the spreadsheet inflate to more than {} MiB",
-            MAX_INFLATED >> 20;
-            help: "save it as .csv"
-        );
-    }
+    check_archive(bytes)?;
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(&error))?;
     let sheets = workbook.sheet_names();
     let Some(sheet) = sheets.first() else {
@@ -78,6 +72,26 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
             .push(format!("only the first sheet `{sheet}` is read, not {}", others.join(", ")));
     }
     Ok(file)
+}
+
+/// A fault if the archive holds more than can be read, or cells that no sheet has.
+fn check_archive(bytes: &[u8]) -> Result<(), Fault> {
+    if archive::inflated(bytes, MAX_INFLATED).is_none() {
+        bail!(
+            BAD_TABLE,
+            "the compressed data of the spreadsheet inflate to more than {} MiB",
+            MAX_INFLATED >> 20;
+            help: "save it as .csv"
+        );
+    }
+    if let Some(reference) = references::impossible(bytes) {
+        bail!(
+            BAD_TABLE,
+            "the spreadsheet has a cell reference that begins with `{reference}`, outside of every sheet";
+            help: "columns end at XFD, rows at 1048576: save it again as .xlsx or .csv"
+        );
+    }
+    Ok(())
 }
 
 /// The places of all formulas; none where they cannot be read.
