@@ -1,18 +1,22 @@
 //! `gapi lsp`: the language server, on standard input and output.
 //!
 //! One thread reads messages and keeps the documents, one answers requests, one examines models, one
-//! writes. So documents are up to date and requests are answered while a model is examined.
+//! writes. So documents are up to date and requests are answered while a model is examined. None of
+//! them is waited for when the client ends the connection: a large library may take minutes.
 
 mod frames;
+mod outgoing;
 mod queue;
 mod worker;
 
 use super::embedding::Embedding;
 use super::options::Global;
 use super::terminal;
+use crate::STACK;
 use crate::lsp::{Client, Document, Workspace, capabilities};
 use crate::script::Session;
 use crate::script::runs::view::Progress;
+use crate::script::with_stack;
 use crate::script::world::Screen;
 use clap::Args;
 use frames::Frame;
@@ -23,12 +27,14 @@ use lsp_types::notification::{
 };
 use lsp_types::request::{Initialize, Request as _, Shutdown};
 use lsp_types::{InitializeParams, InitializeResult, ServerInfo};
+use outgoing::{Outgoing, write_all};
 use queue::Queue;
 use serde::de::DeserializeOwned;
 use std::io::{self, BufRead};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
+use std::time::Duration;
 use worker::{Worker, cancelled};
 
 /// Arguments of `gapi lsp`.
@@ -50,37 +56,90 @@ enum Stage {
     ShutDown,
 }
 
+/// Time for the last messages to a client that has ended the connection: it may not read them.
+const FAREWELL: Duration = Duration::from_secs(2);
+
 /// Serves one client until it ends the connection; exit code 1 if it did not announce that.
 pub(super) fn lsp(_arguments: &LspArgs, global: &Global) -> ExitCode {
     let queue = Arc::new(Queue::default());
-    let (client, messages) = mpsc::channel();
+    let (client, messages) = Outgoing::new();
     let (initialized, started) = mpsc::channel();
-    let writer = std::thread::spawn(move || write_all(&messages));
+    let (end, ended) = mpsc::channel();
+    let (written, all_written) = mpsc::channel();
     let reader = Reader {
         queue: queue.clone(),
         client: client.clone(),
         initialized,
         stage: Stage::Uninitialized,
     };
-    std::thread::spawn(move || reader.run(&mut io::stdin().lock()));
+    let (to_client, global) = (client.clone(), global.clone());
+    let begun = begin(&end, "writer", move || {
+        let code = write_all(&messages).map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS);
+        _ = written.send(());
+        code
+    })
+    .and_then(|()| begin(&end, "reader", move || reader.run(&mut io::stdin().lock())))
+    .and_then(|()| begin(&end, "worker", move || work(&started, &global, queue, to_client)));
+    if let Err(error) = begun {
+        terminal::eprint(&format!("error: cannot start a thread: {error}\n"));
+        return ExitCode::FAILURE;
+    }
+    let code = ended.recv().unwrap_or(ExitCode::FAILURE);
+    client.finish();
+    // Without an answer the client does not read, or is gone.
+    _ = all_written.recv_timeout(FAREWELL);
+    code
+}
+
+/// Starts a thread whose end is the end of the connection.
+fn begin(
+    end: &Sender<ExitCode>,
+    name: &str,
+    work: impl FnOnce() -> ExitCode + Send + 'static,
+) -> io::Result<()> {
+    let ending = Ending { end: end.clone(), code: ExitCode::from(101) };
+    let thread = std::thread::Builder::new().name(name.to_owned()).stack_size(STACK);
+    thread.spawn(move || ending.after(work)).map(drop)
+}
+
+/// Tells that a thread has ended, with a panic as well, which has said what happened.
+struct Ending {
+    end: Sender<ExitCode>,
+    code: ExitCode,
+}
+
+impl Ending {
+    fn after(mut self, work: impl FnOnce() -> ExitCode) {
+        self.code = with_stack(STACK - (4 << 20), work);
+    }
+}
+
+impl Drop for Ending {
+    fn drop(&mut self) {
+        // Another thread may have ended the connection.
+        _ = self.end.send(self.code);
+    }
+}
+
+/// Answers and examines, for the client that says who it is.
+fn work(
+    started: &Receiver<Client>,
+    global: &Global,
+    queue: Arc<Queue>,
+    client: Outgoing,
+) -> ExitCode {
     // A connection that ends before it begins has no client.
     let who = started.recv().unwrap_or_default();
     let mut embedding = Embedding { cache: false, ..Embedding::default() };
     let libraries = global.library.iter().chain(&who.libraries).chain(&who.folders);
     embedding.libraries = libraries.cloned().collect();
     embedding.read = global.allow_read.clone();
-    let code = match embedding.session(Box::new(Silent), Arc::default()) {
+    match embedding.session(Box::new(Silent), Arc::default()) {
         Ok(first) => Worker::new(workspace(who, embedding, first), queue, client).run(),
         Err(error) => {
             terminal::eprint(&format!("error: {error}\n"));
-            drop(client);
-            return ExitCode::FAILURE;
+            ExitCode::FAILURE
         }
-    };
-    // All answers are written before the process ends.
-    match writer.join() {
-        Ok(Ok(())) => code,
-        _ => ExitCode::FAILURE,
     }
 }
 
@@ -96,12 +155,6 @@ fn workspace(who: Client, embedding: Embedding, first: Session) -> Workspace {
     })
 }
 
-/// Writes what is sent to the client; ends when the last sender is gone.
-fn write_all(messages: &Receiver<Message>) -> io::Result<()> {
-    let mut output = io::stdout().lock();
-    messages.iter().try_for_each(|message| frames::write(&mut output, &message))
-}
-
 /// What models and libraries print is not shown.
 struct Silent;
 
@@ -114,14 +167,15 @@ impl Screen for Silent {
 /// The thread that reads.
 struct Reader {
     queue: Arc<Queue>,
-    client: Sender<Message>,
+    client: Outgoing,
     /// Gets what the client says of itself.
     initialized: Sender<Client>,
     stage: Stage,
 }
 
 impl Reader {
-    fn run(mut self, input: &mut impl BufRead) {
+    /// Reads until the client ends the connection; the exit code of the process.
+    fn run(mut self, input: &mut impl BufRead) -> ExitCode {
         loop {
             match frames::read(input) {
                 Ok(Frame::Message(Message::Request(request))) => self.request(request),
@@ -141,8 +195,10 @@ impl Reader {
                 Ok(Frame::End) | Err(_) => break,
             }
         }
-        let is_announced = self.stage == Stage::ShutDown;
-        self.queue.end(if is_announced { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+        match self.stage {
+            Stage::ShutDown => ExitCode::SUCCESS,
+            Stage::Uninitialized | Stage::Running => ExitCode::FAILURE,
+        }
     }
 
     fn request(&mut self, request: Request) {
@@ -153,7 +209,7 @@ impl Reader {
             }
             (Stage::Running, Shutdown::METHOD) => {
                 self.stage = Stage::ShutDown;
-                self.send(Response::new_ok(request.id, ()).into());
+                self.client.send(Response::new_ok(request.id, ()).into());
             }
             (Stage::Running, Initialize::METHOD) => {
                 self.refuse(request, ErrorCode::InvalidRequest, "the server is initialized");
@@ -179,7 +235,7 @@ impl Reader {
         let version = Some(env!("CARGO_PKG_VERSION").to_owned());
         let server_info = Some(ServerInfo { name, version });
         let result = InitializeResult { capabilities: capabilities(), server_info };
-        self.send(Response::new_ok(request.id, result).into());
+        self.client.send(Response::new_ok(request.id, result).into());
     }
 
     fn notified(&mut self, notification: Notification) {
@@ -218,7 +274,7 @@ impl Reader {
                 if let Some(id) = cancelled_id(&params)
                     && self.queue.cancel(&id)
                 {
-                    self.send(cancelled(id));
+                    self.client.send(cancelled(id));
                 }
             }
             _ => {}
@@ -226,11 +282,7 @@ impl Reader {
     }
 
     fn refuse(&self, request: Request, code: ErrorCode, reason: &str) {
-        self.send(Response::new_err(request.id, code as i32, reason.to_owned()).into());
-    }
-
-    fn send(&self, message: Message) {
-        drop(self.client.send(message));
+        self.client.send(Response::new_err(request.id, code as i32, reason.to_owned()).into());
     }
 }
 

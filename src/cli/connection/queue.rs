@@ -5,7 +5,6 @@ use crate::lsp::{Document, Documents};
 use crate::script::models::documents::CheckedModel;
 use lsp_server::{Request, RequestId};
 use std::collections::VecDeque;
-use std::process::ExitCode;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Something to do.
@@ -20,8 +19,6 @@ pub(super) enum Work {
     Examine(Arc<Document>, Documents),
     /// A model of the examination of this number was examined.
     Examined(usize, Option<CheckedModel>),
-    /// The connection has ended.
-    End(ExitCode),
 }
 
 #[derive(Default)]
@@ -95,12 +92,6 @@ impl Queue {
         let mut state = self.state();
         state.work.push_back(Work::Forget);
         state.others = state.documents.keys().cloned().collect();
-        self.notify.notify_one();
-    }
-
-    /// The connection has ended.
-    pub(super) fn end(&self, code: ExitCode) {
-        self.state().work.push_back(Work::End(code));
         self.notify.notify_one();
     }
 

@@ -1,6 +1,7 @@
 //! The thread that knows the classes: answers requests, and examines documents between them. Models,
 //! which may take seconds, are examined one after the other by another thread.
 
+use super::outgoing::Outgoing;
 use super::queue::{Queue, Work};
 use crate::STACK;
 use crate::lsp::{Document, Documents, Examination, Workspace, answer};
@@ -10,18 +11,16 @@ use lsp_server::{ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{Notification as _, PublishDiagnostics};
 use lsp_types::{Diagnostic, PublishDiagnosticsParams, Uri};
 use std::collections::{BTreeMap, BTreeSet};
-use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
 
 /// Of a document with more models, what is wrong with its text is always shown before they are examined.
 const MANY: usize = 8;
 
-/// Works until the connection ends.
+/// Works until the process ends.
 pub(super) struct Worker {
     workspace: Workspace,
     queue: Arc<Queue>,
-    client: Sender<Message>,
+    client: Outgoing,
     /// The examination that has not ended.
     begun: Option<Begun>,
     /// How many examinations were begun: what is found out later for another one is not used.
@@ -42,19 +41,18 @@ struct Begun {
 }
 
 impl Worker {
-    pub(super) fn new(workspace: Workspace, queue: Arc<Queue>, client: Sender<Message>) -> Worker {
+    pub(super) fn new(workspace: Workspace, queue: Arc<Queue>, client: Outgoing) -> Worker {
         let shown = BTreeMap::new();
         Worker { workspace, queue, client, begun: None, count: 0, is_busy: false, shown }
     }
 
-    /// Does what is in the queue; the exit code of the process.
-    pub(super) fn run(&mut self) -> ExitCode {
+    /// Does what is in the queue, without end.
+    pub(super) fn run(&mut self) -> ! {
         loop {
             if !self.is_busy {
                 self.examine_on();
             }
             match self.queue.next(self.begun.is_some()) {
-                Work::End(code) => return code,
                 Work::Request(request, documents) => self.answer(request, &documents),
                 Work::Close(document) => {
                     self.drop_examination(&document);
@@ -128,7 +126,7 @@ impl Worker {
         let uri = uri.clone();
         let params = PublishDiagnosticsParams { uri, diagnostics, version };
         let method = PublishDiagnostics::METHOD.to_owned();
-        self.send(Notification::new(method, params).into());
+        self.client.send(Notification::new(method, params).into());
     }
 
     fn answer(&mut self, request: Request, documents: &Documents) {
@@ -137,12 +135,7 @@ impl Worker {
             Ok(value) => Response::new_ok(id, value),
             Err(refused) => Response::new_err(id, refused.code, refused.message),
         };
-        self.send(response.into());
-    }
-
-    /// A client that is gone gets nothing.
-    fn send(&self, message: Message) {
-        drop(self.client.send(message));
+        self.client.send(response.into());
     }
 }
 

@@ -6,6 +6,10 @@ use std::collections::VecDeque;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+use std::time::{Duration, Instant};
+
+/// Longer than a process takes that ends at once, however busy the machine is.
+const FOR_EVER: Duration = Duration::from_secs(120);
 
 /// A running server.
 pub struct Client {
@@ -193,6 +197,28 @@ impl Client {
         self.request("shutdown", Value::Null);
         self.notify("exit", Value::Null);
         self.process.wait().unwrap().code().unwrap()
+    }
+
+    /// The exit code of the process, which has to end by itself while the client does not read.
+    pub fn ends(&mut self) -> i32 {
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = self.process.try_wait().unwrap() {
+                return status.code().unwrap();
+            }
+            if begun.elapsed() > FOR_EVER {
+                self.process.kill().unwrap();
+                panic!("the server goes on");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Reads no more, and says so to the system, but keeps the connection for what it sends.
+    pub fn stop_reading(self) -> Client {
+        let (output, _) = std::io::pipe().unwrap();
+        let output: std::process::ChildStdout = std::os::fd::OwnedFd::from(output).into();
+        Client { output: BufReader::new(output), ..self }
     }
 
     /// Ends the connection without a word; the exit code.

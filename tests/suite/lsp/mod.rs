@@ -1,6 +1,8 @@
 //! The language server as an editor meets it: the program itself, over standard input and output.
 
 mod client;
+#[cfg(unix)]
+mod ending;
 mod features;
 mod libraries;
 
