@@ -14,7 +14,7 @@ mod temporary;
 
 use crate::packages;
 use crate::script::access::policy::{Access, Change, ExternalCode, Grant, Policy, RECORD, Refusal};
-use crate::script::world::{Content, FileReader, normalized};
+use crate::script::world::{Content, FileReader};
 use place::Place;
 use record::{Lines, Record};
 use std::collections::BTreeSet;
@@ -124,7 +124,9 @@ impl Disk {
     /// The path is refused, or cannot be resolved.
     pub(super) fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         match access {
-            Access::Read if packages::read(path).is_some() => Ok(()),
+            Access::Read if packages::read(path).is_some() || packages::list(path).is_some() => {
+                Ok(())
+            }
             Access::Read if self.is_named_device(access, path) => Ok(()),
             Access::Write if self.is_named_device(access, path) => Ok(()),
             Access::Read => self.to_read(path).map(|_| ()),
@@ -132,15 +134,23 @@ impl Disk {
         }
     }
 
-    fn to_read(&self, path: &Path) -> io::Result<Place> {
-        let place = match Place::of(path, true) {
-            Ok(place) => place,
-            Err(error) => {
-                // Why a path cannot be resolved tells what is there: of places that may be read only.
-                self.state().policy.may_read(&normalized(path))?;
-                return Err(error);
+    /// Resolves a path. Why that is not possible tells what is there: to those who may know.
+    fn resolve(
+        &self,
+        path: &Path,
+        follows: bool,
+        may: impl Fn(&Policy, &Path) -> Result<(), Refusal>,
+    ) -> io::Result<Place> {
+        Place::of(path, follows).map_err(|unresolved| {
+            match may(&self.state().policy, &unresolved.at) {
+                Ok(()) => unresolved.into(),
+                Err(refusal) => refusal.into(),
             }
-        };
+        })
+    }
+
+    fn to_read(&self, path: &Path) -> io::Result<Place> {
+        let place = self.resolve(path, true, Policy::may_read)?;
         let read = self.state().policy.may_read(&place.real);
         Ok(read.map(|()| place)?)
     }
@@ -151,7 +161,8 @@ impl Disk {
 
     /// Resolves a path that is going to be written; a link at its end is followed if `follows`.
     fn to_change(&self, path: &Path, access: Access, follows: bool) -> io::Result<Place> {
-        let place = Place::of(path, follows)?;
+        let may = |policy: &Policy, at: &Path| policy.may_write(at, Change::NewFolder);
+        let place = self.resolve(path, follows, may)?;
         let change = Change::by(access, place.exists());
         let mut written = self.state().policy.may_write(&place.real, change);
         if written == Err(Refusal::Existing) {
@@ -260,7 +271,8 @@ impl Disk {
 
     /// Makes a folder and those it lies in.
     pub(super) fn create_folders(&self, path: &Path) -> io::Result<()> {
-        if Place::of(path, true)?.is_folder() {
+        // One that may not be read is as if it were not there.
+        if self.to_read(path).is_ok_and(|place| place.is_folder()) {
             return Ok(());
         }
         let new = self.to_change(path, Access::Folder, true)?.create_folders()?;

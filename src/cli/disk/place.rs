@@ -42,6 +42,27 @@ pub(super) struct Place {
     pub owner: Option<u32>,
 }
 
+/// A path that cannot be resolved.
+#[derive(Debug)]
+pub(super) struct Unresolved {
+    /// The real path of the entry where it ends: what is there is known to those who may know that.
+    pub at: PathBuf,
+    error: io::Error,
+}
+
+impl From<Unresolved> for io::Error {
+    fn from(unresolved: Unresolved) -> io::Error {
+        unresolved.error
+    }
+}
+
+/// What a step of a walk comes to.
+enum Step {
+    Taken,
+    /// The walk ends here, at an entry or at none.
+    End(Option<Stat>),
+}
+
 /// The folders walked through, from the root.
 struct PathWalk {
     folders: Vec<OwnedFd>,
@@ -76,16 +97,55 @@ impl PathWalk {
         self.folders.last().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))
     }
 
-    /// Where the walk ends: at an entry of the folder that it is in.
-    fn end(mut self, name: OsString, found: Option<&Stat>) -> io::Result<Place> {
-        let mut parts: Vec<OsString> = std::iter::once(name).chain(self.ahead.drain(..)).collect();
-        if parts.iter().any(|part| part == "..") {
-            return Err(io::ErrorKind::NotFound.into());
+    /// Enters a folder, or goes on where a link leads; `links` counts them.
+    fn step(&mut self, part: &OsStr, follows: bool, links: &mut usize) -> io::Result<Step> {
+        let is_last = self.ahead.is_empty();
+        let stat = match fs::statat(self.here()?, part, AtFlags::SYMLINK_NOFOLLOW) {
+            Ok(stat) => stat,
+            Err(Errno::NOENT) => return Ok(Step::End(None)),
+            Err(error) => return Err(error.into()),
+        };
+        match FileType::from_raw_mode(stat.st_mode) {
+            FileType::Symlink if follows || !is_last => {
+                *links += 1;
+                if *links > MAX_LINKS {
+                    return Err(Errno::LOOP.into());
+                }
+                let target = fs::readlinkat(self.here()?, part, Vec::new())?;
+                self.enqueue(Path::new(&OsString::from_vec(target.into_bytes())));
+            }
+            FileType::Directory => {
+                let folder = fs::openat(self.here()?, part, folder_flags(), Mode::empty())?;
+                self.folders.push(folder);
+                self.names.push(part.to_owned());
+            }
+            _ if is_last => return Ok(Step::End(Some(stat))),
+            _ => return Err(Errno::NOTDIR.into()),
         }
+        Ok(Step::Taken)
+    }
+
+    /// A step of the walk that was not possible, to this entry of the folder that it is in.
+    fn stopped(&self, part: &OsStr, error: impl Into<io::Error>) -> Unresolved {
+        let mut at = PathBuf::from("/");
+        at.extend(&self.names);
+        at.push(part);
+        Unresolved { at, error: error.into() }
+    }
+
+    /// Where the walk ends: at an entry of the folder that it is in.
+    fn end(mut self, name: OsString, found: Option<&Stat>) -> Result<Place, Unresolved> {
+        if self.ahead.iter().any(|part| part == "..") {
+            return Err(self.stopped(&name, io::ErrorKind::NotFound));
+        }
+        let mut parts: Vec<OsString> = std::iter::once(name).chain(self.ahead.drain(..)).collect();
         let mut real = PathBuf::from("/");
         real.extend(self.names.iter().chain(&parts));
         let name = parts.pop().unwrap_or_default();
-        let folder = self.folders.pop().ok_or(io::ErrorKind::NotFound)?;
+        let folder = self.folders.pop().ok_or_else(|| Unresolved {
+            at: real.clone(),
+            error: io::ErrorKind::NotFound.into(),
+        })?;
         let kind = found.map(|stat| FileType::from_raw_mode(stat.st_mode));
         let mode = found.map_or(0, |stat| stat.st_mode & 0o777);
         let owner = found.map(|stat| stat.st_uid);
@@ -93,8 +153,9 @@ impl PathWalk {
     }
 
     /// Where the walk ends: at the folder that it is in.
-    fn end_in_folder(mut self) -> io::Result<Place> {
-        let stat = fs::fstat(self.here()?)?;
+    fn end_in_folder(mut self) -> Result<Place, Unresolved> {
+        let stat = self.here().and_then(|folder| Ok(fs::fstat(folder)?));
+        let stat = stat.map_err(|error| self.stopped(OsStr::new(""), error))?;
         let Some(name) = self.names.pop() else { return self.end(".".into(), Some(&stat)) };
         self.folders.pop();
         self.end(name, Some(&stat))
@@ -106,8 +167,9 @@ impl Place {
     ///
     /// # Errors
     /// A folder cannot be entered, links go round.
-    pub(super) fn of(path: &Path, follows: bool) -> io::Result<Place> {
-        let root = fs::open("/", folder_flags(), Mode::empty())?;
+    pub(super) fn of(path: &Path, follows: bool) -> Result<Place, Unresolved> {
+        let root = fs::open("/", folder_flags(), Mode::empty());
+        let root = root.map_err(|error| Unresolved { at: "/".into(), error: error.into() })?;
         let mut walk = PathWalk { folders: vec![root], names: Vec::new(), ahead: VecDeque::new() };
         walk.enqueue(path);
         let mut links = 0;
@@ -116,28 +178,10 @@ impl Place {
                 walk.up();
                 continue;
             }
-            let is_last = walk.ahead.is_empty();
-            let stat = match fs::statat(walk.here()?, &part, AtFlags::SYMLINK_NOFOLLOW) {
-                Ok(stat) => stat,
-                Err(Errno::NOENT) => return walk.end(part, None),
-                Err(error) => return Err(error.into()),
-            };
-            match FileType::from_raw_mode(stat.st_mode) {
-                FileType::Symlink if follows || !is_last => {
-                    links += 1;
-                    if links > MAX_LINKS {
-                        return Err(Errno::LOOP.into());
-                    }
-                    let target = fs::readlinkat(walk.here()?, &part, Vec::new())?;
-                    walk.enqueue(Path::new(&OsString::from_vec(target.into_bytes())));
-                }
-                FileType::Directory => {
-                    let folder = fs::openat(walk.here()?, &part, folder_flags(), Mode::empty())?;
-                    walk.folders.push(folder);
-                    walk.names.push(part);
-                }
-                _ if is_last => return walk.end(part, Some(&stat)),
-                _ => return Err(Errno::NOTDIR.into()),
+            match walk.step(&part, follows, &mut links) {
+                Ok(Step::Taken) => {}
+                Ok(Step::End(stat)) => return walk.end(part, stat.as_ref()),
+                Err(error) => return Err(walk.stopped(&part, error)),
             }
         }
         walk.end_in_folder()

@@ -18,10 +18,28 @@ pub(super) struct Place {
     pub owner: Option<u32>,
 }
 
+/// A path that cannot be resolved.
+#[derive(Debug)]
+pub(super) struct Unresolved {
+    /// The path without dots.
+    pub at: PathBuf,
+    error: io::Error,
+}
+
+impl From<Unresolved> for io::Error {
+    fn from(unresolved: Unresolved) -> io::Error {
+        unresolved.error
+    }
+}
+
 impl Place {
     /// Resolves an absolute path; a link at its end is followed if `follows`.
-    pub fn of(path: &Path, follows: bool) -> io::Result<Place> {
+    pub fn of(path: &Path, follows: bool) -> Result<Place, Unresolved> {
         let path = &crate::script::world::normalized(path);
+        Place::resolved(path, follows).map_err(|error| Unresolved { at: path.clone(), error })
+    }
+
+    fn resolved(path: &Path, follows: bool) -> io::Result<Place> {
         let found = fs::symlink_metadata(path).ok();
         let is_link = found.as_ref().is_some_and(|found| found.is_symlink());
         if let Some(kind) = found.map(|found| found.file_type())

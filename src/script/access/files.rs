@@ -16,13 +16,23 @@ use std::path::{Path, PathBuf};
 
 impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the
-    /// folders of the scripts being run, innermost first. `None` if it is nowhere.
+    /// folders of the scripts being run, innermost first. `None` if it is nowhere; one that may not be
+    /// read is as if it were not there.
     pub(crate) fn find_file(&self, path: &Path) -> Option<PathBuf> {
+        self.places_of(path).find(|place| self.sees(place))
+    }
+
+    /// Where a file may be that a script means, in the order of precedence.
+    fn places_of(&self, path: &Path) -> impl Iterator<Item = PathBuf> {
         let path = self.expanded(path);
-        let folders = self.execution.folders().map(|folder| folder.join(&path));
-        std::iter::once(self.world.absolute(&path))
-            .chain(folders.map(|candidate| normalized(&candidate)))
-            .find(|candidate| self.world.exists(candidate))
+        let first = self.world.absolute(&path);
+        let folders = self.execution.folders();
+        std::iter::once(first).chain(folders.map(move |folder| normalized(&folder.join(&path))))
+    }
+
+    /// Whether there is a file or folder that may be read.
+    pub(crate) fn sees(&self, path: &Path) -> bool {
+        self.world.exists(path) && self.world.permits(path, Access::Read).is_ok()
     }
 
     /// The bytes of a file that a script names.
@@ -178,7 +188,8 @@ impl Session {
 
     /// The fault of a file that is nowhere, or that it may not be read if it were there.
     pub(crate) fn missing_file(&self, path: &Path) -> Fault {
-        if let Err(refused) = self.may(Access::Read, &self.expanded(path)) {
+        let refused = self.places_of(path).find_map(|place| self.may(Access::Read, &place).err());
+        if let Some(refused) = refused {
             return refused;
         }
         let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", shown(path)));

@@ -2,6 +2,7 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::Session;
+use crate::access::policy::Access;
 use crate::bail;
 use crate::diag::Fault;
 use crate::errors::BAD_ARGUMENT;
@@ -179,7 +180,9 @@ fn write(
     append: bool,
 ) -> Result<(), Fault> {
     let path = Path::new(file);
-    let mut arrays = match append && session.world.exists(path) {
+    // Where it may not be written, whether it exists stays unknown.
+    let is_kept = append && session.world.exists(path) && session.may(Access::Write, path).is_ok();
+    let mut arrays = match is_kept {
         true => read_file(session, file)?.arrays,
         false => Default::default(),
     };

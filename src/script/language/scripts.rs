@@ -236,7 +236,7 @@ impl Session {
         let folder = self.execution.folders().next().map(Path::to_path_buf).unwrap_or_default();
         let key = (folder, self.world.current_dir(), name.to_owned());
         if let Some(path) = self.parsed.found(&key)
-            && self.world.exists(path)
+            && self.sees(path)
         {
             return Ok(path.clone());
         }
@@ -260,7 +260,9 @@ impl Session {
             return Ok(path);
         }
         // Whether there is a file that may not be read stays unknown.
-        self.may(Access::Read, &plain)?;
+        for place in &candidates {
+            self.may(Access::Read, place)?;
+        }
         let folders = [self.world.absolute(folder), self.world.current_dir()];
         let written = Path::new(name);
         let message = format!("there is no script `{}`", shown(written));
@@ -293,7 +295,7 @@ impl Session {
 
     /// The script of exactly this name, with or without the ending.
     fn exact_script(&self, folder: &Path, name: &Path) -> Option<PathBuf> {
-        let is_file = |path: &PathBuf| self.world.exists(path) && !self.world.is_dir(path);
+        let is_file = |path: &PathBuf| self.sees(path) && !self.world.is_dir(path);
         self.script_candidates(folder, name).into_iter().find(is_file)
     }
 
@@ -316,7 +318,7 @@ impl Session {
             let entries = self.world.list_dir(&found).ok()?;
             found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&name))?);
         }
-        (!self.world.is_dir(&found)).then_some(found)
+        (self.sees(&found) && !self.world.is_dir(&found)).then_some(found)
     }
 
     fn parsed_script(&mut self, path: &Path) -> Result<Arc<Parsed>, Vec<Diagnostic>> {
