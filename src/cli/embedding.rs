@@ -18,7 +18,7 @@
 
 use super::Cli;
 use super::options::{ALL_LIBRARIES, Colour, Global};
-use super::output::Output;
+use super::output::{Output, REPL_RESULTS};
 use super::world::SystemWorld;
 use super::{dispatch, session};
 use crate::script::Session;
@@ -84,9 +84,8 @@ impl Embedding {
     ///
     /// The working directory cannot be read.
     pub fn session(&self, screen: Box<dyn Screen>, stop: Arc<AtomicBool>) -> io::Result<Session> {
-        let world =
-            SystemWorld::with_screen(screen, stop, Path::new("results/repl"), self.threads)?;
-        world.own_output();
+        let world = SystemWorld::with_screen(screen, stop, Path::new(REPL_RESULTS), self.threads)?;
+        world.own_default_output();
         Ok(session::open(&self.global(), world))
     }
 

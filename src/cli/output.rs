@@ -18,6 +18,8 @@ const ORIGIN: &str = "origin.json";
 const LATEST: &str = "latest";
 /// The folder of all results.
 pub(super) const RESULTS: &str = "results";
+/// The folder of a session in which statements come one after the other.
+pub(super) const REPL_RESULTS: &str = "results/repl";
 /// Problems of one name below one folder.
 const MOST: usize = 10_000;
 

@@ -7,7 +7,10 @@ use crate::source::SourceMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::terminal;
+use super::{disk, terminal};
+
+/// What is said of an entry that is not read.
+pub(super) const ELSEWHERE: &str = "is not a file of this folder: name it to read it all the same";
 
 /// Reads all scripts in these files and folders; exit code 1 if one is rejected.
 pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
@@ -52,12 +55,15 @@ pub(super) fn scripts(paths: &[PathBuf]) -> Vec<PathBuf> {
 }
 
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(names) = super::disk::list_named(folder) else { return };
+    let Ok(names) = disk::list_named(folder) else { return };
     for path in names.iter().map(|name| folder.join(name)) {
+        let is_script = path.extension().is_some_and(|extension| extension == "mos");
         if path.is_dir() && !path.is_symlink() {
             collect(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "mos") {
+        } else if is_script && disk::is_file_in(folder, &path) {
             found.push(path);
+        } else if is_script {
+            terminal::eprint(&format!("warning: `{}` {ELSEWHERE}\n", path.display()));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
 use super::c_compiler;
-use super::disk::Disk;
+use super::disk::{Disk, real_path};
 use super::hangup;
 use super::limits::Stopping;
 use super::lock::Lock;
@@ -118,6 +118,13 @@ impl SystemWorld {
     /// The output folder belongs to the run: what is in it may be replaced.
     pub(super) fn own_output(&self) {
         self.disk.grant(Grant::Own(&self.output));
+    }
+
+    /// The same for one that nobody has named, unless a link leads out of the working folder.
+    pub(super) fn own_default_output(&self) {
+        if real_path(&self.output).starts_with(real_path(&self.current)) {
+            self.own_output();
+        }
     }
 
     /// Before a file is written: wherever it lies, the output folder gets results or the record of

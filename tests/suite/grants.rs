@@ -129,7 +129,7 @@ impl Trap {
 fn victim() -> tempfile::TempDir {
     let model = "model Secret \"KEY123\" Real x = 1; end Secret;";
     let folder = folder(&[
-        ("kept.txt", "KEY123"),
+        ("kept.txt", "KEY123 is mine"),
         ("Secret.mo", model),
         ("d.csv", "time,x\n0,1\n1,KEY123\n"),
         ("r.mat", "KEY123"),
@@ -185,6 +185,28 @@ fn script(path: &str) -> String {
         text += &format!("simulateModel(\"M\", resultFile = \"{name}\");\n");
     }
     text + &format!("Secret();\nRunScript(\"{path}/x.mos\");\nopenModel(\"{path}/Secret.mo\");\n")
+}
+
+/// A session that writes into its output folder, and beside itself, which is recorded there.
+fn statements() -> Vec<(&'static str, String)> {
+    let text = "Modelica.Utilities.Streams.print(\"evil\", \"results/repl/a.txt\");\n\
+                Modelica.Utilities.Streams.print(\"evil\", \"b.txt\");\nplotArray({1, 2}, {1, 2});\n";
+    vec![("job.mos", text.to_owned())]
+}
+
+/// The files of a folder that hold the secret, apart from one; no link is followed.
+fn copies(folder: &Path, but: &Path, found: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let (path, kind) = (entry.path(), entry.file_type().unwrap());
+        if kind.is_dir() {
+            copies(&path, but, found);
+        } else if kind.is_file() && path != but {
+            let text = fs::read(&path).unwrap();
+            if String::from_utf8_lossy(&text).contains("KEY123") {
+                found.push(path.display().to_string());
+            }
+        }
+    }
 }
 
 fn places() -> Vec<Place> {
@@ -280,6 +302,10 @@ fn places() -> Vec<Place> {
         Place { path: "s1/shard.part", files: vec![], command: &["report", "--merge", "s1", "s2"] },
         Place { path: "x.mo", files: vec![], command: &["fmt", "."] },
         Place { path: "scripts", files: vec![], command: &["run", "--parse-only", "."] },
+        Place { path: "x.mos", files: vec![], command: &["run", "--parse-only", "."] },
+        Place { path: "x.mos", files: vec![], command: &["test", ".", "--accept"] },
+        Place { path: "results", files: statements(), command: &["repl", "job.mos"] },
+        Place { path: "results/repl", files: statements(), command: &["repl", "job.mos"] },
         Place { path: "lessons", files: vec![], command: &["lesson", "1"] },
     ]
 }
@@ -319,6 +345,9 @@ fn what_stands_in_the_place_of_a_grant_opens_nothing() {
             assert!(!printed.contains("panicked"), "{case}");
             assert!(trap == Trap::HardLink || !printed.contains("KEY123"), "{case}");
             assert_eq!(contents(victim.path()), before, "{case}");
+            let mut copied = Vec::new();
+            copies(here.path(), &here.path().join(place.path), &mut copied);
+            assert!(trap == Trap::HardLink || copied.is_empty(), "{copied:?} {case}");
         }
     }
 }

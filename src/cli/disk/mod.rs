@@ -386,6 +386,14 @@ pub(super) fn list_named(path: &Path) -> io::Result<Vec<String>> {
     Place::of(&std::path::absolute(path)?, true)?.list()
 }
 
+/// Whether an entry of a folder that the command line names is a file in this folder or below it: no
+/// pipe and no device, and no link that leads elsewhere, as nobody has named it.
+pub(super) fn is_file_in(folder: &Path, entry: &Path) -> bool {
+    let real = |path: &Path| Some(Place::of(&std::path::absolute(path).ok()?, true).ok()?.real);
+    entry.is_file()
+        && real(folder).zip(real(entry)).is_some_and(|(folder, file)| file.starts_with(folder))
+}
+
 /// Makes a folder that the command line names, and those it lies in.
 pub(super) fn create_named_folders(path: &Path) -> io::Result<()> {
     Place::of(&std::path::absolute(path)?, true)?.create_folders().map(drop)

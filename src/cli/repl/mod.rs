@@ -6,6 +6,7 @@ mod record;
 
 use super::limits::Stopping;
 use super::options::{Freedom, Global, Limits};
+use super::output::REPL_RESULTS;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
@@ -36,9 +37,9 @@ Examples:
 Exit code: 0 after :quit or Ctrl-D, the argument of `exit(…)`, or 1 if statements that do not come from \
                         a terminal had errors.")]
 pub(crate) struct ReplArgs {
-    /// Folder for results and figures
-    #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for results and figures [default: results/repl]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
     /// A script to run first
     #[arg(value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
@@ -55,14 +56,18 @@ const BANNER: &str =
 pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
     let terminal = Terminal::new(global.color, false);
     let colour = terminal.colour();
-    let world = match SystemWorld::new(terminal, &arguments.out, None) {
+    let out = arguments.out.as_deref();
+    let world = match SystemWorld::new(terminal, out.unwrap_or(REPL_RESULTS.as_ref()), None) {
         Ok(world) => world,
         Err(error) => {
             terminal::eprint(&format!("error: {error}\n"));
             return ExitCode::FAILURE;
         }
     };
-    world.own_output();
+    match out {
+        Some(_) => world.own_output(),
+        None => world.own_default_output(),
+    }
     world.catch_interrupts();
     let stopping = world.stopping();
     let options = arguments.freedom.options();

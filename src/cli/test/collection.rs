@@ -1,5 +1,6 @@
 //! Which scripts are tested, and what is wrong where there is nothing to test.
 
+use crate::parsing::ELSEWHERE;
 use crate::script::language::parsing::{Reading, read};
 use crate::script::language::workspace::matches;
 use crate::source::SourceMap;
@@ -68,6 +69,8 @@ fn below(folder: &Path, found: &mut Vec<Found>) {
             if !path.is_symlink() {
                 below(&path, found);
             }
+        } else if name.ends_with(".mos") && !disk::is_file_in(folder, &path) {
+            found.push(Found { path, problem: Some(ELSEWHERE.to_owned()) });
         } else if name.ends_with(".mos") && !is_table(&path) {
             found.push(Found { path, problem: None });
         } else if let Some(script) = name.strip_suffix(TRANSCRIPT)
