@@ -128,6 +128,14 @@ const DECLARED_SIZES: &str = "package Sizes
     \"static double pair(double *a) { return a[0] + a[1]; }\"); end pair;
   function row input Row r; output Real y; external \"C\" y = row(r.n, r.a) annotation(Include =
     \"static double row(int n, double *a) { return n > 1 ? a[n - 1] : a[0]; }\"); end row;
+  function all_rows input Row r[2]; output Real y; external \"C\" y = all_rows(r) annotation(Include =
+    \"static double all_rows(double *a) { return a[0]; }\"); end all_rows;
+  function in_rows input Row r[2]; output Real y; external \"C\" y = in_rows(r.a) annotation(Include =
+    \"static double in_rows(double *a) { return a[3]; }\"); end in_rows;
+  function one_row input Row r[2]; output Real y; external \"C\" y = one_row(r[1].a) annotation(Include =
+    \"static double one_row(double *a) { return a[1]; }\"); end one_row;
+  function each_row input Row r[:]; output Real y;
+    algorithm y := sum(i*row(r[i]) for i in 1:size(r, 1)); end each_row;
   function open_output input Real u; output Real y[:]; external \"C\" fill(u, y) annotation(Include =
     \"static void fill(double u, double *y) { int i; for (i = 0; i < 9999; i++) y[i] = u; }\");
     end open_output;
@@ -161,6 +169,7 @@ fn arrays_and_objects_are_those_that_functions_declare() {
     }
     let here = folder(&[("Sizes.mo", DECLARED_SIZES)]);
     let (size, unknown) = ("size", "sizes are not declared");
+    let of_records = "a component of an array of records";
     for (number, (call, wanted)) in [
         ("Sizes.three({1, 2, 3})", Ok("6")),
         ("Sizes.three({1, 2})", Err(size)),
@@ -172,6 +181,11 @@ fn arrays_and_objects_are_those_that_functions_declare() {
         ("Sizes.pair(Sizes.Pair({1}))", Err(size)),
         ("Sizes.row(Sizes.Row(2, {1, 2}))", Ok("2")),
         ("Sizes.row(Sizes.Row(3, {1, 2}))", Err(size)),
+        ("Sizes.all_rows({Sizes.Row(2, {1, 2}), Sizes.Row(2, {3, 4})})", Err("a record")),
+        ("Sizes.in_rows({Sizes.Row(2, {1, 2}), Sizes.Row(2, {3, 4})})", Err(of_records)),
+        ("Sizes.one_row({Sizes.Row(2, {1, 2}), Sizes.Row(2, {3, 4})})", Err(of_records)),
+        ("Sizes.each_row({Sizes.Row(2, {1, 2}), Sizes.Row(2, {3, 4})})", Ok("10")),
+        ("Sizes.each_row({Sizes.Row(2, {1, 2}), Sizes.Row(3, {3, 4})})", Err(size)),
         ("sum(Sizes.open_output(1))", Err(unknown)),
         ("Sizes.open_local(1)", Err(unknown)),
         ("Sizes.of_large(Sizes.Large(5))", Ok("5")),
@@ -193,7 +207,7 @@ fn arrays_and_objects_are_those_that_functions_declare() {
             let (code, out, errors) = gapi(&here, &[arguments, &["--allow-external"]].concat());
             match wanted {
                 Err(word) => assert!(
-                    code == 1 && errors.contains(word),
+                    code == 1 && errors.contains(word) && errors.contains("┌─ "),
                     "{call} {arguments:?} {code}: {out}{errors}"
                 ),
                 Ok(value) => {

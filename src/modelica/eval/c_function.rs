@@ -194,6 +194,19 @@ pub(crate) fn passed<'f>(
     Some((rest.iter().try_fold(whole, |of, part| member(of, part.name))?, is_input))
 }
 
+/// What is said of arguments whose sizes may differ from one record to the next.
+const RECORDS: &str = "is passed a component of an array of records";
+
+/// Whether an argument begins with an array of records, or with an element of one.
+fn is_of_records(function: &Function, argument: &Expression) -> bool {
+    let ExpressionKind::Reference(reference) = &argument.kind else { return false };
+    let whole = reference.parts.first().and_then(|first| component(function, first.name));
+    let is_array = |whole: &FunctionComponent| {
+        !whole.dims.is_empty() && matches!(whole.value_type, ValueType::Record(..))
+    };
+    reference.parts.len() > 1 && whole.is_some_and(is_array)
+}
+
 fn scalar(value_type: &ValueType) -> Option<Scalar> {
     Some(match value_type {
         ValueType::Real => Scalar::Real,
@@ -223,6 +236,7 @@ fn argument(function: &Function, e: &Expression) -> Result<Argument, Diagnostic>
         }
         ExpressionKind::Reference(_) => {
             let passed = passed(function, e);
+            let what = if is_of_records(function, e) { RECORDS } else { what };
             let (component, is_input) = passed.ok_or_else(|| refused(function, what, e.span))?;
             let record = "is passed a record or a function";
             let scalar =
