@@ -127,3 +127,46 @@ fn make_room(folder: &Path, needed: u64) {
         _ = fs::remove_file(path);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    /// A file of this size, of which nothing is on the disk, used last so many seconds ago.
+    fn file(folder: &Path, name: &str, size: u64, age: u64) -> PathBuf {
+        let path = folder.join(name);
+        let file = File::create(&path).expect("made");
+        file.set_len(size).expect("set");
+        file.set_modified(SystemTime::now() - Duration::from_secs(age)).expect("set");
+        path
+    }
+
+    #[test]
+    fn what_was_not_used_for_longest_goes_first() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let part = MOST / 4;
+        let files = ["a", "b", "c", "d"].map(|name| format!("{name}.model"));
+        let models: Vec<PathBuf> =
+            (0..4).map(|k| file(folder.path(), &files[k], part, [50, 400, 10, 300][k])).collect();
+        let kept = || models.iter().map(|path| path.exists()).collect::<Vec<bool>>();
+        make_room(folder.path(), 0);
+        assert_eq!(kept(), [true; 4]);
+        make_room(folder.path(), 1);
+        assert_eq!(kept(), [true, false, true, true]);
+        make_room(folder.path(), 2 * part + 1);
+        assert_eq!(kept(), [false, false, true, false]);
+    }
+
+    #[test]
+    fn only_old_parts_of_killed_processes_are_removed() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let old = file(folder.path(), "1-0.part", 9, FORGOTTEN + 60);
+        let young = file(folder.path(), "2-0.part", 9, FORGOTTEN - 60);
+        let other = file(folder.path(), "notes.txt", 9, FORGOTTEN + 60);
+        make_room(folder.path(), MOST);
+        assert!(!old.exists() && young.exists() && other.exists());
+        // Without a folder there is nothing to do.
+        make_room(&folder.path().join("absent"), MOST);
+    }
+}

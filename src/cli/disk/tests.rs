@@ -40,6 +40,44 @@ fn a_run_replaces_what_an_earlier_run_has_made_and_nothing_else() {
     assert!(disk().remove(&root.join("curve.csv")).is_err());
 }
 
+/// Each time that a file is made anew has a line in the record, until there are too many.
+#[test]
+fn the_record_does_not_grow_without_end() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let root = folder.path().canonicalize().expect("an absolute path");
+    let disk = || {
+        let disk = Disk::default();
+        disk.grant(Grant::Own(&root.join("results")));
+        disk.grant(Grant::Create(&root));
+        disk
+    };
+    let (first, path) = (disk(), root.join("curve.csv"));
+    for number in 0..1100 {
+        let text = number.to_string();
+        first.write_with(&path, &mut |to| to.write_all(text.as_bytes())).expect("its own");
+    }
+    let record = fs::read_to_string(root.join("results").join(RECORD)).expect("a record");
+    assert!(record.lines().count() < 200, "{} lines", record.lines().count());
+    disk().write(&path, b"again").expect("made by the run before");
+}
+
+#[test]
+fn files_found_in_a_folder_lie_in_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (inside, file) = (folder.path().join("in"), folder.path().join("in/a.mos"));
+    fs::create_dir(&inside).expect("made");
+    fs::write(&file, "1").expect("written");
+    fs::write(folder.path().join("out.mos"), "1").expect("written");
+    assert!(is_file_in(&inside, &file));
+    assert!(!is_file_in(&inside, &inside) && !is_file_in(&inside, &inside.join("absent.mos")));
+    assert!(!is_file_in(&inside, &folder.path().join("out.mos")));
+    #[cfg(unix)]
+    for (target, name, is_inside) in [("a.mos", "near", true), ("../out.mos", "far", false)] {
+        std::os::unix::fs::symlink(target, inside.join(name)).expect("a link");
+        assert_eq!(is_file_in(&inside, &inside.join(name)), is_inside, "{name}");
+    }
+}
+
 #[cfg(unix)]
 mod links {
     use super::*;
@@ -175,5 +213,99 @@ mod links {
             assert_eq!(refusal_of(&refused), Some(Refusal::System), "{name}");
             assert!(disk.append(&path, b"x").is_err() && disk.write(&path, b"x").is_err());
         }
+    }
+
+    /// Why a path cannot be resolved is known only to those who may know what is there.
+    #[test]
+    fn paths_that_end_too_early_tell_nothing() {
+        let (_folder, root, disk) = run();
+        symlink("round", root.join("run/results/round")).expect("a link");
+        symlink("round", root.join("private/round")).expect("a link");
+        symlink("../private", root.join("run/p")).expect("a link");
+        disk.write(&root.join("run/results/file"), b"x").expect("written");
+        let kind = |error: io::Error| (refusal_of(&error), error.kind());
+        let (none, not_a_folder) = (None, io::ErrorKind::NotADirectory);
+        let inside = |name: &str| root.join("run/results").join(name);
+        let round = disk.read(&inside("round")).expect_err("a loop");
+        assert_eq!(refusal_of(&round), None, "{round}");
+        for done in [
+            disk.read(&inside("file/x")).map(drop),
+            disk.write(&inside("file/x"), b"x"),
+            disk.create_folders(&inside("file")),
+        ] {
+            assert_eq!(done.map_err(kind), Err((none, not_a_folder)));
+        }
+        for name in ["secret/x", "round", "round/x", "absent/x", "secret/../absent", "absent"] {
+            for place in ["private", "run/p"] {
+                let path = root.join(place).join(name);
+                let read = disk.read(&path).expect_err("outside");
+                assert_eq!(refusal_of(&read), Some(Refusal::Reading), "{}", path.display());
+                for done in
+                    [disk.write(&path, b"x"), disk.append(&path, b"x"), disk.create_folders(&path)]
+                {
+                    let refusal = done.map_err(|error| refusal_of(&error));
+                    assert_eq!(refusal, Err(Some(Refusal::Outside)), "{}", path.display());
+                }
+            }
+        }
+        let existing = disk.create_folders(&root.join("private/deep")).expect_err("outside");
+        assert_eq!(refusal_of(&existing), Some(Refusal::Outside));
+        disk.create_folders(&root.join("run/results")).expect("it is there");
+    }
+
+    #[test]
+    fn folders_and_what_is_missing_are_not_written_over() {
+        let (_folder, root, disk) = run();
+        let inside = |name: &str| root.join("run/results").join(name);
+        disk.create_folders(&inside("sub/below")).expect("made");
+        let over = disk.write(&inside("sub"), b"x").expect_err("a folder");
+        assert_eq!(over.kind(), io::ErrorKind::IsADirectory);
+        for done in [
+            disk.write(&inside("absent/x"), b"x"),
+            disk.append(&inside("absent/x"), b"x"),
+            disk.remove(&inside("absent/x")),
+            disk.read(&inside("sub/../absent/../x")).map(drop),
+        ] {
+            assert_eq!(done.map_err(|error| error.kind()), Err(io::ErrorKind::NotFound));
+        }
+        assert!(disk.remove(&inside("sub")).is_err(), "it is not empty");
+        disk.remove(&inside("sub/below")).expect("empty");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_larger_than_the_memory_is_not_read() {
+        let (_folder, root, disk) = run();
+        let path = root.join("run/results/large");
+        File::create(&path).and_then(|file| file.set_len(1 << 42)).expect("sparse");
+        let refused = disk.read(&path).expect_err("4 TiB");
+        assert_eq!(refused.to_string(), "it is larger than the memory of this machine");
+        assert_eq!(disk.read_start(&path, 3).expect("its beginning"), [0; 3]);
+    }
+
+    #[test]
+    fn devices_are_written_where_the_user_names_them() {
+        let (_folder, _, disk) = run();
+        let null = Path::new("/dev/null");
+        assert!(disk.append(null, b"x").is_err() && disk.write(null, b"x").is_err());
+        disk.grant(Grant::Named(null));
+        disk.append(null, b"x").expect("named");
+        disk.write(null, b"x").expect("named");
+        assert!(disk.permits(null, Access::Write).is_ok());
+        assert!(disk.write(Path::new("/dev/full"), b"x").is_err());
+    }
+
+    #[test]
+    fn files_of_the_program_replace_links() {
+        let (_folder, root, _) = run();
+        let link = root.join("run/results/report.html");
+        symlink("../../private/secret", &link).expect("a link");
+        write_own(&link, b"own").expect("written");
+        assert!(!link.is_symlink());
+        fs::remove_file(&link).expect("removed");
+        symlink("../../private/secret", &link).expect("a link");
+        write_beside(&link, b"beside").expect("written");
+        assert_eq!(fs::read(&link).expect("there"), b"beside");
+        assert_eq!(fs::read(root.join("private/secret")).expect("there"), b"mine");
     }
 }

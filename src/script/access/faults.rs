@@ -70,3 +70,40 @@ fn refused(refusal: Refusal, path: &Path) -> Fault {
 pub fn plain(path: &str) -> String {
     path.strip_prefix("file://").unwrap_or(path).replace('\\', "/")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_are_said_in_the_words_of_files() {
+        for (kind, reason) in [
+            (io::ErrorKind::NotFound, "it does not exist"),
+            (io::ErrorKind::PermissionDenied, "permission denied"),
+            (io::ErrorKind::IsADirectory, "it is a directory"),
+            (io::ErrorKind::NotADirectory, "a part of its path is not a directory"),
+        ] {
+            let fault = cannot("read", Path::new("d/x"), &kind.into());
+            assert_eq!(fault.message, format!("cannot read `d/x`: {reason}"));
+        }
+        let other = io::Error::other("No space left");
+        let fault = cannot("write", Path::new("x"), &other);
+        assert_eq!(fault.message, "cannot write `x`: no space left");
+        let fault = cannot("write", Path::new("x"), &Refusal::Reserved.into());
+        assert_eq!(fault.message, "`x` cannot be changed: the program keeps its own records in it");
+    }
+
+    /// As `"C:\bin"` becomes in Modelica.
+    #[test]
+    fn control_characters_of_paths_are_shown_as_they_were_written() {
+        for (letter, character) in
+            [("a", 7), ("b", 8), ("t", 9), ("n", 10), ("v", 11), ("f", 12), ("r", 13u8)]
+        {
+            let path = format!("C:{}x", char::from(character));
+            assert_eq!(shown(Path::new(&path)), format!("C:\\{letter}x"));
+            let help = escape_help(Path::new(&path)).expect("what to do");
+            assert!(help.starts_with(&format!("`\\{letter}` in a string is a")), "{help}");
+        }
+        assert_eq!(escape_help(Path::new("C:/bin")), None);
+    }
+}

@@ -525,6 +525,50 @@ mod tests {
     }
 
     #[test]
+    fn what_is_granted_is_listed() {
+        let mut policy = policy();
+        let rows = |policy: &Policy| {
+            let rows = policy.listed().into_iter();
+            rows.map(|(meaning, path)| format!("{meaning}: {}", path.display())).collect::<Vec<_>>()
+        };
+        policy.grant(Grant::Deny("".as_ref()), "/home/me/private".into());
+        policy.pass_over("/home/models".into(), Refusal::Owner);
+        let before = rows(&policy);
+        let expected = ["closed: /home/me/private", "write this file: /data/.curve.mo"];
+        assert!(expected.iter().all(|row| before.iter().any(|one| one == row)), "{before:?}");
+        assert!(before.contains(&format!("not read: {}: /home/models", Refusal::Owner)));
+        assert!(!before.iter().any(|row| row.contains("everywhere")), "{before:?}");
+        policy.grant(Grant::ReadAll, PathBuf::new());
+        policy.grant(Grant::WriteAll, PathBuf::new());
+        let all = rows(&policy);
+        assert!(
+            ["read everywhere: /", "write everywhere: /"]
+                .iter()
+                .all(|row| { all.iter().any(|one| one == row) })
+        );
+        // What is excluded stays so.
+        let private = Path::new("/home/me/private/a.csv");
+        assert_eq!(policy.may_read(private), Err(Refusal::Denied));
+        assert_eq!(policy.may_write(private, Change::NewFile), Err(Refusal::Denied));
+    }
+
+    #[test]
+    fn functions_in_c_are_allowed_by_library() {
+        let mut policy = policy();
+        assert_eq!(policy.external_code().listed(), "none");
+        for library in ["Pumps", "Fans"] {
+            policy.grant(Grant::ExternalCode(Some(library)), PathBuf::new());
+        }
+        let code = policy.external_code();
+        assert_eq!(code.listed(), "Fans, Pumps");
+        assert!(code.permits("Fans.Axial.run") && code.permits("Pumps"));
+        assert!(!code.permits("FansToo.run") && !code.permits("Other.Fans"));
+        policy.grant(Grant::ExternalCode(None), PathBuf::new());
+        assert_eq!(policy.external_code().listed(), "of all libraries");
+        assert!(policy.external_code().permits("Other.Fans"));
+    }
+
+    #[test]
     fn what_other_programs_execute_is_not_created() {
         let policy = policy();
         for name in [
