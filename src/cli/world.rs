@@ -120,7 +120,7 @@ impl SystemWorld {
         self.disk.grant(Grant::Own(&self.output));
     }
 
-    /// The same for one that nobody has named, unless a link leads out of the working folder.
+    /// The same for the default one, unless a link leads out of the working folder.
     pub(super) fn own_default_output(&self) {
         if real_path(&self.output).starts_with(real_path(&self.current)) {
             self.own_output();

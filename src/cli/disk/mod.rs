@@ -387,7 +387,7 @@ pub(super) fn list_named(path: &Path) -> io::Result<Vec<String>> {
 }
 
 /// Whether an entry of a folder that the command line names is a file in this folder or below it: no
-/// pipe and no device, and no link that leads elsewhere, as nobody has named it.
+/// pipe and no device, and no link that leads elsewhere: those are for files that are named.
 pub(super) fn is_file_in(folder: &Path, entry: &Path) -> bool {
     let real = |path: &Path| Some(Place::of(&std::path::absolute(path).ok()?, true).ok()?.real);
     entry.is_file()

@@ -97,7 +97,7 @@ impl PathWalk {
         self.folders.last().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))
     }
 
-    /// Enters a folder, or goes on where a link leads; `links` counts them.
+    /// Enters a folder, or continues where a link leads; `links` counts them.
     fn step(&mut self, part: &OsStr, follows: bool, links: &mut usize) -> io::Result<Step> {
         let is_last = self.ahead.is_empty();
         let stat = match fs::statat(self.here()?, part, AtFlags::SYMLINK_NOFOLLOW) {

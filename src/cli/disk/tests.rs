@@ -40,7 +40,7 @@ fn a_run_replaces_what_an_earlier_run_has_made_and_nothing_else() {
     assert!(disk().remove(&root.join("curve.csv")).is_err());
 }
 
-/// Each time that a file is made anew has a line in the record, until there are too many.
+/// Each time that a file is written has a line in the record, until there are too many.
 #[test]
 fn the_record_does_not_grow_without_end() {
     let folder = tempfile::tempdir().expect("a temporary folder");
