@@ -5,6 +5,7 @@
 //! names what was found and what is allowed there.
 
 use super::errors::{MISSING_SEMICOLON, NESTING_TOO_DEEP, SYNTAX_ERROR};
+use super::foreign::Surroundings;
 use super::grammar::{self, Rule};
 use super::keywords::{is_keyword, keywords};
 use super::scan::Scanned;
@@ -33,7 +34,8 @@ pub(super) fn explain(
             .help("split it: assign parts of the expression to variables")
             .at(stop.found);
     }
-    stop.misspelt_keyword()
+    stop.written_otherwise(error)
+        .or_else(|| stop.misspelt_keyword())
         .or_else(|| stop.repaired(rule))
         .unwrap_or_else(|| stop.unexpected(error))
 }
@@ -73,6 +75,19 @@ impl<'t> Stop<'t> {
     fn word_before(&self) -> &'t str {
         let head = &self.text[..self.before];
         &head[head.trim_end_matches(is_word).len()..]
+    }
+
+    /// What other languages write so.
+    fn written_otherwise(&self, error: &Error<Rule>) -> Option<Diagnostic> {
+        let surroundings = Surroundings {
+            head: &self.text[..self.before],
+            gap: &self.text[self.before..self.at],
+            found: self.found_text(),
+            tail: &self.text[self.found.end as usize..],
+            expected: &expected(error),
+        };
+        let remedy = surroundings.remedy()?;
+        Some(self.fault(&remedy.message).help(remedy.help).at(self.found))
     }
 
     /// `modle M`: a word at the start of a line that is almost a keyword.

@@ -12,6 +12,7 @@ pub mod ast;
 mod decode;
 pub mod errors;
 mod failure;
+pub(crate) mod foreign;
 mod grammar;
 pub(crate) mod keywords;
 mod lazy;

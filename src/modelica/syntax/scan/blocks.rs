@@ -20,6 +20,8 @@ struct Block<'t> {
     name: &'t str,
     start: usize,
     end: usize,
+    /// Whether `then` or `loop` ended its head.
+    has_body: bool,
     /// An `if` directly after the `else` of this one.
     else_if: Option<Span>,
 }
@@ -125,6 +127,7 @@ impl<'t> Blocks<'t> {
             name: name.text,
             start: name.start,
             end: name.end,
+            has_body: true,
             else_if: None,
         });
         self.start = true;
@@ -143,6 +146,7 @@ impl<'t> Blocks<'t> {
                     name: token.text,
                     start: token.start,
                     end: token.end,
+                    has_body: false,
                     else_if: None,
                 };
                 if let Some(outer) = self.stack.last_mut()
@@ -162,6 +166,9 @@ impl<'t> Blocks<'t> {
             "then" | "loop" if self.header => {
                 self.header = false;
                 self.start = true;
+                if let Some(block) = self.stack.last_mut() {
+                    block.has_body = true;
+                }
             }
             word if SECTION_WORDS.contains(&word) => self.start = true,
             word if CLASS_WORDS.contains(&word) => self.head = Head::Keyword,
@@ -182,6 +189,9 @@ impl<'t> Blocks<'t> {
         if block.name == token.text {
             return Ok(());
         }
+        if let Some(inner) = block.else_if {
+            return Err(Problem { from: token.start, diagnostic: else_if(inner) });
+        }
         let diagnostic =
             fault!(MISMATCHED_END, "{} is closed by `end {}`", described(&block), token.text)
                 .help(format!(
@@ -200,10 +210,23 @@ impl<'t> Blocks<'t> {
             return Some(Problem { from: end, diagnostic: else_if(inner) });
         }
         let diagnostic = fault!(MISMATCHED_END, "{} has no `end {}`", described(block), block.name)
+            .help_if(headless(block))
             .help(format!("write `end {};` at its end", block.name))
             .labelled(Span::new(self.source, block.start, block.end), "opened here");
         Some(Problem { from: end, diagnostic })
     }
+}
+
+/// What ends the head of a loop or clause, where nothing does.
+fn headless(block: &Block<'_>) -> Option<String> {
+    let (word, example) = match block.keyword {
+        "for" => ("loop", "for k in 1:3 loop"),
+        "while" => ("loop", "while x < 2 loop"),
+        "if" => ("then", "if x == 2 then"),
+        "when" => ("then", "when x > 2 then"),
+        _ => return None,
+    };
+    (!block.has_body).then(|| format!("write `{word}` at the end of its first line: `{example}`"))
 }
 
 /// The usual cause of an `if` that stays open.

@@ -110,7 +110,7 @@ pub(super) fn lexemes(
 fn refuse_table(source: SourceId, text: &str) -> Result<(), Diagnostic> {
     let start = text.len() - text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).len();
     let line = text[start..].lines().next().unwrap_or("");
-    if line.starts_with('#') || is_table_header(line) {
+    if line.starts_with("#1") || is_table_header(line) {
         return Err(fault!(NOT_A_SCRIPT, "this is table data, not a script")
             .help("read it as data, for instance with `readMatrix`, and run another file")
             .at(Span::new(source, start, start + line.trim_end().len())));
@@ -345,7 +345,18 @@ impl<'t> Scanner<'t> {
             Some(bracket) if bracket.open == b'[' => {}
             Some(_) => {
                 if let Some(bracket) = self.brackets.pop() {
-                    self.unclosed(&bracket, token.start, token.end, "the statement ends here");
+                    let ends_here = self.tokens.line_from(token.end).contains('}');
+                    match bracket.open == b'{' && ends_here {
+                        true => self.separated_by_semicolons(token),
+                        false => {
+                            self.unclosed(
+                                &bracket,
+                                token.start,
+                                token.end,
+                                "the statement ends here",
+                            );
+                        }
+                    }
                 }
                 self.brackets.clear();
                 self.end_statement();
@@ -371,6 +382,14 @@ impl<'t> Scanner<'t> {
             .labelled(self.span(bracket.at, bracket.at + 1), "opened here")
             .related(self.span(start, end), here);
         self.report(bracket.at, diagnostic);
+    }
+
+    /// `{1; 2}`
+    fn separated_by_semicolons(&mut self, token: &Token<'t>) {
+        let diagnostic = fault!(UNCLOSED_BRACKET, "`;` does not separate elements in braces")
+            .help("write `,` between them; rows of a matrix are in square brackets: `[1; 2; 3]`")
+            .at(self.span(token.start, token.end));
+        self.report(token.start, diagnostic);
     }
 
     fn finish(&mut self) {

@@ -253,8 +253,20 @@ impl<'t> Tokens<'t> {
                 _ => at += 1,
             }
         }
+        let word = self.word_before();
+        if quote == b'\'' && !word.is_empty() {
+            return Err(fault!(UNCLOSED_STRING, "`'` after a name is not a derivative")
+                .help(format!("write `der({word})` for the derivative of `{word}`"))
+                .at(Span::new(self.source, self.at, self.at + 1)));
+        }
         let what = if quote == b'"' { "string" } else { "quoted identifier" };
         Err(self.unclosed(what, &char::from(quote).to_string(), 1))
+    }
+
+    /// The name that ends directly before this place.
+    fn word_before(&self) -> &'t str {
+        let head = &self.text[..self.at];
+        &head[head.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len()..]
     }
 
     fn unclosed(&self, what: &str, close: &str, length: usize) -> Diagnostic {
@@ -278,7 +290,12 @@ impl<'t> Tokens<'t> {
         } else {
             fault!(BAD_CHARACTER, "the character `{shown}` is not allowed here")
         };
+        let line = rest.lines().next().unwrap_or_default();
         let help = match known {
+            Some(("|", _)) if line.matches('|').count() == 2 => {
+                let inner = line.split('|').nth(1).unwrap_or_default();
+                format!("write `abs({inner})` for an absolute value, `or` between conditions")
+            }
             Some((_, remedy)) => format!("write `{remedy}`"),
             None if character.is_alphabetic() => {
                 "identifiers contain only the letters `a` to `z`; quote it: `'...'`".to_owned()

@@ -1,0 +1,190 @@
+//! What other languages write otherwise: punctuation at the place where the grammar stops, and names.
+
+use super::keywords::is_keyword;
+
+/// What is wrong, and what Modelica writes.
+pub(super) struct Remedy {
+    pub(super) message: String,
+    pub(super) help: String,
+}
+
+/// The text around the place where the grammar stopped.
+pub(super) struct Surroundings<'t> {
+    /// Up to the end of the token before.
+    pub(super) head: &'t str,
+    /// Blanks between that token and the one found.
+    pub(super) gap: &'t str,
+    pub(super) found: &'t str,
+    /// What follows the token found.
+    pub(super) tail: &'t str,
+    /// What the grammar expected, in Modelica words.
+    pub(super) expected: &'t str,
+}
+
+impl Surroundings<'_> {
+    /// The first remedy that fits.
+    pub(super) fn remedy(&self) -> Option<Remedy> {
+        self.operator()
+            .or_else(|| self.decimal_comma())
+            .or_else(|| self.loop_range())
+            .or_else(|| self.unit_or_product())
+            .or_else(|| self.missing_section())
+    }
+
+    /// `**`, `+=`
+    fn operator(&self) -> Option<Remedy> {
+        let last = self.head.chars().next_back().filter(|_| self.gap.is_empty())?;
+        match (last, self.found) {
+            ('*', "*") => Some(Remedy {
+                message: "`**` is not an operator".to_owned(),
+                help: "write `^` for the power: `x^2`".to_owned(),
+            }),
+            ('+' | '-' | '*' | '/', "=") => {
+                let before = self.head[..self.head.len() - 1].trim_end();
+                let name = &before[before.trim_end_matches(is_part_of_name).len()..];
+                Some(Remedy {
+                    message: format!("`{last}=` is not an operator"),
+                    help: format!("write `{name} := {name} {last} ...`"),
+                })
+            }
+            _ => None,
+        }
+    }
+
+    /// `0,5`
+    fn decimal_comma(&self) -> Option<Remedy> {
+        let whole = number_at_end(self.head.strip_suffix(',')?)?;
+        let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        let is_decimal = self.gap.is_empty() && is_number(whole) && is_number(self.found);
+        is_decimal.then(|| Remedy {
+            message: "a comma separates entries; numbers have a decimal point".to_owned(),
+            help: format!("write `{whole}.{}`", self.found),
+        })
+    }
+
+    /// `for k = 1:3`
+    fn loop_range(&self) -> Option<Remedy> {
+        let (before, name) = split_word(self.head);
+        let (_, keyword) = split_word(before.trim_end());
+        if self.found != "=" || keyword != "for" || name.is_empty() {
+            return None;
+        }
+        let line = self.tail.split(['\n', '\u{1e}', ';']).next().unwrap_or_default();
+        let range = line.split(" loop").next().unwrap_or_default().trim();
+        Some(Remedy {
+            message: "`=` does not give a loop its range".to_owned(),
+            help: format!("write `for {name} in {range} loop`"),
+        })
+    }
+
+    /// `2k`, `5 s`, `5 [s]`
+    fn unit_or_product(&self) -> Option<Remedy> {
+        let number = number_at_end(self.head).filter(|_| !self.gap.contains(['\n', '\u{1e}']))?;
+        let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+        let is_name = self.found.starts_with(is_letter) && !is_keyword(self.found);
+        if is_name && self.gap.is_empty() {
+            return Some(Remedy {
+                message: format!("`*` is missing between `{number}` and `{}`", self.found),
+                help: format!("write `{number}*{}`", self.found),
+            });
+        }
+        let ends = |text: &str| {
+            let text = text.trim_start_matches([' ', '\t']);
+            text.is_empty() || text.starts_with([';', '"', '\n', '\u{1e}'])
+        };
+        let unit = match self.found {
+            "[" => {
+                let (unit, rest) = self.tail.split_once(']')?;
+                Some(unit).filter(|unit| !unit.contains('\n') && ends(rest))
+            }
+            name => Some(name).filter(|_| is_name && ends(self.tail)),
+        }?;
+        Some(Remedy {
+            message: format!("`{unit}` after a number is not a unit"),
+            help: format!("write the unit as an attribute: `Real x(unit = \"{unit}\") = {number}`"),
+        })
+    }
+
+    /// An equation among the declarations.
+    fn missing_section(&self) -> Option<Remedy> {
+        let begins = ["der", "if", "for", "when", "assert", "reinit"].contains(&self.found);
+        (begins && self.expected.contains("`equation`")).then(|| Remedy {
+            message: format!("unexpected `{}` among declarations", self.found),
+            help: "write `equation` on a line above the first equation".to_owned(),
+        })
+    }
+}
+
+/// The number that a text ends with; not the end of a name such as `x1`.
+fn number_at_end(text: &str) -> Option<&str> {
+    let number = &text[text.trim_end_matches(is_part_of_name).len()..];
+    let is_number = number.starts_with(|c: char| c.is_ascii_digit())
+        && number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    is_number.then_some(number)
+}
+
+fn split_word(text: &str) -> (&str, &str) {
+    text.split_at(text.trim_end_matches(is_word).len())
+}
+
+fn is_word(character: char) -> bool {
+    character.is_ascii_alphanumeric() || character == '_'
+}
+
+fn is_part_of_name(character: char) -> bool {
+    is_word(character) || character == '.'
+}
+
+/// Names of other languages, and what Modelica writes.
+const NAMES: &[(&str, &str)] = &[
+    ("True", "true"),
+    ("TRUE", "true"),
+    ("False", "false"),
+    ("FALSE", "false"),
+    ("pi", "Modelica.Constants.pi"),
+    ("PI", "Modelica.Constants.pi"),
+    ("t", "time"),
+];
+
+/// Types of other languages.
+const TYPES: &[(&str, &str)] = &[
+    ("float", "Real"),
+    ("double", "Real"),
+    ("real", "Real"),
+    ("int", "Integer"),
+    ("integer", "Integer"),
+    ("bool", "Boolean"),
+    ("boolean", "Boolean"),
+    ("string", "String"),
+    ("str", "String"),
+];
+
+/// Functions of other languages.
+const FUNCTIONS: &[(&str, &str)] = &[
+    ("pow", "x^y"),
+    ("power", "x^y"),
+    ("ln", "log(x)"),
+    ("fabs", "abs(x)"),
+    ("len", "size(x, 1)"),
+    ("numel", "size(x, 1)"),
+];
+
+/// The help for a name that nothing declares.
+pub(crate) fn name_help(name: &str) -> Option<String> {
+    help_of(NAMES, name)
+}
+
+/// The help for a type that nothing declares.
+pub(crate) fn type_help(name: &str) -> Option<String> {
+    help_of(TYPES, name)
+}
+
+/// The help for a function that nothing declares.
+pub(crate) fn function_help(name: &str) -> Option<String> {
+    help_of(FUNCTIONS, name)
+}
+
+fn help_of(table: &[(&str, &str)], name: &str) -> Option<String> {
+    let (_, own) = table.iter().find(|(foreign, _)| *foreign == name)?;
+    Some(format!("write `{own}`"))
+}

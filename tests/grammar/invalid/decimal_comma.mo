@@ -1,0 +1,3 @@
+model M
+  parameter Real k = 0,5;
+end M;

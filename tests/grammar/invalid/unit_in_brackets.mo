@@ -1,0 +1,3 @@
+model M
+  parameter Real tau = 1 [s];
+end M;

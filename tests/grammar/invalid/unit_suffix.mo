@@ -1,0 +1,3 @@
+model M
+  parameter Real tau = 5 s;
+end M;
