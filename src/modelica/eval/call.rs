@@ -10,6 +10,7 @@ use crate::functions::{self, Builtin, Meaning};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{self, ComponentReference, ExpressionKind};
+use crate::syntax::foreign;
 use crate::value::{Elements, FunctionValue, Value};
 use std::sync::Arc;
 
@@ -197,10 +198,18 @@ impl Evaluator<'_> {
 
     fn unknown_function(&mut self, name: &Name) -> Fault {
         let called = name.to_string();
+        let is_variable =
+            name.is_simple() && name.first().is_some_and(|first| self.scope.contains(first));
+        let subscripts = is_variable.then(|| {
+            format!("`{called}` is a variable; subscripts are in brackets: `{called}[1]`")
+        });
         let mut known = self.host.function_names();
         known.extend(functions::names().map(str::to_owned));
-        fault!(UNKNOWN_FUNCTION, "there is no function `{called}`")
-            .help_if(suggest::did_you_mean(&called, known.iter().map(String::as_str)))
+        fault!(UNKNOWN_FUNCTION, "there is no function `{called}`").help_if(
+            subscripts
+                .or_else(|| foreign::function_help(&called))
+                .or_else(|| suggest::did_you_mean(&called, known.iter().map(String::as_str))),
+        )
     }
 
     /// A function of the values of its arguments.

@@ -13,6 +13,7 @@ use crate::source::Span;
 use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
 };
+use crate::syntax::foreign;
 use crate::value::{Elements, Index, Step, Value};
 
 impl Evaluator<'_> {
@@ -187,12 +188,25 @@ impl Evaluator<'_> {
             }
         }
         let fault = match reference.as_ident() {
-            Some(name) => self.scope.unknown(name),
+            Some(name) => {
+                let help = self.meant_otherwise(name.as_str());
+                self.scope.unknown(name).help_if(help)
+            }
             None => {
                 fault!(UNKNOWN_VARIABLE, "there is no variable `{}` here", reference.name())
             }
         };
         Err(fault.at(reference.span))
+    }
+
+    /// What a name that is not a variable is otherwise.
+    fn meant_otherwise(&mut self, name: &str) -> Option<String> {
+        if let Some(inner) = name.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\'')) {
+            return Some(format!("strings are in double quotes: `\"{inner}\"`"));
+        }
+        let is_function = self.host.function_names().iter().any(|known| known == name);
+        let call = is_function.then(|| format!("`{name}` is a function: write `{name}(...)`"));
+        call.or_else(|| foreign::name_help(name))
     }
 
     /// A part of a global array, such as `Package.table[2, 1]`.

@@ -196,7 +196,12 @@ impl ValueType {
     fn refuse(&self, got: &str, got_real: bool) -> Fault {
         let message = format!("expected a value of type {}, got {got}", self.name());
         let rounding = "use `integer(x)` for the largest Integer not above `x`";
-        let help = (got_real && matches!(self, ValueType::Integer)).then(|| rounding.to_owned());
+        let to_string = "use `String(x)` to convert a number to a string";
+        let help = match self {
+            ValueType::Integer if got_real => Some(rounding.to_owned()),
+            ValueType::String if ["Integer", "Real"].contains(&got) => Some(to_string.to_owned()),
+            _ => None,
+        };
         Fault::new(TYPE_MISMATCH, message).help_if(help)
     }
 }

@@ -7,23 +7,38 @@ use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
+use crate::syntax::foreign;
 
 /// A class that nothing declares.
 pub(crate) fn class(name: &Name, suggestion: Option<String>, span: Span) -> Diagnostic {
-    fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
+    let help = foreign::type_help(&name.to_string()).or(suggestion);
+    fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(help).at(span)
 }
 
 /// A function that neither a class nor the language declares; without a suggestion one of the language.
-pub(crate) fn function(name: &Name, suggestion: Option<String>, span: Span) -> Diagnostic {
-    let builtin = || suggest::did_you_mean(&name.to_string(), crate::functions::names());
-    let suggestion = suggestion.or_else(builtin);
-    fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)
+/// `known` are the components that the name could mean.
+pub(crate) fn function(
+    name: &Name,
+    known: &[Ident],
+    suggestion: Option<String>,
+    span: Span,
+) -> Diagnostic {
+    let written = name.to_string();
+    let is_component = name.is_simple() && name.first().is_some_and(|first| known.contains(&first));
+    let subscripts = is_component
+        .then(|| format!("`{written}` is a variable; subscripts are in brackets: `{written}[1]`"));
+    let help = subscripts
+        .or_else(|| foreign::function_help(&written))
+        .or(suggestion)
+        .or_else(|| suggest::did_you_mean(&written, crate::functions::names()));
+    fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(help).at(span)
 }
 
 /// A name in an expression; `known` are the components that it could mean.
 pub(crate) fn name(name: &Name, known: &[Ident], span: Span) -> Diagnostic {
     let first = name.first().map_or("", Ident::as_str);
-    fault!(UNKNOWN_NAME, "`{name}` is not declared").help_if(near(first, known)).at(span)
+    let help = near(first, known).or_else(|| foreign::name_help(&name.to_string()));
+    fault!(UNKNOWN_NAME, "`{name}` is not declared").help_if(help).at(span)
 }
 
 /// A component that a class with the components `known` does not have.

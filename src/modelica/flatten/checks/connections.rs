@@ -40,6 +40,24 @@ impl Visit for ConnectCheck<'_, '_> {
     }
 }
 
+/// The first connectors of a class, by name.
+fn connectors(class: Scope<'_>) -> Vec<String> {
+    const SHOWN: usize = 8;
+    let mut names = Vec::new();
+    for scope in class.lineage() {
+        for component in scope.components() {
+            let is_connector = component.class().is_some_and(|class| {
+                let restriction = class.restriction();
+                matches!(restriction, Restriction::Connector | Restriction::ExpandableConnector)
+            });
+            if is_connector && names.len() < SHOWN {
+                names.push(component.name().to_string());
+            }
+        }
+    }
+    names
+}
+
 impl ConnectCheck<'_, '_> {
     /// A reference to a variable, a record or a model.
     fn no_connector(&self, reference: &ComponentReference) -> Option<Diagnostic> {
@@ -62,11 +80,20 @@ impl ConnectCheck<'_, '_> {
         if is_connector || in_connector || self.is_tolerated(component, reference.span) {
             return None;
         }
-        Some(
-            fault!(INVALID_CONNECTION, "`{}` is not a connector", component.name();
-                help: "connect connectors; for variables, write an equation")
-            .at(reference.span),
-        )
+        let name = component.name();
+        let own: Vec<String> = match component.meaning()? {
+            Type::Predefined(_) => Vec::new(),
+            Type::Class(class) => connectors(component.owner.of(class)),
+        };
+        let help = match own.as_slice() {
+            [] => "connect connectors; for variables, write an equation".to_owned(),
+            own => {
+                let own: Vec<String> = own.iter().map(|one| format!("`{name}.{one}`")).collect();
+                format!("connect one of its connectors: {}", own.join(", "))
+            }
+        };
+        let fault = fault!(INVALID_CONNECTION, "`{name}` is not a connector");
+        Some(fault.help(help).at(reference.span))
     }
 
     /// A variable of a predefined type. Libraries connect them as they connect inputs and outputs that are

@@ -327,7 +327,8 @@ impl Classes<'_> {
         name: &Name,
         span: Span,
     ) -> Diagnostic {
-        unknown::function(name, self.suggestion(scope, name), span)
+        let known = self.tree.component_names(self.node_of(scope));
+        unknown::function(name, &known, self.suggestion(scope, name), span)
     }
 
     fn suggestion(&mut self, scope: ScopeId, name: &Name) -> Option<String> {

@@ -86,7 +86,8 @@ impl<'a> NameCheck<'a, '_> {
         let is_known = at == 0 && self.is_of_language(name) || is_predefined;
         if !is_known && !self.may_be_undeclared(&parts, at) && self.is_first_of_package(name, at) {
             let suggestion = self.library.suggestion(scope, name);
-            self.errors.push(unknown::function(name, suggestion, span));
+            let known = scope.map_or(Vec::new(), |scope| self.library.component_names(scope));
+            self.errors.push(unknown::function(name, &known, suggestion, span));
         }
         None
     }
