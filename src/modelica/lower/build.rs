@@ -484,6 +484,11 @@ impl<'a> Builder<'a> {
                 first.len(),
                 second.len()
             )
+            .help_if((first.is_empty() || second.is_empty()).then(|| {
+                "write an equation for the same variables in each branch, also in `else`: without \
+                 it they are not determined there"
+                    .to_owned()
+            }))
             .at(span));
         }
         // Paired by position, equations for different variables would be one, and the variables of

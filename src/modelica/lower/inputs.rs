@@ -67,6 +67,8 @@ fn keep_start(dae: &mut Dae, position: usize, is_top_level: bool) {
     let how = if is_top_level { "not connected" } else { "neither connected nor used" };
     let name = &variable.name;
     let warning = fault!(NOT_SUPPORTED, "the input `{name}` is {how}; it keeps its start value");
+    let data = "connect it, or give it data: `inputs` of a problem file, `gapi simulate --input`";
+    let warning = warning.help_if(is_top_level.then(|| data.to_owned()));
     dae.warnings.push(warning.at(span).warning());
     let left = dae.pool.variable(VarId(position as u32));
     dae.equations.push(Equation::new(left, right, span));
