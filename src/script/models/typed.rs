@@ -82,8 +82,12 @@ pub(super) fn number_in(name: &str, text: &str, base: Option<&BaseType>) -> Resu
         "true" => Ok(1.0),
         "false" => Ok(0.0),
         number => number.parse().map_err(|_| {
-            fault!(BAD_PARAMETER_VALUE, "`{text}` is not a value of `{name}`";
-                help: "write a number, `true` or `false`")
+            let point = number.replacen(',', ".", 1);
+            let help = match point.parse::<f64>() {
+                Ok(_) => format!("numbers have a decimal point: write `{point}`"),
+                Err(_) => "write a number, `true` or `false`".to_owned(),
+            };
+            fault!(BAD_PARAMETER_VALUE, "`{text}` is not a value of `{name}`").help(help)
         }),
     }
 }

@@ -173,6 +173,7 @@ impl Source<'_> {
         let has_states = !program.sorted().states.is_empty();
         if has_states {
             note_start(&comparison, notes);
+            note_stop(&comparison, &abscissa, program.experiment().stop_time, notes);
         }
         let (observations, series) =
             comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
@@ -245,6 +246,7 @@ impl Source<'_> {
         let setting = parameters::Setting { file, entry, label, segment, free };
         let parameters = setting.parameters(&mut enclosing).map_err(|error| vec![error])?;
         note_used_twice(entry, notes);
+        note_swapped(entry, notes);
         let (mut is_driven, mut undecided) = (false, Vec::new());
         if x.name != "time" || !entry.inputs.is_empty() {
             // What the experiment sets may shape the model: sizes, conditions.
@@ -363,6 +365,37 @@ fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
     }
 }
 
+/// Says where the data end, if that is where the experiment of the model ends in another unit.
+fn note_stop(
+    comparison: &Comparison<'_>,
+    abscissa: &Abscissa,
+    annotated: Option<f64>,
+    notes: &mut Notes,
+) {
+    const UNITS: [(&str, &str, f64); 3] =
+        [("min", "minutes", 60.0), ("h", "hours", 3600.0), ("d", "days", 86_400.0)];
+    // Rows are seldom logged to the very end of the experiment.
+    const NEAR: f64 = 0.02;
+    let finite = comparison.x.iter().copied().filter(|x| x.is_finite());
+    let last = finite.fold(f64::NEG_INFINITY, f64::max);
+    if comparison.x_name != "time" || !last.is_finite() {
+        return;
+    }
+    let has_unit = abscissa.entry.unit.is_some() || abscissa.column.about.unit.is_some();
+    let is_near = |seconds: f64| {
+        annotated.is_some_and(|stop| (last * seconds - stop).abs() <= NEAR * stop.abs())
+    };
+    let unit = UNITS.iter().find(|(.., seconds)| !has_unit && is_near(*seconds));
+    if let (Some((unit, words, _)), Some(stop)) = (unit, annotated) {
+        let name = abscissa.entry.column.as_ref().unwrap_or(&abscissa.name);
+        notes.warn(format!(
+            "{}: the data end at {last} s, the experiment of the model at {stop} s; if the times \
+             are in {words}, write the unit after the name of the column: `{name} [{unit}]`",
+            comparison.experiment
+        ));
+    }
+}
+
 /// What a simulation may cost.
 fn limit(session: &Session, entry: &ExperimentEntry, settings: &mut Settings) -> Result<(), Fault> {
     if let Some(steps) = entry.max_steps {
@@ -387,7 +420,7 @@ fn stop_time(
     let last = x.iter().copied().filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max);
     match entry.stop_time {
         None if x_name == "time" && last.is_finite() => Some(annotated.unwrap_or(last).max(last)),
-        wanted => wanted,
+        given => given,
     }
 }
 
@@ -401,6 +434,20 @@ fn note_used_twice(entry: &ExperimentEntry, notes: &mut Notes) {
         if let Some((output, _)) = entry.all_outputs().find(same) {
             notes.add(format!(
                 "the column `{column}` is both the input `{input}` and the output `{output}`"
+            ));
+        }
+    }
+}
+
+/// Two outputs of which each reads the column with the name of the other.
+fn note_swapped(entry: &ExperimentEntry, notes: &mut Notes) {
+    let column = |name: &str| entry.outputs.get(name)?.entry().column;
+    for one in entry.outputs.keys() {
+        let Some(other) = column(one).filter(|other| other != one) else { continue };
+        if column(&other).as_deref() == Some(one) && *one < other {
+            notes.warn(format!(
+                "the output `{one}` reads the column `{other}` and `{other}` the column `{one}`: \
+                 are they swapped?"
             ));
         }
     }

@@ -280,6 +280,11 @@ fn prepared(
     problem: solving::Problem,
     options: &RunOptions,
 ) -> Result<Run, Fault> {
+    if let Some(file) = options.watch.as_ref().filter(|file| !session.world.exists(file)) {
+        let name = file.display();
+        session
+            .print(&format!("there is no file `{name}` yet: its settings apply once it exists\n"));
+    }
     let mut run = Run::on(problem, &session.world.processors())?;
     run.evaluation.cancel_by(session.world.interrupt_flag());
     run.evaluation.parts = options.division.parts();
@@ -463,6 +468,9 @@ fn open(
         (None, Some(journal)) if options.resume => Some(session.read_bytes(journal)?),
         _ => None,
     };
+    if known.is_none() && options.resume {
+        note_no_checkpoint(session, path);
+    }
     if let Some(old) = known {
         let journal = solving::decode(&old).filter(|journal| journal.origins().is_some());
         let Some(journal) = journal else {
@@ -497,6 +505,14 @@ fn open(
     session.write_safely(path, &bytes)?;
     discard(session, &finished);
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
+}
+
+/// Says that a run which was to resume begins, for want of the checkpoint in `path`.
+fn note_no_checkpoint(session: &mut Session, path: &Path) {
+    let folder = path.parent().unwrap_or(path).display();
+    session.print(&format!(
+        "there is no checkpoint in `{folder}`: the run starts from the beginning\n"
+    ));
 }
 
 /// What a simulation for the report may take once the user has stopped the run.

@@ -69,7 +69,7 @@ impl Comparison<'_> {
         let column = data::column(table, wanted, y_name, notes)?;
         note_suspicious(wanted.column.as_deref().unwrap_or(y_name), &column, (table, notes));
         let measured = data::in_unit(&column, y_name, &unit, wanted, (table, notes))?;
-        let unit = unit.symbol;
+        let VariableUnit { symbol: unit, is_relative } = unit;
         note_unit_of_sigma(y_name, wanted, (&measured, &unit), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
@@ -92,6 +92,8 @@ impl Comparison<'_> {
         if rows.is_empty() {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
+        let values = rows.iter().map(|row| measured.values[*row]);
+        note_temperature(y_name, (&unit, is_relative), (wanted, &column), values, notes);
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
         let weight = self.weight(y_name, wanted)?;
         Ok(Series {
@@ -196,12 +198,44 @@ impl Comparison<'_> {
     }
 }
 
+/// Temperatures whose file gives no unit and whose values are usual in the other one.
+fn note_temperature(
+    y_name: &str,
+    (unit, is_relative): (&str, bool),
+    (entry, column): (&ColumnEntry, &Column),
+    values: impl Iterator<Item = f64>,
+    notes: &mut Notes,
+) {
+    // From -23 to 77 °C: in K what laboratories and buildings have, in °C what few ovens keep within.
+    const ROOM_IN_KELVIN: [f64; 2] = [250.0, 350.0];
+    // Below 100 K there is little but cryogenics.
+    const ROOM_IN_CELSIUS: [f64; 2] = [-50.0, 100.0];
+    let has_unit = entry.unit.is_some() || entry.factor.is_some() || column.about.unit.is_some();
+    let ([from, to], other) = match unit {
+        "degC" => (ROOM_IN_KELVIN, "K"),
+        "K" => (ROOM_IN_CELSIUS, "degC"),
+        _ => return,
+    };
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+    if !has_unit && !is_relative && low >= from && high <= to {
+        notes.warn(format!(
+            "the file gives no unit for `{y_name}`, which the model has in {unit}; its values lie \
+             between {low} and {high}: if they are in {other}, write `unit = \"{other}\"` in its \
+             entry of `outputs`"
+        ));
+    }
+}
+
 /// Values that are all equal, as those of a sensor that is not connected.
 fn note_constant(y_name: &str, mut values: impl ExactSizeIterator<Item = f64>, notes: &mut Notes) {
     let count = values.len();
     let Some(first) = values.next().filter(|_| count > 3) else { return };
     if values.all(|value| value == first) {
-        notes.add(format!("all {count} values of `{y_name}` are {first}"));
+        notes.add(format!(
+            "all {count} values of `{y_name}` are {first}: they determine no dynamics; check the \
+             sensor and the column"
+        ));
     }
 }
 
