@@ -3,6 +3,7 @@
 use super::{disk, terminal};
 use crate::diag::render;
 use crate::format::{self, Failure, Language, diff};
+use crate::script::access::faults::cannot;
 use crate::source::{SourceId, SourceMap};
 use crate::syntax;
 use crate::syntax::errors::NOT_A_SCRIPT;
@@ -123,7 +124,7 @@ pub(super) fn fmt(arguments: &FmtArgs) -> ExitCode {
 fn one(arguments: &FmtArgs, path: &Path, language: Language) -> Outcome {
     let name = path.display().to_string();
     let failed = |doing: &str, error: std::io::Error| {
-        terminal::eprint(&format!("error: cannot {doing} `{name}`: {error}\n"));
+        terminal::eprint(&format!("error: {}\n", cannot(doing, path, &error).message));
         Outcome::Failed
     };
     let bytes = match disk::read_named(path) {

@@ -36,7 +36,7 @@ const LEDGERS: [(DialectName, &str, &str); 2] = [
 ];
 
 /// Prints what is asked for.
-pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
+pub(super) fn help(arguments: &HelpArgs, program: &clap::Command) -> ExitCode {
     if let Some(name) = arguments.compat {
         let all = LEDGERS.iter().filter(|(known, ..)| name.is_none_or(|name| name == *known));
         all.for_each(|(_, title, ledger)| terminal::print(&table(title, ledger)));
@@ -58,9 +58,10 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
         Some(name) => match builtins::declarations(name).as_slice() {
             [] => {
                 let known = builtins::names();
-                let hint = crate::diag::suggest::did_you_mean(name, known.iter().copied());
+                let hint = command_help(name, program)
+                    .or_else(|| crate::diag::suggest::did_you_mean(name, known.iter().copied()));
                 let hint = hint.map_or(String::new(), |hint| format!(": {hint}"));
-                terminal::eprint(&format!("error: there is no command `{name}`{hint}\n"));
+                terminal::eprint(&format!("error: there is no script command `{name}`{hint}\n"));
                 ExitCode::FAILURE
             }
             all => {
@@ -69,6 +70,13 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
             }
         },
     }
+}
+
+/// Where the help of a command of the program is, which is not a command of scripts.
+fn command_help(name: &str, program: &clap::Command) -> Option<String> {
+    let mut commands = program.get_subcommands().map(clap::Command::get_name);
+    let command = commands.find(|known| *known == name)?;
+    Some(format!("it is a command of gapi: `gapi {command} --help`"))
 }
 
 /// The operators of one kind, or of all.

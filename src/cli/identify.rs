@@ -78,7 +78,7 @@ pub(super) struct IdentifyArgs {
     #[arg(long)]
     pub fresh: bool,
     /// Stop after this number of evaluations
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::numbers::whole_number)]
     pub evaluations: Option<u64>,
     /// Search N times, each time with another seed, and take the best result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]

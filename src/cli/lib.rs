@@ -44,10 +44,12 @@ mod lock;
 pub mod lsp;
 mod man;
 mod memory;
+mod misplaced;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod named;
 mod new;
+mod numbers;
 mod options;
 mod output;
 mod parsing;
@@ -94,8 +96,14 @@ pub fn main() -> ExitCode {
 
 fn command() -> ExitCode {
     match Cli::try_parse() {
-        Ok(cli) => on_large_stack(move || dispatch(&cli)),
-        Err(error) => ExitCode::from(terminal::print_usage(&error)),
+        Ok(cli) => match misplaced::refusal(&cli.command) {
+            None => on_large_stack(move || dispatch(&cli)),
+            Some(text) => {
+                terminal::eprint(&text);
+                ExitCode::FAILURE
+            }
+        },
+        Err(error) => ExitCode::from(terminal::print_usage(&misplaced::explained(error))),
     }
 }
 
@@ -171,7 +179,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::New(arguments) => new::new(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),
-        Command::Help(arguments) => help::help(arguments),
+        Command::Help(arguments) => help::help(arguments, &Cli::command()),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments, Cli::command()),
         Command::Man(arguments) => man::man(arguments, Cli::command()),

@@ -143,7 +143,7 @@ pub(super) fn with_class(
 }
 
 /// Whether a text reads as `Package.Class` or `Class(modification)`, not as the name of a file.
-fn is_class(text: &str) -> bool {
+pub(super) fn is_class(text: &str) -> bool {
     let name = text.split('(').next().unwrap_or_default();
     let is_identifier = |part: &str| {
         part.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

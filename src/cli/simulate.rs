@@ -1,6 +1,7 @@
 //! `gapi simulate`: one simulation of one model.
 
 use super::effort;
+use super::numbers::number;
 use super::options::{Global, Limits};
 use super::terminal::Terminal;
 use super::{limits, session};
@@ -11,7 +12,6 @@ use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::errors::FILE_ERROR;
 use crate::script::models::final_state::FinalState;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
@@ -50,16 +50,16 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
     /// Start of the simulation in seconds
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
     pub start_time: Option<f64>,
     /// End of the simulation in seconds
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
     pub stop_time: Option<f64>,
     /// Number of output intervals
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub intervals: Option<u32>,
     /// Relative tolerance
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", value_parser = number)]
     pub tolerance: Option<f64>,
     /// Integration method
     #[arg(long, value_name = "M")]
@@ -173,6 +173,7 @@ fn run(
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
     options.takes_exact_steps = driven.is_some();
+    check_filter(arguments, &options, &model).map_err(one)?;
     if let Some(driven) = &driven
         && model.program.experiment().stop_time.is_none()
     {
@@ -232,6 +233,29 @@ fn filter(expression: &str) -> Result<Regex, Fault> {
     })
 }
 
+/// Refuses a filter that leaves nothing but the time.
+fn check_filter(
+    arguments: &SimulateArgs,
+    options: &SimulationOptions,
+    model: &Translated,
+) -> Result<(), Fault> {
+    let (Some(expression), Some(filter)) = (&arguments.variable_filter, &options.only) else {
+        return Ok(());
+    };
+    let mut variables = model.program.variables().iter();
+    if variables.any(|variable| filter.is_match(&variable.name)) {
+        return Ok(());
+    }
+    let glob = expression.contains('*') && !expression.contains(".*");
+    let help = glob.then(|| {
+        format!(
+            "it is a regular expression for whole names: write `{}`",
+            expression.replace('*', ".*")
+        )
+    });
+    Err(fault!(BAD_OPTION, "no variable matches `{expression}`").help_if(help))
+}
+
 /// Takes states and parameters from results; the time that they are of.
 fn begin_with(
     session: &mut Session,
@@ -239,10 +263,7 @@ fn begin_with(
     path: &Path,
     time: Option<f64>,
 ) -> Result<f64, Fault> {
-    let bytes = session
-        .world
-        .read(path)
-        .map_err(|error| fault!(FILE_ERROR, "`{}` cannot be read: {error}", path.display()))?;
+    let bytes = session.read_bytes(path)?;
     let table = results::format_of_file(&path.to_string_lossy())?.read(&bytes)?;
     let last = || table.time.last().copied().unwrap_or(0.0);
     let time = time.unwrap_or_else(last);

@@ -7,6 +7,7 @@ use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use crate::script::access::faults::cannot;
 use crate::script::world::Screen as _;
 use crate::script::{Echo, Options, Reporting, Session};
 use crate::source::Span;
@@ -112,7 +113,7 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let (trace, session) = match is_script {
         true => recorded(arguments, global, &Again::default())
             .map(|(trace, session)| (trace, Some(session)))?,
-        false => (read(&arguments.input)?, None),
+        false => (read(&arguments.input, &arguments.input)?, None),
     };
     if let (Some(statement), None) = (arguments.what_if.first(), &arguments.html) {
         return compare(arguments, global, &trace, statement);
@@ -129,10 +130,16 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     }
 }
 
-fn read(file: &Path) -> Result<Trace, Trouble> {
-    let read = super::named::read(file).map_err(|error| error.to_string());
-    let trace = read.and_then(|bytes| Trace::read(&bytes).map_err(|fault| fault.message));
-    trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
+/// Reads a trace; messages name the file that the user has given, `input`.
+fn read(file: &Path, input: &Path) -> Result<Trace, Trouble> {
+    let read = super::named::read(file).map_err(|error| cannot("read", input, &error).message);
+    read.and_then(|bytes| {
+        Trace::read(&bytes).map_err(|fault| {
+            let helps: String = fault.helps.iter().map(|help| format!("\nhelp: {help}")).collect();
+            format!("`{}`: {}{helps}", input.display(), fault.message)
+        })
+    })
+    .map_err(Trouble::Message)
 }
 
 /// The folder of the run.
@@ -191,7 +198,7 @@ fn recorded(
         let generation = change.map_or(0, |(generation, _)| generation);
         return Err(Trouble::Message(format!("the run has no generation {generation}")));
     }
-    Ok((read(&file)?, session))
+    Ok((read(&file, &arguments.input)?, session))
 }
 
 /// Runs the script once more with a change, and shows both runs on one chart.

@@ -70,6 +70,7 @@ mod long_expressions;
 mod lsp;
 mod mat;
 mod measured_time;
+mod mistakes;
 mod model_files;
 mod modelica;
 mod modelica_models;

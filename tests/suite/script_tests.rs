@@ -85,7 +85,7 @@ fn what_has_nothing_to_compare_is_a_failure() {
         assert!(code == 1 && out.contains(why), "{path}: {out}");
     }
     let (code, out, _) = gapi(&here, &["test", "?.mos"]);
-    assert!(code == 0 && out.contains("1 scripts, 1 agree"), "{out}");
+    assert!(code == 0 && out.contains("1 script, 1 agree"), "{out}");
     let (code, out, _) = gapi(&here, &["test", "--list"]);
     assert_eq!(code, 1);
     let expected = "./a.mos  transcript\n./gone.mos.snap  (a transcript without its script \

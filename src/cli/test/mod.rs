@@ -161,7 +161,8 @@ fn conclude(results: &[Tested], arguments: &TestArgs) -> ExitCode {
     let tested = results.len() - skipped;
     let left_out = if skipped > 0 { format!(", {skipped} skipped") } else { String::new() };
     terminal::print(&format!(
-        "{tested} scripts, {good} agree, {} do not{left_out}\n",
+        "{tested} {}, {good} agree, {} do not{left_out}\n",
+        if tested == 1 { "script" } else { "scripts" },
         tested - good
     ));
     let counts = Counts::of_all(results);

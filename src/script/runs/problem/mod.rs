@@ -507,7 +507,7 @@ fn open(
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
 
-/// Says that a run which was to resume begins, for want of the checkpoint in `path`.
+/// Says that a run which was to resume begins, because there is no checkpoint in `path`.
 fn note_no_checkpoint(session: &mut Session, path: &Path) {
     let folder = path.parent().unwrap_or(path).display();
     session.print(&format!(
