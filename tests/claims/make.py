@@ -296,7 +296,7 @@ def fault_code():
         reading.""",
         static("a = 1, b = 1", "a + b*x"), {"a": between(-50, 50), "b": between(-50, 50)},
     ).data(x=x, y=y).of("a", [], (a, 1e-3)).of("b", [], (b, 1e-3)).says(
-        "row 6", "reached by (5 of 5|6 of 6|7 of 7|8 of 8|9 of 9|10 of 10) descents").never("not a minimum")
+        "row 6", "reached by (12 of 12|13 of 13|14 of 14|15 of 15) descents").never("not a minimum")
 
 
 @problem
