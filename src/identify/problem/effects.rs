@@ -122,7 +122,7 @@ pub fn effect(
         }
     }
     for fit in &mut within {
-        let (jacobian, took) = sensitivities(problem, evaluation, &fit.values);
+        let (jacobian, took) = sensitivities(problem, evaluation, &fit.values, 1.0);
         simulations += took;
         fit.deviations = deviations(&jacobian, statistics, k);
     }
@@ -176,7 +176,7 @@ fn is_smooth(
     k: usize,
     simulations: &mut u64,
 ) -> bool {
-    let (jacobian, took) = sensitivities(problem, evaluation, point);
+    let (jacobian, took) = sensitivities(problem, evaluation, point, 1.0);
     *simulations += took;
     let most = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, |most: f64, own| most.max(own));
     let derivative = most(&mut jacobian[k].iter().map(|derivative| derivative.abs()));

@@ -361,8 +361,13 @@ impl Evaluation {
         self.simulators.is_cancelled()
     }
 
-    /// The simulated points at several places, with derivatives where the simulator has exact ones.
-    pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
+    /// The simulated points at several places, with derivatives where the simulator has exact ones,
+    /// with the tolerance of the solver times `factor`.
+    pub(super) fn exact_all(
+        &self,
+        places: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Linearization, Failed>> {
         let linearization = |own: Simulation| match own.failed {
             Some(failed) => Err(failed),
             None => Ok(Linearization {
@@ -373,7 +378,7 @@ impl Evaluation {
                 simulations: 1,
             }),
         };
-        self.distributed(places, (Asked::DerivativesOrPoints, 1.0), linearization)
+        self.distributed(places, (Asked::DerivativesOrPoints, factor), linearization)
     }
 
     /// The answers of an earlier run are remembered as if they were new.

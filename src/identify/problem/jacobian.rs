@@ -45,7 +45,17 @@ impl Evaluation {
         problem: &Problem,
         places: &[Vec<f64>],
     ) -> Vec<Result<Linearization, Failed>> {
-        let mut found = self.exact_all(places);
+        self.linearize_scaled(problem, places, 1.0)
+    }
+
+    /// The same with the tolerance of the solver times `factor`.
+    pub(super) fn linearize_scaled(
+        &self,
+        problem: &Problem,
+        places: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Linearization, Failed>> {
+        let mut found = self.exact_all(places, factor);
         let wanting: Vec<usize> = (0..places.len())
             .filter(|&k| matches!(&found[k], Ok(own) if own.derivatives.is_empty()))
             .collect();
@@ -64,7 +74,7 @@ impl Evaluation {
             .map(|(k, j)| Stencil::first(problem, k, j, &places[k]))
             .collect();
         while !open.is_empty() {
-            open = self.differences(problem, places, &open, &mut found);
+            open = self.differences((problem, factor), places, &open, &mut found);
         }
         found
     }
@@ -72,7 +82,7 @@ impl Evaluation {
     /// Carries out differences; those that must be taken on another side.
     fn differences(
         &self,
-        problem: &Problem,
+        (problem, factor): (&Problem, f64),
         places: &[Vec<f64>],
         stencils: &[Stencil],
         found: &mut [Result<Linearization, Failed>],
@@ -87,7 +97,7 @@ impl Evaluation {
                 points.push(point);
             }
         }
-        let mut rows = self.simulate_scaled(&points, tightening(problem)).into_iter();
+        let mut rows = self.simulate_scaled(&points, factor * tightening(problem)).into_iter();
         let mut again = Vec::new();
         for stencil in stencils {
             let own: Vec<_> = rows.by_ref().take(stencil.points().count()).collect();

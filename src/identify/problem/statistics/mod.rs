@@ -34,7 +34,8 @@ pub(super) use distributions::student_quantile;
 /// A singular value this far below the largest is none, however exact the simulation is, and
 /// however inexact.
 const RANK: [f64; 2] = [1e-7, 1e-4];
-/// Errors of a simulation beyond which a lack of rank must show at several points to be believed.
+/// Where a lack of rank shows, derivatives are taken with errors of the simulation no larger than
+/// this; where that is refused, the lack must show at several points to be believed.
 const EXACT: f64 = 1e-9;
 /// Derivatives that over the whole range would change the points by less than this part of the
 /// largest are rounding.
@@ -105,6 +106,8 @@ pub struct Statistics {
     pub(super) shares: Vec<f64>,
     /// Singular values below this part of the largest are none.
     rank_tolerance: f64,
+    /// What the solver's tolerance is multiplied with when derivatives are taken.
+    fineness: f64,
 }
 
 impl Statistics {
@@ -152,10 +155,8 @@ impl Statistics {
     ) -> Statistics {
         let repeated = repeated(&problem.series);
         let data = Data::at(problem, evaluation, simulated, &repeated);
-        let (jacobian, simulations) = sensitivities(problem, evaluation, values);
-        let columns = weighted(&jacobian, &data.scales);
-        let best = Sensitivities { values: values.to_vec(), columns };
-        let rank_tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
+        let Fine { best, jacobian, fineness, simulations } =
+            Fine::at(problem, evaluation, (values, simulated), &data.scales);
         let mut found = Statistics {
             uncertainty: None,
             at_bounds: None,
@@ -176,7 +177,8 @@ impl Statistics {
             jacobian,
             simulations,
             shares: data.shares.clone(),
-            rank_tolerance,
+            rank_tolerance: rank_tolerance(problem.noise * fineness),
+            fineness,
         };
         found.estimate_errors(problem, evaluation, &data, &best);
         let limit = data.square + elementary::powi(found.quantile, 2) * found.variance;
@@ -244,13 +246,13 @@ impl Statistics {
     ) {
         let mut rank = non_identifiable::rank(best, &[], self.rank_tolerance);
         if !rank.non_identifiable.is_empty() {
-            let elsewhere = elsewhere(problem, evaluation, others, scales, &mut self.simulations);
+            let elsewhere = self.elsewhere(problem, evaluation, others, scales);
             rank = non_identifiable::rank(best, &elsewhere, self.rank_tolerance);
             for group in rank.non_identifiable.iter_mut().filter(|own| own.form == Form::Local) {
                 self.find_function((problem, evaluation), best, group, (&elsewhere, scales));
             }
-            rank.non_identifiable
-                .retain(|group| problem.noise <= EXACT || group.form != Form::Local);
+            let is_exact = problem.noise * self.fineness <= EXACT;
+            rank.non_identifiable.retain(|group| is_exact || group.form != Form::Local);
         }
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
@@ -274,6 +276,30 @@ impl Statistics {
         (self.condition, self.without_effect) = (rank.condition, rank.without_effect);
     }
 
+    /// The sensitivities at those points elsewhere at which they exceed the errors of the simulation.
+    fn elsewhere(
+        &mut self,
+        problem: &Problem,
+        evaluation: &Evaluation,
+        others: &[Vec<f64>],
+        scales: &[f64],
+    ) -> Vec<Sensitivities> {
+        let mut found = Vec::new();
+        for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
+            self.simulations += 1;
+            let Ok(simulated) = simulated else { continue };
+            let (jacobian, took) = sensitivities(problem, evaluation, values, self.fineness);
+            self.simulations += took;
+            let columns = weighted(&jacobian, scales);
+            let errors = problem.noise * self.fineness * size(&simulated, scales);
+            let is_noticeable = largest_effect(&columns, values) > NOTICEABLE * errors;
+            if is_noticeable && columns.iter().flatten().all(|value| value.is_finite()) {
+                found.push(Sensitivities { values: values.clone(), columns });
+            }
+        }
+        found
+    }
+
     /// Whether the model depends only on a function of a group whose members cancel each other at the
     /// best point by other proportions than elsewhere.
     fn find_function(
@@ -290,9 +316,9 @@ impl Statistics {
         if points < problem.parameters.len() || !elsewhere.iter().all(is_deficient) {
             return;
         }
-        let simulations = &mut self.simulations;
+        let (fineness, simulations) = (self.fineness, &mut self.simulations);
         let mut columns = |values: &[f64]| {
-            let (jacobian, took) = sensitivities(problem, evaluation, values);
+            let (jacobian, took) = sensitivities(problem, evaluation, values, fineness);
             *simulations += took;
             weighted(&jacobian, scales)
         };
@@ -490,33 +516,6 @@ fn weighted(jacobian: &[Vec<f64>], scales: &[f64]) -> Vec<Vec<f64>> {
     jacobian.iter().map(column).collect()
 }
 
-/// The sensitivities at other points, as far as these can be simulated.
-fn elsewhere(
-    problem: &Problem,
-    evaluation: &Evaluation,
-    others: &[Vec<f64>],
-    scales: &[f64],
-    simulations: &mut u64,
-) -> Vec<Sensitivities> {
-    let mut found = Vec::new();
-    for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
-        *simulations += 1;
-        if simulated.is_err() {
-            continue;
-        }
-        let (jacobian, took) = sensitivities(problem, evaluation, values);
-        *simulations += took;
-        let columns = weighted(&jacobian, scales);
-        let simulated = simulated.unwrap_or_default();
-        let effect = largest_effect(&columns, values)
-            > NOTICEABLE * problem.noise * size(&simulated, scales);
-        if effect && columns.iter().flatten().all(|value| value.is_finite()) {
-            found.push(Sensitivities { values: values.clone(), columns });
-        }
-    }
-    found
-}
-
 /// The largest effect of a parameter that changes by its own value: the length of its column.
 fn largest_effect(columns: &[Vec<f64>], values: &[f64]) -> f64 {
     let effect = |(column, value): (&Vec<f64>, &f64)| {
@@ -529,15 +528,69 @@ fn size(simulated: &[f64], scales: &[f64]) -> f64 {
     simulated.iter().zip(scales).map(|(y, s)| elementary::powi(y * s, 2)).sum::<f64>().sqrt()
 }
 
-/// Derivatives of the simulated points, column by column, and the simulations that they took.
-/// Columns that do not exceed the errors of the simulation are zero.
+/// A singular value this far below the largest is none, where simulations have such errors.
+fn rank_tolerance(noise: f64) -> f64 {
+    elementary::powf(noise, 2.0 / 3.0).clamp(RANK[0], RANK[1])
+}
+
+/// The sensitivities at the best point, as exact as their rank needs them.
+struct Fine {
+    best: Sensitivities,
+    jacobian: Vec<Vec<f64>>,
+    fineness: f64,
+    simulations: u64,
+}
+
+impl Fine {
+    /// Errors of the simulation fill up a rank that is lacking, and make one lack that is small: where
+    /// it lacks at the tolerance of the search, a finer one decides.
+    fn at(
+        problem: &Problem,
+        evaluation: &Evaluation,
+        (values, simulated): (&[f64], &[f64]),
+        scales: &[f64],
+    ) -> Fine {
+        let at = |fineness: f64| {
+            let (jacobian, simulations) = sensitivities(problem, evaluation, values, fineness);
+            let columns = weighted(&jacobian, scales);
+            let best = Sensitivities { values: values.to_vec(), columns };
+            Fine { best, jacobian, fineness, simulations }
+        };
+        let mut coarse = at(1.0);
+        let fineness = EXACT / problem.noise;
+        let rank = |fine: &Fine| {
+            non_identifiable::rank(&fine.best, &[], rank_tolerance(problem.noise * fine.fineness))
+        };
+        if fineness >= 1.0 || rank(&coarse).non_identifiable.is_empty() {
+            return coarse;
+        }
+        let row = evaluation.simulate_scaled(&[values.to_vec()], fineness).pop();
+        coarse.simulations += 1;
+        // What has no tolerance is not finer than before.
+        if row.is_none_or(|row| row.is_ok_and(|row| row == simulated)) {
+            return coarse;
+        }
+        let fine = at(fineness);
+        let simulations = coarse.simulations + fine.simulations;
+        match fine.jacobian.iter().flatten().all(|value| value.is_finite()) {
+            true => Fine { simulations, ..fine },
+            false => Fine { simulations, ..coarse },
+        }
+    }
+}
+
+/// Derivatives of the simulated points, column by column, with the solver's tolerance times
+/// `fineness`, and the simulations that they took. Columns that do not exceed the errors of the
+/// simulation are zero.
 pub fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],
+    fineness: f64,
 ) -> (Vec<Vec<f64>>, u64) {
     let n = values.len();
-    let Some(Ok(found)) = evaluation.linearize(problem, &[values.to_vec()]).pop() else {
+    let found = evaluation.linearize_scaled(problem, &[values.to_vec()], fineness).pop();
+    let Some(Ok(found)) = found else {
         return (vec![vec![f64::NAN; problem.n_points()]; n], 1);
     };
     let size = found.simulated.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
