@@ -240,6 +240,57 @@ fn journals_of_earlier_runs_are_kept_by_number() {
 
 /// What cannot be printed is an error; a reader that went away is not.
 #[cfg(target_os = "linux")]
+/// Three calls of Eval, in each of which one of two individuals cannot be simulated, and an error.
+const FAILING: &str = "openModel(\"Growth.mo\")
+for k in 1:3 loop
+  y = Eval(\"\", \"Growth\", {0.5, 1, 2}, [1, k; 5, 4], {\"a\", \"b\"}, \"time\", \"y\");
+  print(String(sum(y[1, :])));
+end for;
+error(\"an end before the end\");
+";
+
+/// A script that ends with an error, its checkpoint, and that of another script or of nothing.
+#[test]
+fn a_checkpoint_of_a_script_is_taken_for_what_it_is() {
+    let here = here();
+    let strict =
+        MODEL.replace("end Growth", "equation\n  assert(a < 5, \"too large\");\nend Growth");
+    fs::write(here.path().join("Growth.mo"), strict).unwrap();
+    fs::write(here.path().join("job.mos"), FAILING).unwrap();
+    let run: &[&str] = &["run", "job.mos", "--out", "out", "--checkpoint", "1e-9", "--strict"];
+    let resume = &[run, &["--resume"][..]].concat();
+    let (code, first, errors) = gapi(&here, run);
+    assert!(code == 1 && errors.contains("an end before the end"), "{errors}");
+    let journal = here.path().join("out/script.journal");
+    let (code, out, _) = gapi(&here, &["journal", "out/script.journal"]);
+    assert_eq!(code, 0, "{out}");
+    assert!(out.ends_with("3 calls of Eval: 18 simulated values, 3 failed individuals\n"), "{out}");
+    // What was simulated comes from the journal, failures too.
+    let (_, again, errors) = gapi(&here, resume);
+    assert!(errors.contains("resumed: 3 calls of Eval are replayed"), "{errors}");
+    assert_eq!(again, first);
+    let whole = fs::read(&journal).unwrap();
+    fs::write(&journal, &whole[..whole.len() - 3]).unwrap();
+    let (code, out, errors) = gapi(&here, &["journal", "out/script.journal"]);
+    assert!(code == 1 && out.contains("2 calls of Eval") && errors.contains("damaged"), "{errors}");
+    // Other individuals are asked for than those of the checkpoint.
+    fs::write(here.path().join("job.mos"), FAILING.replace("[1, k;", "[2, k;")).unwrap();
+    fs::write(&journal, &whole).unwrap();
+    let (code, _, errors) = gapi(&here, resume);
+    let is_refused =
+        errors.contains("requests other simulations") || errors.contains("have changed");
+    assert!(code == 1 && is_refused, "{errors}");
+    fs::write(&journal, "nothing").unwrap();
+    let (code, _, errors) = gapi(&here, resume);
+    assert!(code == 1 && errors.contains("script.journal` is not a checkpoint\n"), "{errors}");
+    // A run from the beginning keeps what it finds.
+    let (_, _, errors) = gapi(&here, run);
+    assert!(errors.contains("an earlier run did not finish"), "{errors}");
+    assert_eq!(fs::read(here.path().join("out/script.journal.1")).unwrap(), b"nothing");
+    let (code, _, errors) = gapi(&here, &["journal", "out/gone.journal"]);
+    assert!(code == 1 && errors.contains("removes its checkpoint"), "{errors}");
+}
+
 #[test]
 fn a_full_standard_output_is_an_error() {
     let here = folder(&[("print.mos", "print(\"text\")\n")]);
