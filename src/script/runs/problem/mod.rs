@@ -462,15 +462,11 @@ fn open(
     }
     let mut bytes = solving::header(origins);
     let finished = finished(path);
-    let left = [path, &finished].into_iter().find(|path| session.world.exists(path));
-    let known = match (known, left) {
-        (Some(journal), _) => Some(journal.to_vec()),
-        (None, Some(journal)) if options.resume => Some(session.read_bytes(journal)?),
-        _ => None,
+    let known = match known {
+        Some(journal) => Some(journal.to_vec()),
+        None if options.resume => left_journal(session, [path, &finished])?,
+        None => None,
     };
-    if known.is_none() && options.resume {
-        note_no_checkpoint(session, path);
-    }
     if let Some(old) = known {
         let journal = solving::decode(&old).filter(|journal| journal.origins().is_some());
         let Some(journal) = journal else {
@@ -507,12 +503,18 @@ fn open(
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
 }
 
-/// Says that a run which was to resume begins, because there is no checkpoint in `path`.
-fn note_no_checkpoint(session: &mut Session, path: &Path) {
-    let folder = path.parent().unwrap_or(path).display();
-    session.print(&format!(
-        "there is no checkpoint in `{folder}`: the run starts from the beginning\n"
-    ));
+/// The journal that an earlier run has left, for a run that resumes; without one it says that it begins.
+fn left_journal(session: &mut Session, paths: [&Path; 2]) -> Result<Option<Vec<u8>>, Fault> {
+    match paths.into_iter().find(|path| session.world.exists(path)) {
+        Some(journal) => session.read_bytes(journal).map(Some),
+        None => {
+            let folder = paths[0].parent().unwrap_or(paths[0]).display();
+            session.print(&format!(
+                "there is no checkpoint in `{folder}`: the run starts from the beginning\n"
+            ));
+            Ok(None)
+        }
+    }
 }
 
 /// What a simulation for the report may take once the user has stopped the run.
