@@ -80,6 +80,8 @@ impl Evaluator<'_> {
         {
             return self.partly_given(declared, own);
         }
+        // A number for a String may be an argument at the wrong place, or for another function.
+        let is_string_argument = given.is_some() && declared.value_type == ValueType::String;
         let (value, span) = match (given, &component.binding) {
             (Some(value), _) => (Some(value), self.scope.call_span),
             (None, Some(binding)) => (Some(self.argument(component, binding)?), binding.span),
@@ -87,9 +89,12 @@ impl Evaluator<'_> {
         };
         match value {
             Some(value) => {
-                let value = declared
-                    .convert(value)
-                    .map_err(|fault| named(component.name, fault).at(span))?;
+                let value = declared.convert(value).map_err(|mut fault| {
+                    if is_string_argument {
+                        fault.helps.clear();
+                    }
+                    named(component.name, fault).at(span)
+                })?;
                 Ok(Variable {
                     value,
                     unassigned: None,
