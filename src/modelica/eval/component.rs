@@ -80,8 +80,12 @@ impl Evaluator<'_> {
         {
             return self.partly_given(declared, own);
         }
-        // A number for a String may be an argument at the wrong place, or for another function.
-        let is_string_argument = given.is_some() && declared.value_type == ValueType::String;
+        // Numbers for a String after the first argument are for another function, such as one that
+        // has formats, and so are arrays.
+        let is_for_another = match &given {
+            Some(Value::Array(_)) => true,
+            given => given.is_some() && !self.scope.variables.is_empty(),
+        } && declared.value_type == ValueType::String;
         let (value, span) = match (given, &component.binding) {
             (Some(value), _) => (Some(value), self.scope.call_span),
             (None, Some(binding)) => (Some(self.argument(component, binding)?), binding.span),
@@ -90,7 +94,7 @@ impl Evaluator<'_> {
         match value {
             Some(value) => {
                 let value = declared.convert(value).map_err(|mut fault| {
-                    if is_string_argument {
+                    if is_for_another {
                         fault.helps.clear();
                     }
                     named(component.name, fault).at(span)
