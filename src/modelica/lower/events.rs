@@ -8,7 +8,8 @@ use std::sync::Arc;
 /// The part of a system that acts at events alone.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Events {
-    /// `v = …` for every variable of kind [`VariableKind::Discrete`](super::Kind::Discrete): the left side
+    /// `v = …` for every variable of kind
+    /// [`VariableKind::Discrete`](super::VariableKind::Discrete): the left side
     /// is the variable.
     pub equations: Vec<Equation>,
     /// `floor` of what varies continuously.
