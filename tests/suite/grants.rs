@@ -294,6 +294,23 @@ fn places() -> Vec<Place> {
             command: &["test", "job.mos", "--accept"],
         },
         Place {
+            path: "job.mos.snap",
+            files: vec![("job.mos", "1 + 1;\n".to_owned())],
+            command: &["test", "job.mos"],
+        },
+        Place {
+            path: "results/job/run.trace",
+            files: vec![
+                ("job.mos", "1 + 1;\n".to_owned()),
+                (
+                    "results/job/origin.json",
+                    "{\n  \"command\": \"gapi teach\",\n  \"input\": \"../../job.mos\"\n}\n"
+                        .to_owned(),
+                ),
+            ],
+            command: &["teach", "--plain", "job.mos"],
+        },
+        Place {
             path: "results/fit/report.html",
             files: vec![],
             command: &["report", "results/fit"],

@@ -28,7 +28,12 @@ const SPECIAL: &[&str] = &["apply"];
 /// What is wrong with the calls of a script.
 pub fn check(session: &mut Session, parsed: &Parsed) -> Vec<Diagnostic> {
     let Some(Tree::Script(script)) = &parsed.tree else { return Vec::new() };
-    check_script(session, script, parsed.document.path.as_ref().and_then(|path| path.parent()))
+    let path = parsed.document.path.as_ref();
+    // The user has opened this file, but not those that it names.
+    if let Some(path) = path {
+        session.grant_input(path);
+    }
+    check_script(session, script, path.and_then(|path| path.parent()))
 }
 
 /// What is wrong with the calls of a script that lies in a folder.

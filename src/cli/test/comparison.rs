@@ -44,6 +44,24 @@ pub(super) fn reference(path: &Path) -> String {
     }
 }
 
+/// The transcript beside a script: the command line does not name it.
+///
+/// # Errors
+///
+/// A pipe, a device, or a link that leads out of the folder stands there; it cannot be read.
+fn recorded(script: &Path) -> io::Result<Option<String>> {
+    let file = transcript_of(script);
+    if file.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    let folder = script.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if !disk::is_file_in(folder.unwrap_or(Path::new(".")), &file) {
+        let message = format!("the transcript `{}` is not a file of this folder", file.display());
+        return Err(io::Error::other(message));
+    }
+    named::read_text(&file).map(Some)
+}
+
 impl Comparison<'_> {
     /// Runs a script and compares.
     ///
@@ -57,12 +75,7 @@ impl Comparison<'_> {
         if settings.skip {
             return Ok(Verdict::Skipped);
         }
-        let recorded = transcript_of(path);
-        let expected = match recorded.exists() {
-            true => Some(named::read_text(&recorded)?),
-            false => None,
-        };
-        match (expected, embedded(&script)) {
+        match (recorded(path)?, embedded(&script)) {
             (None, Some(expected)) => self.compared_with_embedded(path, &expected, settings),
             (expected, _) => self.compared_with_transcript(path, expected.as_deref(), settings),
         }

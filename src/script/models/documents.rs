@@ -133,12 +133,12 @@ impl Session {
         Ok(())
     }
 
-    /// Loads the classes of a file, if they are not loaded.
+    /// Loads the classes of a file that a script names, if they are not loaded; naming it there gives
+    /// no permission to read it.
     ///
     /// # Errors
     /// What is wrong with it.
     pub fn load_path_once(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
-        self.grant_input(path);
         if !self.has_loaded(path) {
             self.load_path(path)?;
         }

@@ -310,3 +310,29 @@ fn what_an_editor_can_do_does_not_end_the_server() {
     assert!(client.diagnostics(&path, last + 3).is_empty());
     assert_eq!(client.shut_down(), 0);
 }
+
+/// An opened script names files that its user has not named: what lies outside of its folder is not
+/// read, wherever links lead.
+#[cfg(unix)]
+#[test]
+fn scripts_show_nothing_from_outside_of_their_folder() {
+    let home = folder(&[("outside.mo", "model HiddenPlace \"a secret\" end HiddenPlace;")]);
+    let here = home.path().join("work");
+    fs::create_dir(&here).unwrap();
+    fs::write(here.join("inside.mo"), "model HiddenNothing end HiddenNothing;").unwrap();
+    std::os::unix::fs::symlink("../outside.mo", here.join("link.mo")).unwrap();
+    let absolute = home.path().join("outside.mo").display().to_string();
+    let mut client = Client::start(&here);
+    for (number, file) in ["../outside.mo", &absolute, "link.mo", "inside.mo"].iter().enumerate() {
+        let path = here.join(format!("job{number}.mos"));
+        client.open(&path, &format!("loadFile(\"{file}\")\nHidden"));
+        // Files are read when the document is examined.
+        client.published(&path, 1);
+        let position = json!({"line": 1, "character": 6});
+        let params = json!({"textDocument": {"uri": uri(&path)}, "position": position});
+        let offered = client.request("textDocument/completion", params).to_string();
+        assert!(!offered.contains("HiddenPlace"), "{file}");
+        assert_eq!(offered.contains("HiddenNothing"), *file == "inside.mo", "{file}");
+    }
+    assert_eq!(client.shut_down(), 0);
+}
