@@ -1,7 +1,8 @@
 //! The individuals simulated since the last generation ended, experiment by experiment.
 //!
 //! Every individual that `Eval` simulates has a number, which its row carries as a mark to `Fit`,
-//! whatever order the script calls in and however it puts the rows together.
+//! whatever order the script calls in and however it puts the rows together. Rows that a script copies
+//! element by element carry none: they are those of the individuals with all of these numbers.
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
@@ -83,6 +84,13 @@ impl Generation {
                 None => self.experiments.push(more),
             }
         }
+    }
+
+    /// The numbers of the individuals whose rows have the bits of this one.
+    pub fn equal_to(&self, row: &[f64]) -> Vec<u64> {
+        let of_size = self.experiments.iter().filter(|own| own.x.len() == row.len());
+        let own = of_size.flat_map(|own| own.rows.iter().zip(&own.numbers));
+        own.filter(|(known, _)| same_bits(known, row)).map(|(_, number)| *number).collect()
     }
 
     /// `Fit` has compared the individuals with these numbers with `measured`.
@@ -264,4 +272,8 @@ pub fn key(values: &[f64]) -> u64 {
     let mut hasher = FxHasher::default();
     values.iter().for_each(|value| hasher.write_u64(value.to_bits()));
     hasher.finish()
+}
+
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }

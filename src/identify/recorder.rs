@@ -142,6 +142,11 @@ impl Recorder {
         first
     }
 
+    /// The numbers of the individuals of this generation whose rows a script may have copied.
+    pub fn copied(&self, row: &[f64]) -> Vec<u64> {
+        self.pending.equal_to(row)
+    }
+
     /// `Fit` has compared the individuals with these numbers with `measured`. Those of generations
     /// that have ended are none of ours.
     pub fn rated(&mut self, numbers: impl IntoIterator<Item = u64>, measured: &[f64]) {
@@ -426,6 +431,19 @@ mod tests {
         recorder.finish();
         let best = recorder.best().unwrap();
         assert_eq!((best.genome[0], best.fitness), (5.0, 1.0));
+    }
+
+    /// A copy is that of all individuals with its numbers: elites are simulated again in each generation.
+    #[test]
+    fn copies_belong_to_the_individuals_with_their_numbers() {
+        let mut recorder = Recorder::default();
+        let (genes, rows) = (genomes(&[1.0, 1.0, 2.0]), simulated(&[5.0, 5.0, f64::NAN]));
+        recorder.evaluated(&study(), &[0.0], &genes, &rows);
+        let copied = [5.0, f64::NAN].map(|value| recorder.copied(&[value])).concat();
+        assert_eq!(copied, [1, 2, 3]);
+        assert!(recorder.copied(&[6.0]).is_empty() && recorder.copied(&[5.0, 5.0]).is_empty());
+        recorder.rated(copied, &[4.0]);
+        assert!(recorder.pending.is_rated());
     }
 
     /// Rows without any digit of their own: whose they are, their numbers say.

@@ -1,5 +1,6 @@
 //! The shipped scripts.
 
+use crate::cli::{folder, gapi};
 use crate::shipped;
 use gapilib::internals::source::SourceMap;
 use gapilib::internals::{mat, syntax};
@@ -62,4 +63,26 @@ fn measured_data_come_with_their_source() {
     let readme = shipped::project("scripts/data/ecsim_nafion112/README.md");
     let text = std::fs::read_to_string(readme).unwrap();
     assert!(text.contains("CC-BY 4.0") && text.contains("10.26434/chemrxiv.11902023"));
+}
+
+/// Authors copy matrices in loops: the individuals in them are the same, so are the units of the data,
+/// and least squares follow the script's search.
+#[test]
+fn rows_that_a_script_copies_element_by_element_stay_those_of_its_individuals() {
+    let model =
+        "model T\n  parameter Real k = 1;\n  Real y(unit = \"V\") = exp(-k*time);\nend T;\n";
+    let script = "xe = {0, 1, 2};\nye = {1, 0.61, 0.37};\npop = [0.2; 0.4; 0.6; 0.8];\n\
+                  rows = Eval(\"T.mo\", \"T\", xe, pop, {\"k\"}, \"time\", \"y\");\nCOPY\
+                  f = Fit(d, ye);\nprint(String(f[3]));\n";
+    let loops = "d = zeros(4, 3);\nfor i in 1:4 loop for j in 1:3 loop d[i,j] := rows[i,j]; \
+                 end for; end for;\n";
+    let said = ["d = rows;\n", loops].map(|copy| {
+        let here = folder(&[("T.mo", model), ("job.mos", &script.replace("COPY", copy))]);
+        let (code, out, errors) = gapi(&here, &["run", "job.mos"]);
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(out.contains("standard error") && !out.contains("its own function"), "{out}");
+        let without = regex::Regex::new(r"(?m)^ +time .*$").unwrap();
+        without.replace_all(&out, "").into_owned()
+    });
+    assert_eq!(said[0], said[1]);
 }

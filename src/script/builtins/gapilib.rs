@@ -224,13 +224,18 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if measured.is_empty() {
         bail!(BAD_DATA, "`Yexp` is empty"; help: "read them with `Exp_Adq_SISO`");
     }
-    let individuals: Vec<Option<u64>> = (0..simulated.rows).map(|row| marks.of(row)).collect();
+    let recorder = &session.identification().recorder;
+    let individuals = (0..simulated.rows).flat_map(|row| match marks.of(row) {
+        Some(number) => vec![number],
+        None => recorder.copied(simulated.row(row)),
+    });
+    let individuals: Vec<u64> = individuals.collect();
     if let Some(converted) = session.fitted(&individuals, &measured) {
         measured = converted;
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
-    session.identification().recorder.rated(individuals.into_iter().flatten(), &measured);
+    session.identification().recorder.rated(individuals, &measured);
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())

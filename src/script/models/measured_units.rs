@@ -73,12 +73,8 @@ impl Session {
 
     /// Measured values in the unit of the simulated ones that a script compares them with; `None`
     /// where they are in it, or nothing is known of them.
-    pub(crate) fn fitted(
-        &mut self,
-        individuals: &[Option<u64>],
-        measured: &[f64],
-    ) -> Option<Vec<f64>> {
-        let first = individuals.iter().flatten().next()?;
+    pub(crate) fn fitted(&mut self, individuals: &[u64], measured: &[f64]) -> Option<Vec<f64>> {
+        let first = individuals.first()?;
         let simulated = &self.extension::<Units>().simulated;
         let own = simulated.iter().find(|output| output.individuals.contains(first))?;
         let (study, is_relative) = (own.study.clone(), own.is_relative);
