@@ -13,7 +13,9 @@ mod steps;
 mod temporary;
 
 use crate::packages;
-use crate::script::access::policy::{Access, Change, ExternalCode, Grant, Policy, RECORD, Refusal};
+use crate::script::access::policy::{
+    Access, Change, ExternalCode, Grant, Policy, RECORD, Refusal, is_of_system,
+};
 use crate::script::world::{Content, FileReader};
 use place::Place;
 use record::{Lines, Record};
@@ -45,6 +47,8 @@ struct State {
     /// What the user has named to be read or written, as it was written: pipes and devices have no
     /// real path.
     named: BTreeSet<(Access, PathBuf)>,
+    /// Links among them that lead out of the folders where they lie: a stranger may have made them.
+    links: BTreeSet<PathBuf>,
     /// Owners of what the user has named: what is found there may belong to them.
     owners: BTreeSet<u32>,
     /// Folders in which what killed processes have left was removed.
@@ -80,6 +84,10 @@ impl Disk {
         let place = Place::of(path, true).ok();
         let mut state = self.state();
         match grant {
+            Grant::Named(_) if leads_elsewhere(path) => {
+                state.links.insert(path.to_owned());
+                return;
+            }
             Grant::Named(_) => drop(state.named.insert((Access::Write, path.to_owned()))),
             Grant::Read(_) => drop(state.named.insert((Access::Read, path.to_owned()))),
             _ => {}
@@ -163,6 +171,9 @@ impl Disk {
     fn to_change(&self, path: &Path, access: Access, follows: bool) -> io::Result<Place> {
         let may = |policy: &Policy, at: &Path| policy.may_write(at, Change::NewFolder);
         let place = self.resolve(path, follows, may)?;
+        if self.state().links.contains(path) {
+            return Err(Refusal::NamedLink.into());
+        }
         let change = Change::by(access, place.exists());
         let mut written = self.state().policy.may_write(&place.real, change);
         if written == Err(Refusal::Existing) {
@@ -377,8 +388,21 @@ pub(super) fn write_named(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let is_device = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
     match is_device {
         true => fs::OpenOptions::new().write(true).open(path)?.write_all(bytes),
+        false if leads_elsewhere(&std::path::absolute(path)?) => Err(Refusal::NamedLink.into()),
         false => write_atomically(path, bytes),
     }
+}
+
+/// Whether a name that the user gives for an output is a link out of its folder, and to no device:
+/// nobody expects that, and it may have come with a stranger's folder.
+fn leads_elsewhere(path: &Path) -> bool {
+    let is_device = || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    let folder = path.parent().and_then(|folder| Place::of(folder, true).ok());
+    let end = Place::of(path, true).ok();
+    !is_of_system(path)
+        && path.is_symlink()
+        && !is_device()
+        && !folder.zip(end).is_some_and(|(folder, end)| end.real.starts_with(&folder.real))
 }
 
 /// The names in a folder that the command line names, sorted.

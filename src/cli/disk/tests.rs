@@ -295,6 +295,29 @@ mod links {
         assert!(disk.write(Path::new("/dev/full"), b"x").is_err());
     }
 
+    /// `-o figure.svg` in a stranger's folder: a link of this name reaches nothing outside, there or not.
+    #[test]
+    fn an_output_that_is_named_does_not_follow_a_link_out_of_its_folder() {
+        let (_folder, root, disk) = run();
+        for (name, target) in [("a.svg", "../private/secret"), ("b.svg", "../private/new")] {
+            let link = root.join("run").join(name);
+            symlink(target, &link).expect("a link");
+            disk.grant(Grant::Named(&link));
+            let refused =
+                [disk.write(&link, b"x"), disk.append(&link, b"x"), write_named(&link, b"x")];
+            for refused in refused {
+                assert_eq!(refused.map_err(|e| refusal_of(&e)), Err(Some(Refusal::NamedLink)));
+            }
+        }
+        assert_eq!(fs::read(root.join("private/secret")).expect("there"), b"mine");
+        assert!(!root.join("private/new").exists());
+        let within = root.join("run/c.svg");
+        symlink("d.svg", &within).expect("a link");
+        disk.grant(Grant::Named(&within));
+        disk.write(&within, b"x").expect("in the same folder");
+        assert_eq!(fs::read(root.join("run/d.svg")).expect("there"), b"x");
+    }
+
     #[test]
     fn files_of_the_program_replace_links() {
         let (_folder, root, _) = run();

@@ -131,6 +131,8 @@ pub enum Refusal {
     Shared,
     /// A file in which the program keeps account.
     Reserved,
+    /// Writing where a link leads that the user has named, out of its folder.
+    NamedLink,
 }
 
 impl Refusal {
@@ -151,6 +153,7 @@ impl Refusal {
             Refusal::Existing => "this run did not create it",
             Refusal::Shared => "it has a second name elsewhere (a hard link)",
             Refusal::Reserved => "the program keeps its own records in it",
+            Refusal::NamedLink => "it is a link that leads to another folder",
         }
     }
 
@@ -161,6 +164,7 @@ impl Refusal {
                 Some("allow it with `--allow-read=DIR`, or `--allow-read` for all files")
             }
             Refusal::System | Refusal::Reserved | Refusal::Denied => None,
+            Refusal::NamedLink => Some("name the file to which it leads, or remove the link"),
             Refusal::Kind => {
                 Some("write it to the output folder, or allow it with `--allow-write`")
             }
@@ -435,7 +439,8 @@ fn deepest<'a>(folders: &'a BTreeSet<PathBuf>, real: &Path) -> Option<&'a Path> 
     real.ancestors().find_map(|folder| folders.get(folder)).map(PathBuf::as_path)
 }
 
-fn is_of_system(real: &Path) -> bool {
+/// Whether the file is one of the operating system, its devices and processes.
+pub fn is_of_system(real: &Path) -> bool {
     // Linux keeps a file system for ordinary files there.
     !real.starts_with("/dev/shm") && SYSTEM.iter().any(|folder| real.starts_with(folder))
 }

@@ -293,6 +293,9 @@ fn assemble(
 ) -> Result<Problem, Fault> {
     let parameters = on_its_scale(file, name, method.in_natural_units(), parameters)?;
     let stop = &file.stop;
+    if let Some(seconds) = stop.seconds.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
+        bail!(BAD_OPTION, "`seconds` of the stop conditions is {seconds}; it must be positive");
+    }
     let stop = Stop {
         generations: stop.generations,
         evaluations: stop.evaluations,

@@ -5,7 +5,7 @@ use super::refusal;
 use crate::bail;
 use crate::diag::Diagnostic;
 use crate::registry::BAD_OPTION;
-use crate::source::SourceId;
+use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use std::ops::Deref;
@@ -336,6 +336,7 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
         toml::from_str(text).map_err(|error| refusal::refusal(source, text, &error))?;
     // What could be read once can be read again.
     file.table = text.parse().unwrap_or_default();
+    refusal::printable(&file.table).map_err(|fault| fault.at(Span::new(source, 0, 0)))?;
     file.text = text.to_owned();
     file.places = places::places(source, text);
     for (entry, places) in file.experiment.iter_mut().zip(&file.places.experiments) {
@@ -352,6 +353,7 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
 pub(super) fn of_table(table: toml::Table) -> Result<ProblemFile, Diagnostic> {
     let file = ProblemFile::deserialize(table.clone());
     let file = file.map_err(|error| refusal::refusal(SourceId::NONE, "", &error))?;
+    refusal::printable(&table).map_err(|fault| fault.at(Span::NONE))?;
     Ok(ProblemFile { text: table.to_string(), table, ..file })
 }
 

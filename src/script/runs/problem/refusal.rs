@@ -5,6 +5,7 @@ use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::registry::BAD_OPTION;
 use crate::source::{SourceId, Span};
+use toml::{Table, Value};
 
 /// Entries that people put a level too high, and where they belong.
 const DEEPER: [(&str, &str); 6] = [
@@ -35,6 +36,39 @@ pub(super) fn refusal(source: SourceId, text: &str, error: &toml::de::Error) -> 
         .or_else(|| place.missing_entry(message))
         .unwrap_or_else(|| place.other_type(message));
     fault.at(span)
+}
+
+/// Names and titles stand in reports, tables and pictures: a control character there would reach the
+/// terminal of whoever prints the file.
+///
+/// # Errors
+/// A text has one that is no line break and no tab.
+pub(super) fn printable(table: &Table) -> Result<(), Fault> {
+    let is_control = |c: &char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+    let checked = |text: &str| match text.chars().find(is_control) {
+        Some(c) => Err(fault!(
+            BAD_OPTION,
+            "the text {text:?} contains the control character U+{:04X}",
+            u32::from(c)
+        )
+        .help("remove it")),
+        None => Ok(()),
+    };
+    let mut open: Vec<&Value> = Vec::new();
+    let mut next = Some(table);
+    loop {
+        for (name, value) in next.take().into_iter().flatten() {
+            checked(name)?;
+            open.push(value);
+        }
+        match open.pop() {
+            None => return Ok(()),
+            Some(Value::String(text)) => checked(text)?,
+            Some(Value::Array(values)) => open.extend(values),
+            Some(Value::Table(table)) => next = Some(table),
+            Some(_) => {}
+        }
+    }
 }
 
 /// Where the parser has stopped.

@@ -401,8 +401,22 @@ fn simulations_that_cost_too_much_are_failures() {
     assert!(text.contains("none of") && text.contains("steps"), "{text}");
     let text = refusal(&limited("max_seconds = -1"), &data);
     assert!(text.contains("`max_seconds` is -1"), "{text}");
+    let text = refusal(&format!("{SIMPLE}seconds = -1\n"), &data);
+    assert!(text.contains("`seconds` of the stop conditions is -1"), "{text}");
     // Here the clock stands still, so nothing is late.
     solved(&[("p.toml", limited("max_seconds = 1e-9")), ("d.csv", data)]);
+}
+
+/// They would reach the terminal of whoever prints a table of results.
+#[test]
+fn texts_of_problems_have_no_control_characters() {
+    let data = table("time,q", DATA);
+    let with = |entry: &str| SIMPLE.replace("[[experiment]]", &format!("[[experiment]]\n{entry}"));
+    let text = refusal(&with(r#"name = "a\u001b[2Jb""#), &data);
+    assert!(text.contains(r#""a\u{1b}[2Jb" contains the control character U+001B"#), "{text}");
+    let text = refusal(&format!("title = \"a\\u0007\"\n{SIMPLE}"), &data);
+    assert!(text.contains("U+0007"), "{text}");
+    solved(&[("p.toml", with(r#"name = "a\tb\nc""#)), ("d.csv", data)]);
 }
 
 /// The sensitivities of simulations tell products, too, although they are not exact.
