@@ -41,6 +41,20 @@ enum Safety {
     Buffered,
 }
 
+/// A path that cannot be resolved.
+#[derive(Debug)]
+struct Unresolved {
+    /// The real path of the entry where it ends: what is there is known to those who may know that.
+    at: PathBuf,
+    error: io::Error,
+}
+
+impl From<Unresolved> for io::Error {
+    fn from(unresolved: Unresolved) -> io::Error {
+        unresolved.error
+    }
+}
+
 #[derive(Debug, Default)]
 struct State {
     policy: Policy,

@@ -4,9 +4,9 @@
 //! This is what `openat2` does with `RESOLVE_NO_MAGICLINKS`, in the portable calls of POSIX.1-2008
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
-use super::Safety;
 use super::steps::step;
 use super::temporary::{is_old, is_temporary, temporary_name};
+use super::{Safety, Unresolved};
 use crate::budget::has_memory;
 use crate::memory;
 use crate::script::access::policy::Refusal;
@@ -40,20 +40,6 @@ pub(super) struct Place {
     mode: u32,
     /// The number of the user whom it belongs to, if it exists.
     pub owner: Option<u32>,
-}
-
-/// A path that cannot be resolved.
-#[derive(Debug)]
-pub(super) struct Unresolved {
-    /// The real path of the entry where it ends: what is there is known to those who may know that.
-    pub at: PathBuf,
-    error: io::Error,
-}
-
-impl From<Unresolved> for io::Error {
-    fn from(unresolved: Unresolved) -> io::Error {
-        unresolved.error
-    }
 }
 
 /// What a step of a walk comes to.

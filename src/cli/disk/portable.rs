@@ -1,8 +1,8 @@
 //! A path resolved once, where the calls of POSIX are missing: the folder is taken from the system
 //! in its real form, and the entry in it is judged and opened by that path.
 
-use super::Safety;
 use super::temporary::{is_old, is_temporary, temporary_name};
+use super::{Safety, Unresolved};
 use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
 use std::fs::{self, File, OpenOptions};
@@ -16,20 +16,6 @@ pub(super) struct Place {
     kind: Option<fs::FileType>,
     /// The number of the user whom it belongs to: unknown here.
     pub owner: Option<u32>,
-}
-
-/// A path that cannot be resolved.
-#[derive(Debug)]
-pub(super) struct Unresolved {
-    /// The path without dots.
-    pub at: PathBuf,
-    error: io::Error,
-}
-
-impl From<Unresolved> for io::Error {
-    fn from(unresolved: Unresolved) -> io::Error {
-        unresolved.error
-    }
 }
 
 impl Place {

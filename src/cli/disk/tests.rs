@@ -15,16 +15,19 @@ fn a_failed_write_leaves_no_files() {
     assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 1);
 }
 
+/// What a run that starts in this folder may do.
+fn next_run(root: &Path) -> Disk {
+    let disk = Disk::default();
+    disk.grant(Grant::Own(&root.join("results")));
+    disk.grant(Grant::Create(root));
+    disk
+}
+
 #[test]
 fn a_run_replaces_what_an_earlier_run_has_made_and_nothing_else() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let root = folder.path().canonicalize().expect("an absolute path");
-    let disk = || {
-        let disk = Disk::default();
-        disk.grant(Grant::Own(&root.join("results")));
-        disk.grant(Grant::Create(&root));
-        disk
-    };
+    let disk = || next_run(&root);
     fs::write(root.join("thesis.tex"), "mine").expect("written");
     disk().write(&root.join("curve.csv"), b"1").expect("new");
     disk().write(&root.join("curve.csv"), b"2").expect("made by the run before");
@@ -45,12 +48,7 @@ fn a_run_replaces_what_an_earlier_run_has_made_and_nothing_else() {
 fn the_record_does_not_grow_without_end() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let root = folder.path().canonicalize().expect("an absolute path");
-    let disk = || {
-        let disk = Disk::default();
-        disk.grant(Grant::Own(&root.join("results")));
-        disk.grant(Grant::Create(&root));
-        disk
-    };
+    let disk = || next_run(&root);
     let (first, path) = (disk(), root.join("curve.csv"));
     for number in 0..1100 {
         let text = number.to_string();
