@@ -8,9 +8,10 @@
 use super::fitness::FITNESSES;
 use super::problem::inference::ModelPredictions;
 use super::problem::{
-    EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation,
-    Problem, Run, ScriptError, ScriptResult, Series, Severity, Sigma, Simulate, Solution,
-    SolvedParameter, SolvedSeries, Stop, conclude, draw_curves, failure_region,
+    Course, Effort, EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator,
+    Observation, Problem, Provenance, Run, ScriptError, ScriptResult, Series, Severity, Sigma,
+    Simulate, Solution, SolvedParameter, SolvedSeries, Stop, Subject, conclude, draw_curves,
+    failure_region,
 };
 use super::ranks::Processors;
 use super::recorder::{Recorder, ScriptBest};
@@ -242,13 +243,13 @@ impl Ending<'_> {
         };
         conclude(&mut run);
         let solution = self.inferred(&mut run, &stop).map_err(|fault| fault.message)?;
-        let at_minimum = solution.ending.kind == EndingKind::Minimum;
+        let at_minimum = solution.outcome.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.observed.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
         draw_curves(&experiments, &mut solution, &[], None);
         let probe = sentence((who, best, before), &solution, at_minimum);
-        solution.simulations_for_statistics += run.simulations;
+        solution.effort.simulations_for_statistics += run.simulations;
         solution.script = Some(ScriptResult {
             probed: true,
             probe,
@@ -261,7 +262,7 @@ impl Ending<'_> {
     /// What the run has found, and what follows from it at a minimum.
     fn inferred(&self, run: &mut Run, stop: &str) -> Result<Solution, Fault> {
         let mut solution = Solution::settled(run, |run| Solution::of(run, stop, Vec::new()))?;
-        if solution.ending.kind != EndingKind::Minimum {
+        if solution.outcome.ending.kind != EndingKind::Minimum {
             return Ok(solution);
         }
         if self.probe == Probe::Profiles {
@@ -294,12 +295,14 @@ impl Ending<'_> {
              identifiability."
         );
         Solution {
-            title: self.title(best),
-            model: models(best),
+            subject: Subject { title: self.title(best), model: models(best), ..Subject::default() },
             fitness: best.fitness,
             parameters: quantities.map(parameter).collect(),
             series: best.compared.iter().enumerate().filter_map(solved).collect(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            provenance: Provenance {
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                ..Provenance::default()
+            },
             script: Some(ScriptResult { probe, ..ScriptResult::default() }),
             ..Solution::default()
         }
@@ -334,14 +337,14 @@ impl Ending<'_> {
         };
         findings.append(&mut solution.findings);
         if !script.probed {
-            solution.fitness_name = best.objective.name().to_owned();
+            solution.subject.fitness_name = best.objective.name().to_owned();
         }
         let failed = [("simulation".to_owned(), recorder.observed.failures)];
         let free = self.parameters(best, &self.ranges(best));
-        Solution {
-            findings,
-            method: method.to_owned(),
-            stop,
+        solution.findings = findings;
+        solution.subject.method = method.to_owned();
+        solution.outcome.stop = stop;
+        solution.effort = Effort {
             generations: recorder.observed.history.generations.len() as u64,
             evaluations: recorder.evaluations,
             simulations: recorder.evaluations,
@@ -350,13 +353,12 @@ impl Ending<'_> {
             failure_region: free
                 .ok()
                 .and_then(|free| failure_region(&free, &recorder.observed.kept)),
-            objectives: vec![best.objective.name().to_owned()],
-            seed: recorder.seed(),
-            history: recorder.observed.history.generations.clone(),
-            trace: recorder.observed.trace.clone(),
-            individuals: recorder.observed.kept.clone(),
-            ..solution
-        }
+            ..solution.effort
+        };
+        solution.pareto.objectives = vec![best.objective.name().to_owned()];
+        solution.provenance.seed = recorder.seed();
+        solution.course = Course::of(&recorder.observed);
+        solution
     }
 }
 
@@ -474,7 +476,7 @@ fn sentence(
         false => format!(
             "{reached} This is not a minimum ({}), so there are no standard errors and no \
              statements on identifiability.",
-            solution.stop
+            solution.outcome.stop
         ),
     }
 }

@@ -52,7 +52,7 @@ fn one(name: &str, method: &str, start: Option<usize>, seed: u32) -> [bool; 2] {
     let found = dataset.solve(method, start, seed, BUDGET);
     let digits = dataset.digits(&found);
     let reached = digits[0] > 4.0;
-    let said = found.ending.kind == EndingKind::Minimum;
+    let said = found.outcome.ending.kind == EndingKind::Minimum;
     println!(
         "{name:<10} {} digits {:5.1} {:5.1} sum {:.10e} ({:.4}) offset {:8.1e} {:>6} simulations {:?} {}",
         if reached { "reached" } else { "MISSED " },
@@ -60,10 +60,10 @@ fn one(name: &str, method: &str, start: Option<usize>, seed: u32) -> [bool; 2] {
         digits[1],
         found.fitness,
         found.fitness / dataset.sum,
-        found.ending.relative_offset.unwrap_or(f64::NAN),
-        found.simulations,
-        found.ending.kind,
-        found.ending.reached.map_or_else(String::new, |[n, of]| format!("{n} of {of}")),
+        found.outcome.ending.relative_offset.unwrap_or(f64::NAN),
+        found.effort.simulations,
+        found.outcome.ending.kind,
+        found.outcome.ending.reached.map_or_else(String::new, |[n, of]| format!("{n} of {of}")),
     );
     [reached, said && !reached]
 }

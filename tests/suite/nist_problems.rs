@@ -9,7 +9,12 @@ fn assert_certified(name: &str, method: &str, start: Option<usize>, budget: u64)
     let dataset = Dataset::read(name);
     let found = dataset.solve(method, start, 0, budget);
     let [values, errors] = dataset.digits(&found);
-    assert_eq!(found.ending.kind, EndingKind::Minimum, "{name}: {}", found.ending.words);
+    assert_eq!(
+        found.outcome.ending.kind,
+        EndingKind::Minimum,
+        "{name}: {}",
+        found.outcome.ending.words
+    );
     assert!(values >= 6.0, "{name}: {values} digits");
     assert!(errors >= 5.0 || dataset.sum < 1e-20, "{name}: {errors} digits of standard errors");
 }
@@ -35,5 +40,9 @@ fn a_plateau_is_not_called_a_minimum() {
     let dataset = Dataset::read("MGH17");
     let found = dataset.solve("lm", Some(0), 0, 20_000);
     let is_reached = dataset.digits(&found)[0] > 4.0;
-    assert!(is_reached || found.ending.kind != EndingKind::Minimum, "{}", found.ending.words);
+    assert!(
+        is_reached || found.outcome.ending.kind != EndingKind::Minimum,
+        "{}",
+        found.outcome.ending.words
+    );
 }

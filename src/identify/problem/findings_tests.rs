@@ -212,7 +212,7 @@ fn spread_that_grows_with_the_output_is_not_taken_for_outliers() {
     let formula = Sigma::Formula(SigmaFormula { text: "0.1*abs(y)".into(), value });
     let solution = one(decay, noise, formula);
     assert!(solution.findings.is_empty(), "{:?}", solution.findings);
-    assert!(solution.chi_square.unwrap().probability > 0.01);
+    assert!(solution.likelihood.chi_square.unwrap().probability > 0.01);
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn estimated_deviations_are_those_of_the_noise_and_give_the_small_output_its_say
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
     }
     assert!(solution.parameters[1].deviation.unwrap() < 2e-3);
-    let likelihood = solution.negative_log_likelihood.unwrap();
+    let likelihood = solution.likelihood.negative_log_likelihood.unwrap();
     assert!((likelihood - solution.fitness).abs() < 1e-9, "{likelihood} {}", solution.fitness);
     let unknown = outputs.map(|(output, noise, _)| (output, noise, Sigma::Unknown));
     let (_, drowned) = solved(problem(&unknown, &TRUTH, [0.01, 20.0], None));

@@ -25,7 +25,7 @@ fn solved(formula: fn(&[f64], f64) -> f64, ranges: &[[f64; 2]], data: fn(f64) ->
     }
     conclude(&mut run);
     let solution = Solution::of(&run, "done", Vec::new()).unwrap();
-    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
+    assert_eq!(solution.outcome.ending.kind, EndingKind::Minimum, "{:?}", solution.outcome.ending);
     solution
 }
 
@@ -60,7 +60,11 @@ fn a_square_at_zero_is_a_minimum_with_the_interval_of_its_profile() {
     let data = |x: f64| 1.0 - 0.02 * x;
     let ranges = [[-10.0, 10.0], [-3.0, 3.0]];
     let solution = solved(|p, x| p[0] + p[1] * p[1] * x, &ranges, data);
-    assert!(solution.ending.words.contains("second derivatives"), "{}", solution.ending.words);
+    assert!(
+        solution.outcome.ending.words.contains("second derivatives"),
+        "{}",
+        solution.outcome.ending.words
+    );
     let [slope, sxx, rest] = line(&points(data));
     assert!(slope < 0.0);
     let at_zero = rest + slope * slope * sxx;

@@ -89,9 +89,9 @@ pub use refit::MakeSimulator;
 pub use run::Run;
 pub use script_result::{ScriptError, ScriptResult};
 pub use searches::best_of;
-pub use solution::ChiSquare;
 pub use solution::{
-    CalibratedModel, Solution, SolvedParameter, SolvedSearch, SolvedSeries, Verdict,
+    CalibratedModel, ChiSquare, Course, Effort, Likelihood, Outcome, Pareto, Provenance, Solution,
+    SolvedParameter, SolvedSearch, SolvedSeries, Subject, Verdict,
 };
 pub use space::Free;
 pub use statistics::Statistics;

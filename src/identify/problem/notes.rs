@@ -51,7 +51,7 @@ pub fn findings(
     ));
     findings.extend(solution.validation.iter().map(|own| about_validation(own, solution)));
     findings.extend(about_missing(run));
-    findings.extend(solution.failure_region.as_ref().map(about_failures));
+    findings.extend(solution.effort.failure_region.as_ref().map(about_failures));
     findings
 }
 
@@ -183,14 +183,14 @@ fn several_objectives(solution: &Solution) -> Finding {
         format!(
             "Values, intervals and tests refer to the end of the Pareto front with the smallest \
              `{}`; other points of the front are other compromises.",
-            solution.fitness_name
+            solution.subject.fitness_name
         ),
     )
     .severity(Severity::Information)
 }
 
 fn estimated(solution: &Solution) -> Option<Finding> {
-    if solution.error_model != ErrorModel::Estimated {
+    if solution.likelihood.error_model != ErrorModel::Estimated {
         return None;
     }
     let own = |series: &SolvedSeries| {
@@ -514,5 +514,5 @@ pub(crate) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
         );
         Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
     };
-    solution.other_minima.iter().map(one).collect()
+    solution.outcome.other_minima.iter().map(one).collect()
 }

@@ -34,9 +34,9 @@ impl Solution {
             if !run.continue_from(&values)? {
                 break;
             }
-            let simulations = solution.simulations_for_statistics;
+            let simulations = solution.effort.simulations_for_statistics;
             solution = again(run)?;
-            solution.simulations_for_statistics += simulations;
+            solution.effort.simulations_for_statistics += simulations;
         }
         if solution.fitness < searched {
             solution.findings.insert(0, better_than(searched, &solution));
@@ -74,9 +74,9 @@ impl Solution {
                 break;
             }
             let simulations = self.profiles.as_ref().map_or(0, |found| found.simulations);
-            let simulations = simulations + self.simulations_for_statistics;
+            let simulations = simulations + self.effort.simulations_for_statistics;
             self = again(run)?;
-            self.simulations_for_statistics += simulations;
+            self.effort.simulations_for_statistics += simulations;
         }
         self.importance = importance;
         if self.fitness < searched {
@@ -87,7 +87,7 @@ impl Solution {
 
     /// Whether there is a sum of squares of which the best point is not known to be a minimum.
     fn is_short_of_minimum(&self, run: &Run) -> bool {
-        self.ending.kind != EndingKind::Minimum && run.evaluation.has_residuals()
+        self.outcome.ending.kind != EndingKind::Minimum && run.evaluation.has_residuals()
     }
 
     /// Adds the profiles of all parameters and what they say; where there are none, a finding says
@@ -150,10 +150,10 @@ impl Solution {
     /// the best of the others whose sum of squares is at most this.
     pub(super) fn other_places(&self, most: f64) -> Vec<Vec<f64>> {
         let mut places: Vec<Vec<f64>> =
-            self.other_minima.iter().map(|other| other.values.clone()).collect();
+            self.outcome.other_minima.iter().map(|other| other.values.clone()).collect();
         let sum = |descent: &SolvedDescent| descent.objective.unwrap_or(f64::INFINITY);
         let is_meant = |descent: &&SolvedDescent| descent.group > 0 && sum(descent) <= most;
-        let mut ends: Vec<&SolvedDescent> = self.descents.iter().filter(is_meant).collect();
+        let mut ends: Vec<&SolvedDescent> = self.outcome.descents.iter().filter(is_meant).collect();
         ends.sort_by(|a, b| a.group.cmp(&b.group).then(sum(a).total_cmp(&sum(b))));
         ends.dedup_by_key(|descent| descent.group);
         places.extend(ends.into_iter().map(|descent| descent.end.clone()));
@@ -205,7 +205,7 @@ impl Solution {
                 BAD_OPTION,
                 "There are no profile likelihoods of `{}` with {} points: they need a sum of \
                  squares and more points than parameters",
-                self.fitness_name,
+                self.subject.fitness_name,
                 run.problem.n_points()
             )
         })?;

@@ -21,12 +21,12 @@ impl Solution {
         for row in rows("history.csv", history, 5)? {
             let [_, best, mean, worst, failures] = row[..5] else { continue };
             let failures = failures as usize;
-            solution.history.push(Generation { best, mean, worst, failures });
-            solution.trace.push(row[5..].to_vec());
+            solution.course.history.push(Generation { best, mean, worst, failures });
+            solution.course.trace.push(row[5..].to_vec());
         }
         for mut row in rows("individuals.csv", individuals, n + 1)? {
             let fitness = row.pop().unwrap_or(f64::NAN);
-            solution.individuals.push((row, fitness));
+            solution.course.individuals.push((row, fitness));
         }
         Ok(solution)
     }

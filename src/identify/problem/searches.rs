@@ -57,14 +57,14 @@ fn is_likelihood(objective: &str) -> bool {
 impl Solution {
     /// How the searches ended, in a line; `None` where there was one alone.
     pub(super) fn searches_line(&self) -> Option<String> {
-        let count = self.searches.len();
+        let count = self.outcome.searches.len();
         if count < 2 {
             return None;
         }
-        let mut all: Vec<f64> = self.searches.iter().map(|own| own.objective).collect();
+        let mut all: Vec<f64> = self.outcome.searches.iter().map(|own| own.objective).collect();
         all.sort_by(f64::total_cmp);
         let [best, median, worst] = [0, (count - 1) / 2, count - 1].map(|k| significant(all[k], 5));
-        let within = match is_likelihood(&self.fitness_name) {
+        let within = match is_likelihood(&self.subject.fitness_name) {
             true => EQUALLY_LIKELY.to_string(),
             false => "1 %".to_owned(),
         };
@@ -81,27 +81,27 @@ impl Solution {
     }
 
     fn as_good(&self) -> usize {
-        self.searches.iter().filter(|own| own.as_good).count()
+        self.outcome.searches.iter().filter(|own| own.as_good).count()
     }
 
     /// Adds the searches that were made, and what they say. `searched`: the objective before profiles, which
     /// may have come upon a better fit than any search.
     pub fn add_searches(&mut self, searches: Vec<SolvedSearch>, searched: f64) {
-        self.searches = searches;
-        let equal = match is_likelihood(&self.fitness_name) {
+        self.outcome.searches = searches;
+        let equal = match is_likelihood(&self.subject.fitness_name) {
             true => EQUALLY_LIKELY,
             false => EQUAL * searched.abs(),
         };
         if searched - self.fitness > equal {
-            self.searches.iter_mut().for_each(|own| own.as_good = false);
+            self.outcome.searches.iter_mut().for_each(|own| own.as_good = false);
         }
-        let (count, as_good) = (self.searches.len(), self.as_good());
-        let Some(first) = self.searches.first().filter(|_| count > 1) else { return };
-        if self.searches.iter().all(|own| own.values == first.values) {
+        let (count, as_good) = (self.outcome.searches.len(), self.as_good());
+        let Some(first) = self.outcome.searches.first().filter(|_| count > 1) else { return };
+        if self.outcome.searches.iter().all(|own| own.values == first.values) {
             let sentence = format!(
                 "All searches have found the same values to the last digit, as `{}` hardly depends on \
                  the seed: they do not show that no other result exists.",
-                self.method
+                self.subject.method
             );
             self.findings.push(Finding::new(FindingKind::Search, sentence));
         } else if 2 * as_good < count {
@@ -119,7 +119,7 @@ impl Solution {
         let names = self.parameters.iter().map(|parameter| quoted(&parameter.name));
         names.for_each(|name| text += &format!(",{name}"));
         text.push('\n');
-        for (k, own) in self.searches.iter().enumerate() {
+        for (k, own) in self.outcome.searches.iter().enumerate() {
             let seed = own.seed.map(|entry| entry.to_string()).join(" ");
             // Writing into a String cannot fail.
             _ = write!(text, "{},{seed},{:e},{}", k + 1, own.objective, own.as_good);

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::elementary;
 use crate::ga::Generation;
+use crate::search_record::SearchRecord;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Correlations above this are worth a word.
@@ -15,19 +16,10 @@ const STRONG: f64 = 0.95;
 /// The solution of a problem.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Solution {
-    /// The heading.
-    pub title: String,
-    /// The model.
-    pub model: String,
-    /// The method.
-    pub method: String,
-    /// The operators that were chosen in place of the method's usual ones: kind, and name with
-    /// settings.
-    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
-    pub operators: indexmap::IndexMap<String, String>,
-    /// The first objective: its name and the smallest value found.
-    pub fitness_name: String,
-    /// Its smallest value.
+    /// What was solved.
+    #[serde(flatten)]
+    pub subject: Subject,
+    /// The smallest value of the first objective.
     pub fitness: f64,
     /// The parameters.
     pub parameters: Vec<SolvedParameter>,
@@ -42,6 +34,63 @@ pub struct Solution {
     /// What must be known about these numbers, most important first.
     #[serde(default)]
     pub findings: Vec<Finding>,
+    /// The errors of measurement.
+    #[serde(flatten)]
+    pub likelihood: Likelihood,
+    /// How the search ended.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// What it took.
+    #[serde(flatten)]
+    pub effort: Effort,
+    /// How much each parameter matters, where that was asked before the fit.
+    pub importance: Option<Importance>,
+    /// Profiles of the parameters, where they were asked.
+    pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
+    /// What the verdicts rest on.
+    #[serde(skip)]
+    pub grounds: Grounds,
+    /// The objectives, where there are several their front.
+    #[serde(flatten)]
+    pub pareto: Pareto,
+    /// What the script has found whose search least squares have ended; `None` where the problem
+    /// was solved without a script of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub script: Option<super::ScriptResult>,
+    /// What repeats the run.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// The calibrated model, where the problem says more than its free parameters.
+    #[serde(skip)]
+    pub calibrated: Option<CalibratedModel>,
+    /// The way of the search, for pictures.
+    #[serde(skip)]
+    pub course: Course,
+}
+
+/// What was solved, and how.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Subject {
+    /// The heading.
+    pub title: String,
+    /// The model.
+    pub model: String,
+    /// The method.
+    pub method: String,
+    /// The operators that were chosen in place of the method's usual ones: kind, and name with
+    /// settings.
+    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    pub operators: indexmap::IndexMap<String, String>,
+    /// The name of the first objective.
+    pub fitness_name: String,
+}
+
+/// What is known of the errors of measurement, and how the residuals agree with it.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Likelihood {
     /// What was known of the errors of measurement.
     #[serde(default = "one_variance")]
     pub error_model: ErrorModel,
@@ -55,6 +104,11 @@ pub struct Solution {
     /// deviations (maximum likelihood ones); `None` where the fitness is not one of normal errors.
     #[serde(default)]
     pub negative_log_likelihood: Option<f64>,
+}
+
+/// How a search ended.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Outcome {
     /// Why the run ended.
     pub stop: String,
     /// Whether it ended at a minimum, and how that is known.
@@ -69,6 +123,11 @@ pub struct Solution {
     /// All searches with different seeds, where there were several; the best is this one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub searches: Vec<SolvedSearch>,
+}
+
+/// What a search took.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Effort {
     /// Questions of the method.
     pub generations: u64,
     /// Individuals evaluated.
@@ -85,16 +144,11 @@ pub struct Solution {
     pub failure_region: Option<FailureRegion>,
     /// Settings changed during the run.
     pub changes: Vec<(u64, String, f64)>,
-    /// How much each parameter matters, where that was asked before the fit.
-    pub importance: Option<Importance>,
-    /// Profiles of the parameters, where they were asked.
-    pub profiles: Option<Profiles>,
-    /// What was inferred beyond the estimates.
-    #[serde(default)]
-    pub inferred: Inferred,
-    /// What the verdicts rest on.
-    #[serde(skip)]
-    pub grounds: Grounds,
+}
+
+/// The objectives and, where there are several, the points of which none is better in all.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Pareto {
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -104,28 +158,39 @@ pub struct Solution {
     pub hypervolume: Option<(f64, Vec<f64>)>,
     /// Names of the objectives.
     pub objectives: Vec<String>,
-    /// What the script has found whose search least squares have ended; `None` where the problem
-    /// was solved without a script of its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub script: Option<super::ScriptResult>,
+}
+
+/// What repeats a run.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Provenance {
     /// The seed; `None` where no random numbers were drawn.
     pub seed: Option<[f64; 6]>,
     /// Version of the program.
     pub version: String,
     /// The problem as it was written; empty where it was put in Rust.
     pub problem: String,
-    /// The calibrated model, where the problem says more than its free parameters.
-    #[serde(skip)]
-    pub calibrated: Option<CalibratedModel>,
+}
+
+/// The way of a search.
+#[derive(Debug, Clone, Default)]
+pub struct Course {
     /// Every generation: best, mean, worst, failures.
-    #[serde(skip)]
     pub history: Vec<Generation>,
     /// The best values after each generation.
-    #[serde(skip)]
     pub trace: Vec<Vec<f64>>,
     /// Evenly chosen individuals.
-    #[serde(skip)]
     pub individuals: Vec<(Vec<f64>, f64)>,
+}
+
+impl Course {
+    /// What was observed of a search.
+    pub(crate) fn of(observed: &SearchRecord) -> Course {
+        Course {
+            history: observed.history.generations.clone(),
+            trace: observed.trace.clone(),
+            individuals: observed.kept.clone(),
+        }
+    }
 }
 
 /// What modifies the model of a problem to be the calibrated one.
@@ -318,7 +383,7 @@ impl Solution {
     pub(super) fn drop_verdicts(&mut self) {
         self.drop_intervals();
         self.findings.retain(|finding| finding.kind.holds_anywhere());
-        let words = self.ending.words.clone();
+        let words = self.outcome.ending.words.clone();
         let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
         self.findings.insert(0, finding);
     }

@@ -5,8 +5,9 @@ use super::ending::{self, Ending, EndingKind};
 use super::statistics::distributions::chi_square_tails;
 use super::verdicts::Judged;
 use super::{
-    Best, ChiSquare, ErrorModel, FailureKind, Finding, FindingKind, Run, Severity, Sigma, Solution,
-    SolvedParameter, SolvedSeries, Statistics,
+    Best, ChiSquare, Course, Effort, ErrorModel, FailureKind, Finding, FindingKind, Likelihood,
+    Outcome, Pareto, Provenance, Run, Severity, Sigma, Solution, SolvedParameter, SolvedSeries,
+    Statistics, Subject,
 };
 use crate::diag::Fault;
 use crate::ga::Mrg32k3a;
@@ -54,9 +55,12 @@ impl Solution {
             series: solved_series(problem, &statistics, &simulated),
             validation,
             condition: statistics.condition.filter(|condition| condition.is_finite()),
-            degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
-            chi_square: chi_square(problem, &statistics),
-            negative_log_likelihood: negative_log_likelihood(run, &statistics),
+            likelihood: Likelihood {
+                error_model: ErrorModel::of(problem),
+                degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
+                chi_square: chi_square(problem, &statistics),
+                negative_log_likelihood: negative_log_likelihood(run, &statistics),
+            },
             ..searched(run, stop)
         };
         solution.correlations = correlations(&statistics, solution.parameters.len());
@@ -65,7 +69,7 @@ impl Solution {
             return Err(fault!(BAD_OPTION, "the statistics were stopped"));
         }
         let is_at_limit = super::limits::along(problem, &best.values).is_some();
-        let is_minimum = solution.ending.kind == EndingKind::Minimum;
+        let is_minimum = solution.outcome.ending.kind == EndingKind::Minimum;
         let judged = match is_minimum && !is_at_limit {
             true => solution.judge(run, &statistics, &effects)?,
             false => vec![Judged::Nothing; solution.parameters.len()],
@@ -117,17 +121,17 @@ impl Solution {
             parameters: run.problem.parameters.iter().zip(&best.values).map(parameter).collect(),
             series: data.map(series).collect(),
             validation,
-            descents: ending::descents(run),
             ..searched(run, stop)
         };
-        solution.ending = Ending::unjudged("the statistics of the search are not made yet");
+        solution.outcome.descents = ending::descents(run);
+        solution.outcome.ending = Ending::unjudged("the statistics of the search are not made yet");
         Ok(solution)
     }
 
     /// Says that the statistics were not made, and why.
     pub fn without_statistics(mut self, why: &str) -> Solution {
-        self.ending = Ending::unjudged(why);
-        let words = self.ending.words.clone();
+        self.outcome.ending = Ending::unjudged(why);
+        let words = self.outcome.ending.words.clone();
         let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
         self.findings.insert(0, finding);
         self
@@ -135,14 +139,14 @@ impl Solution {
 
     /// Adds how the run ended, and all simulations beside the search.
     fn add_ending(&mut self, run: &Run, best: &Best, statistics: &Statistics) {
-        self.ending = Ending::of(run, &best.values);
-        self.descents = ending::descents(run);
-        if self.ending.kind == EndingKind::Minimum {
+        self.outcome.ending = Ending::of(run, &best.values);
+        self.outcome.descents = ending::descents(run);
+        if self.outcome.ending.kind == EndingKind::Minimum {
             let limit = statistics.limit_of_squares();
-            self.other_minima = ending::other_minima(&self.descents, limit);
+            self.outcome.other_minima = ending::other_minima(&self.outcome.descents, limit);
         }
-        self.simulations_for_statistics =
-            statistics.simulations + run.conclusion.simulations + self.ending.simulations;
+        self.effort.simulations_for_statistics =
+            statistics.simulations + run.conclusion.simulations + self.outcome.ending.simulations;
     }
 }
 
@@ -176,31 +180,43 @@ fn best<'a>(run: &'a Run, stop: &str) -> Result<&'a Best, Fault> {
 fn searched(run: &Run, stop: &str) -> Solution {
     let problem = &run.problem;
     let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);
-    Solution {
+    let subject = Subject {
         title: problem.title.clone(),
         model: problem.model.clone(),
         method: method(run),
         operators: chosen_operators(problem),
         fitness_name: problem.objectives[0].0.clone(),
-        error_model: ErrorModel::of(problem),
-        stop: stop.to_owned(),
+    };
+    let effort = Effort {
         generations: run.generations(),
         evaluations: run.evaluations(),
         simulations: run.simulations,
+        simulations_for_statistics: 0,
         failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
         causes: run.observed.causes.clone(),
         failure_region: super::failure_region(&problem.parameters, &run.observed.kept),
         changes: run.changed.clone(),
+    };
+    let pareto = Pareto {
         knee: knee(&run.front),
         hypervolume: front_volume(&run.front),
         front: run.front.clone(),
         objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
+    };
+    let provenance = Provenance {
         seed: Some(problem.seed),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         problem: problem.text.clone(),
-        history: run.observed.history.generations.clone(),
-        trace: run.observed.trace.clone(),
-        individuals: run.observed.kept.clone(),
+    };
+    let likelihood = Likelihood { error_model: ErrorModel::of(problem), ..Likelihood::default() };
+    Solution {
+        subject,
+        likelihood,
+        outcome: Outcome { stop: stop.to_owned(), ..Outcome::default() },
+        effort,
+        pareto,
+        provenance,
+        course: Course::of(&run.observed),
         ..Solution::default()
     }
 }

@@ -95,8 +95,8 @@ fn the_truth_is_found_from_its_own_simulation() {
     for (found, truth) in solution.parameters.iter().zip([2.0, 0.7]) {
         assert!((found.value - truth).abs() < 1e-8, "{found:?}");
     }
-    assert!(solution.failures["model"] > 0, "some individuals fail");
-    assert_eq!(solution.stop, "the search ended by itself");
+    assert!(solution.effort.failures["model"] > 0, "some individuals fail");
+    assert_eq!(solution.outcome.stop, "the search ended by itself");
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn changes_are_recorded_and_replayed() {
     let (resumed, _) = finish(again);
     assert_eq!(resumed.to_json(), whole.to_json());
     assert_eq!(whole.parameters[1].range[0], 0.5);
-    assert_eq!(whole.changes.len(), 3);
+    assert_eq!(whole.effort.changes.len(), 3);
     assert!(rest.len() < 40, "the new limit holds");
 }
 

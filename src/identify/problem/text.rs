@@ -15,7 +15,7 @@ const HEADING: [&str; 7] =
 impl Solution {
     /// The report that ends a run.
     pub fn text(&self) -> String {
-        let mut text = format!("\n{}\n\n{}\n", self.title, self.parameter_table());
+        let mut text = format!("\n{}\n\n{}\n", self.subject.title, self.parameter_table());
         if self.profiles.is_some() {
             let row = |own: &SolvedParameter| {
                 let Some(profile) = self.profile_of(own) else { return format!("{} -", own.name) };
@@ -44,7 +44,8 @@ impl Solution {
     /// version may choose otherwise.
     pub fn brief(&self) -> String {
         let fitness = significant(self.fitness, BRIEF_DIGITS);
-        let mut text = format!("{}\n  {} = {fitness}\n", self.title, self.fitness_name);
+        let mut text =
+            format!("{}\n  {} = {fitness}\n", self.subject.title, self.subject.fitness_name);
         if let Some(error) = self.script_error() {
             _ = writeln!(text, "  {}", error.place());
         }
@@ -59,12 +60,15 @@ impl Solution {
     fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = Vec::new();
         if self.script_error().is_some() {
-            facts.push(("stopped", self.stop.clone()));
+            facts.push(("stopped", self.outcome.stop.clone()));
         }
-        facts.extend([("model", self.model.clone()), ("objective", self.objective_values())]);
+        facts.extend([
+            ("model", self.subject.model.clone()),
+            ("objective", self.objective_values()),
+        ]);
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
-        if let Some(chi) = &self.chi_square {
+        if let Some(chi) = &self.likelihood.chi_square {
             let text = format!(
                 "{} for {} degrees of freedom, probability of more {}",
                 significant(chi.value, 5),
@@ -73,33 +77,34 @@ impl Solution {
             );
             facts.push(("chi-square", text));
         }
-        if let Some(value) = self.negative_log_likelihood {
+        if let Some(value) = self.likelihood.negative_log_likelihood {
             facts.push(("-log L", significant(value, 7)));
         }
         if let Some(condition) = self.condition {
             facts.push(("condition", significant(condition, 3)));
         }
-        if !self.front.is_empty() {
-            let knee = self.knee.map_or(String::new(), |knee| {
-                format!(", knee at {}", objectives(&self.front[knee].1))
+        if !self.pareto.front.is_empty() {
+            let knee = self.pareto.knee.map_or(String::new(), |knee| {
+                format!(", knee at {}", objectives(&self.pareto.front[knee].1))
             });
-            let volume = self.hypervolume.as_ref().map_or(String::new(), |(volume, reference)| {
-                let reference = objectives(reference);
-                format!(", hypervolume {} from {reference}", significant(*volume, 4))
-            });
-            facts.push(("front", format!("{} points{knee}{volume}", self.front.len())));
+            let volume =
+                self.pareto.hypervolume.as_ref().map_or(String::new(), |(volume, reference)| {
+                    let reference = objectives(reference);
+                    format!(", hypervolume {} from {reference}", significant(*volume, 4))
+                });
+            facts.push(("front", format!("{} points{knee}{volume}", self.pareto.front.len())));
         }
         facts.extend(self.search_facts());
-        facts.push(("version", format!("gapilib {}", self.version)));
-        if let Some(seed) = self.seed {
+        facts.push(("version", format!("gapilib {}", self.provenance.version)));
+        if let Some(seed) = self.provenance.seed {
             facts.push(("seed", seed.map(|entry| entry.to_string()).join(" ")));
         }
         facts
     }
 
     fn evaluations_line(&self) -> String {
-        let failed: u64 = self.failures.values().sum();
-        let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
+        let failed: u64 = self.effort.failures.values().sum();
+        let share = 100.0 * failed as f64 / self.effort.evaluations.max(1) as f64;
         let statistics = match self.script {
             Some(_) => "least squares and standard errors",
             None => "the standard errors",
@@ -110,31 +115,31 @@ impl Solution {
             .map_or(String::new(), |all| format!(", {} for the profiles", all.simulations));
         format!(
             "{} in {}, {failed} failed ({share:.1} %); {}, {} more for {statistics}{profiles}",
-            self.evaluations,
-            counted(self.generations, "generation"),
-            counted(self.simulations, "simulation"),
-            self.simulations_for_statistics
+            self.effort.evaluations,
+            counted(self.effort.generations, "generation"),
+            counted(self.effort.simulations, "simulation"),
+            self.effort.simulations_for_statistics
         )
     }
 
     /// How the search went.
     fn search_facts(&self) -> Vec<(&'static str, String)> {
-        let mut facts = vec![("method", self.method.clone())];
+        let mut facts = vec![("method", self.subject.method.clone())];
         let operator = |(kind, label): (&String, &String)| format!("{kind} {label}");
-        let operators: Vec<String> = self.operators.iter().map(operator).collect();
+        let operators: Vec<String> = self.subject.operators.iter().map(operator).collect();
         if !operators.is_empty() {
             facts.push(("operators", operators.join(", ")));
         }
         if self.script_error().is_none() {
-            facts.push(("stopped", self.stop.clone()));
+            facts.push(("stopped", self.outcome.stop.clone()));
         }
-        if self.ending.kind == EndingKind::Minimum {
-            facts.push(("ending", self.ending.words.clone()));
+        if self.outcome.ending.kind == EndingKind::Minimum {
+            facts.push(("ending", self.outcome.ending.words.clone()));
         }
         facts.extend(self.searches_line().map(|line| ("searches", line)));
-        facts.extend(self.ending.derivatives.clone().map(|how| ("derivatives", how)));
+        facts.extend(self.outcome.ending.derivatives.clone().map(|how| ("derivatives", how)));
         facts.push(("evaluations", self.evaluations_line()));
-        let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();
+        let mut causes: Vec<(&String, &u64)> = self.effort.causes.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
         facts.extend(
             causes.iter().take(CAUSES).map(|(cause, count)| ("", format!("{count} x {cause}"))),
@@ -142,7 +147,7 @@ impl Solution {
         for (generation, statement) in self.script.iter().flat_map(|script| &script.changes) {
             facts.push(("changed", format!("{statement} in generation {generation}")));
         }
-        for (generation, setting, value) in &self.changes {
+        for (generation, setting, value) in &self.effort.changes {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
         }
         facts
@@ -154,7 +159,7 @@ impl Solution {
     }
 
     fn objective_values(&self) -> String {
-        let found = format!("{} ({})", significant(self.fitness, 7), self.fitness_name);
+        let found = format!("{} ({})", significant(self.fitness, 7), self.subject.fitness_name);
         match self.script.as_ref().filter(|script| script.probed) {
             Some(script) => format!(
                 "{} by the script ({}), {} by least squares",
@@ -194,7 +199,9 @@ impl Solution {
             .iter()
             .for_each(|parameter| text += &format!(",{}", quoted(&parameter.name)));
         text.push('\n');
-        for (k, (generation, values)) in self.history.iter().zip(&self.trace).enumerate() {
+        for (k, (generation, values)) in
+            self.course.history.iter().zip(&self.course.trace).enumerate()
+        {
             let crate::ga::Generation { best, mean, worst, failures } = generation;
             _ = write!(text, "{},{best:e},{mean:e},{worst:e},{failures}", k + 1);
             values.iter().for_each(|value| text += &format!(",{value}"));
@@ -226,7 +233,7 @@ impl Solution {
     pub fn individuals_csv(&self) -> String {
         let names: Vec<String> = self.parameters.iter().map(|p| quoted(&p.name)).collect();
         let mut text = format!("{},fitness\n", names.join(","));
-        for (values, fitness) in &self.individuals {
+        for (values, fitness) in &self.course.individuals {
             values.iter().for_each(|value| text += &format!("{value},"));
             _ = writeln!(text, "{fitness:e}");
         }
@@ -247,25 +254,25 @@ impl Solution {
 
     /// The objective values of the generations.
     pub fn convergence_figure(&self) -> Figure {
-        let best: Vec<f64> = self.history.iter().map(|generation| generation.best).collect();
-        let mean: Vec<f64> = self.history.iter().map(|generation| generation.mean).collect();
-        plot::convergence(&self.model, &best, &mean)
+        let best: Vec<f64> = self.course.history.iter().map(|generation| generation.best).collect();
+        let mean: Vec<f64> = self.course.history.iter().map(|generation| generation.mean).collect();
+        plot::convergence(&self.subject.model, &best, &mean)
     }
 
     /// Measured and simulated points of each series with their residuals, and the names of files.
     pub fn fit_figures(&self) -> Vec<(String, Figure)> {
         let named = |(k, series): (usize, &SolvedSeries)| {
             let name = if k == 0 { "fit.svg".to_owned() } else { format!("fit-{}.svg", k + 1) };
-            Some((name, series.figure(&self.model)?))
+            Some((name, series.figure(&self.subject.model)?))
         };
         self.series.iter().enumerate().filter_map(named).collect()
     }
 
     /// The calibrated model: the model with the values found.
     pub fn modelica(&self) -> String {
-        let (class, inner) = match self.model.split_once('(') {
+        let (class, inner) = match self.subject.model.split_once('(') {
             Some((class, inner)) => (class.trim(), inner.trim_end().trim_end_matches(')')),
-            None => (self.model.as_str(), ""),
+            None => (self.subject.model.as_str(), ""),
         };
         let shared = self.parameters.iter().filter(|p| !p.name.contains('@'));
         let found =
@@ -281,7 +288,7 @@ impl Solution {
             .collect();
         format!(
             "model Calibrated \"{}\"\n  extends {class}(\n    {});\n{remarks}end Calibrated;\n",
-            self.title.replace(['"', '\\'], "'"),
+            self.subject.title.replace(['"', '\\'], "'"),
             all.join(",\n    ")
         )
     }

@@ -149,7 +149,7 @@ fn a_rate_that_is_too_fast_is_bounded_from_below() {
     let data = |x: f64| if x > 0.0 { 2.0 } else { 0.0 };
     let ranges = [("A", [0.1, 10.0]), ("k", [1e-3, 1e5])];
     let solution = solved(posed(|p, x| p[0] * (1.0 - (-p[1] * x).exp()), &ranges, data));
-    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
+    assert_eq!(solution.outcome.ending.kind, EndingKind::Minimum, "{:?}", solution.outcome.ending);
     let all = (0..2000).map(|j| response(1.007f64.powi(j), data));
     let least = all.fold(response(1e4, data), f64::min);
     let limit = least * (1.0 + rise(2));
@@ -219,7 +219,7 @@ fn a_minimum_at_a_kink_is_one() {
     let mut own = posed(formula, &ranges, data);
     own.series[0].y[8] -= 0.1;
     let solution = solved(own);
-    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
+    assert_eq!(solution.outcome.ending.kind, EndingKind::Minimum, "{:?}", solution.outcome.ending);
     let t = parameter(&solution, "t");
     let [low, high] = t.interval.unwrap();
     assert!(low < t.value && t.value < high && high - low < 0.5, "{t:?}");
@@ -240,7 +240,12 @@ fn exact_data_have_verdicts_and_no_intervals() {
             own.series[0].y.iter_mut().for_each(|y| *y = (*y * rounding).round() / rounding);
         }
         let solution = solved(own);
-        assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
+        assert_eq!(
+            solution.outcome.ending.kind,
+            EndingKind::Minimum,
+            "{:?}",
+            solution.outcome.ending
+        );
         for own in &solution.parameters {
             assert_eq!(own.verdict, Some(Verdict::Identifiable), "{own:?}");
             assert!(own.interval.is_none() && own.deviation.is_none(), "{own:?}");

@@ -202,7 +202,7 @@ impl Solution {
     /// Whether another minimum that fits as well lies outside a linear interval.
     fn is_elsewhere(&self, k: usize) -> bool {
         let Some([low, high]) = self.grounds.linear[k] else { return true };
-        self.other_minima.iter().any(|other| !(low..=high).contains(&other.values[k]))
+        self.outcome.other_minima.iter().any(|other| !(low..=high).contains(&other.values[k]))
     }
 
     /// Takes the profiles of these parameters.
@@ -245,7 +245,7 @@ impl Solution {
             }
             return Ok(());
         };
-        self.simulations_for_statistics += found.simulations;
+        self.effort.simulations_for_statistics += found.simulations;
         self.grounds.better = found.better;
         for (&k, profile) in open.iter().zip(found.profiles) {
             judged[k] = match run.evaluation.is_cancelled() && profile.complete != [true; 2] {
@@ -320,7 +320,7 @@ impl Solution {
             }
         }
         let rows = run.evaluation.simulate_all(&places);
-        self.simulations_for_statistics += rows.len() as u64;
+        self.effort.simulations_for_statistics += rows.len() as u64;
         let allowed = elementary::powi(statistics.quantile, 2) * statistics.variance;
         let smallest = statistics.residuals.iter().map(|r| r * r).sum::<f64>();
         // What a constraint forbids tells nothing of the model.

@@ -9,7 +9,7 @@ use crate::plot::{Axis, Figure, Mark};
 use maud::html;
 
 pub fn section(view: &View) -> Option<Section> {
-    let history = &view.solution.history;
+    let history = &view.solution.course.history;
     if history.len() < 2 {
         return None;
     }

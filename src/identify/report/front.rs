@@ -9,13 +9,13 @@ use maud::html;
 
 pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
-    let [across, up] = solution.objectives.as_slice() else { return None };
-    if solution.front.len() < 2 {
+    let [across, up] = solution.pareto.objectives.as_slice() else { return None };
+    if solution.pareto.front.len() < 2 {
         return None;
     }
     let at = |point: &(Vec<f64>, Vec<f64>)| (point.1[0], point.1[1]);
-    let points: Vec<(f64, f64)> = solution.front.iter().map(at).collect();
-    let knee = solution.knee.and_then(|knee| points.get(knee)).copied();
+    let points: Vec<(f64, f64)> = solution.pareto.front.iter().map(at).collect();
+    let knee = solution.pareto.knee.and_then(|knee| points.get(knee)).copied();
     let mut all = vec![series("front", &points, Mark::Points, 1)];
     all.extend(knee.map(|knee| series("knee", &[knee], Mark::Crosses, 2)));
     let drawing = one_panel(Axis::linear(across, ""), Axis::linear(up, ""), 300.0, all);
@@ -23,7 +23,7 @@ pub fn section(view: &View) -> Option<Section> {
     let caption = html! {
         (points.len()) " points"
         @if let Some((x, y)) = knee { ", knee at " (number(x, 4)) ", " (number(y, 4)) }
-        @if let Some((volume, _)) = &solution.hypervolume { ", hypervolume " (number(*volume, 4)) }
+        @if let Some((volume, _)) = &solution.pareto.hypervolume { ", hypervolume " (number(*volume, 4)) }
         "."
     };
     let content = html! { (figure(&drawing, &label, &caption)) (explained(&FRONT)) };

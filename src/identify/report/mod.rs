@@ -37,8 +37,14 @@ impl Solution {
     /// `report.html`.
     pub fn html(&self) -> String {
         let view = View::of(self);
-        Page { title: &self.title, style: STYLE, scripts: &[], data: &[], body: body(&view) }
-            .document()
+        Page {
+            title: &self.subject.title,
+            style: STYLE,
+            scripts: &[],
+            data: &[],
+            body: body(&view),
+        }
+        .document()
     }
 }
 
@@ -89,6 +95,6 @@ fn body(view: &View) -> Markup {
                 (guide::chapter())
             }
         }
-        footer { p { "gapilib " (view.solution.version) } }
+        footer { p { "gapilib " (view.solution.provenance.version) } }
     }
 }

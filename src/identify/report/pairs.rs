@@ -166,7 +166,7 @@ type Points = Vec<(f64, f64)>;
 /// choice where it is much.
 fn individuals(view: &View, pair: &Pair, wide: [f64; 2], high: [f64; 2]) -> [Points; 3] {
     let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
-    let all = view.solution.individuals.iter();
+    let all = view.solution.course.individuals.iter();
     let mut near: Vec<((f64, f64), f64)> = all
         .filter_map(|(values, objective)| {
             let at = (*values.get(pair.first)?, *values.get(pair.second)?);

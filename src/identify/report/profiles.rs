@@ -20,7 +20,7 @@ impl Solution {
     pub fn profile_figures(&self) -> Vec<(String, Figure)> {
         let titled = |parameter: &SolvedParameter| {
             let profile = self.profile_of(parameter)?;
-            let title = format!("{}: profile of {}", self.model, profile.name);
+            let title = format!("{}: profile of {}", self.subject.model, profile.name);
             Some((profile.name.clone(), Figure { title, ..drawing(parameter, profile) }))
         };
         self.parameters.iter().filter_map(titled).collect()

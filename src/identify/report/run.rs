@@ -15,16 +15,16 @@ pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     let content = html! {
         (counts(solution))
-        @if !solution.history.is_empty() {
+        @if !solution.course.history.is_empty() {
             details {
                 summary { "Generations" }
                 (scrolling("Generations", &generations(solution)))
             }
         }
-        @if !solution.problem.is_empty() {
+        @if !solution.provenance.problem.is_empty() {
             details {
                 summary { "The problem as it was written" }
-                (scrolling("The problem", &html! { pre { (solution.problem) } }))
+                (scrolling("The problem", &html! { pre { (solution.provenance.problem) } }))
             }
         }
     };
@@ -32,20 +32,21 @@ pub fn section(view: &View) -> Option<Section> {
 }
 
 fn counts(solution: &Solution) -> Markup {
-    let failed: u64 = solution.failures.values().sum();
-    let share = 100.0 * failed as f64 / solution.evaluations.max(1) as f64;
-    let mut causes: Vec<(&String, &u64)> = solution.causes.iter().collect();
+    let failed: u64 = solution.effort.failures.values().sum();
+    let share = 100.0 * failed as f64 / solution.effort.evaluations.max(1) as f64;
+    let mut causes: Vec<(&String, &u64)> = solution.effort.causes.iter().collect();
     causes.sort_by(|a, b| b.1.cmp(a.1));
     let seed = solution
+        .provenance
         .seed
         .map_or_else(|| "-".to_owned(), |seed| seed.map(|entry| entry.to_string()).join(" "));
     html! {
         dl.facts {
-            div { dt { "Generations" } dd { (solution.generations) } }
-            div { dt { "Individuals" } dd { (solution.evaluations) ", " (failed) " failed (" (number(share, 2)) "\u{a0}%)" } }
-            div { dt { "Simulations" } dd { (solution.simulations) " for the search, " (solution.simulations_for_statistics) " for the standard errors"
+            div { dt { "Generations" } dd { (solution.effort.generations) } }
+            div { dt { "Individuals" } dd { (solution.effort.evaluations) ", " (failed) " failed (" (number(share, 2)) "\u{a0}%)" } }
+            div { dt { "Simulations" } dd { (solution.effort.simulations) " for the search, " (solution.effort.simulations_for_statistics) " for the standard errors"
                 @if let Some(profiles) = &solution.profiles { ", " (profiles.simulations) " for the profiles" } } }
-            @if let Some(how) = &solution.ending.derivatives {
+            @if let Some(how) = &solution.outcome.ending.derivatives {
                 div { dt { "Derivatives" } dd { (how) } }
             }
             div { dt { "Seed" } dd { (seed) } }
@@ -54,10 +55,10 @@ fn counts(solution: &Solution) -> Markup {
             p { "Failures:" }
             ul { @for (cause, count) in causes.iter().take(CAUSES) { li { (count) " × " (cause) } } }
         }
-        @if !solution.changes.is_empty() {
+        @if !solution.effort.changes.is_empty() {
             p { "Changed during the run:" }
             ul {
-                @for (generation, setting, value) in &solution.changes {
+                @for (generation, setting, value) in &solution.effort.changes {
                     li { (setting) " = " (value) " after generation " (generation) }
                 }
             }
@@ -66,9 +67,10 @@ fn counts(solution: &Solution) -> Markup {
 }
 
 fn generations(solution: &Solution) -> Markup {
-    let every = solution.history.len().div_ceil(ROWS).max(1);
-    let last = solution.history.len().saturating_sub(1);
-    let shown = solution.history.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last);
+    let every = solution.course.history.len().div_ceil(ROWS).max(1);
+    let last = solution.course.history.len().saturating_sub(1);
+    let shown =
+        solution.course.history.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last);
     html! {
         table {
             thead {
@@ -87,7 +89,7 @@ fn generations(solution: &Solution) -> Markup {
                         td { (number(generation.mean, 4)) }
                         td { (number(generation.worst, 4)) }
                         td { (generation.failures) }
-                        @for value in solution.trace.get(k).into_iter().flatten() {
+                        @for value in solution.course.trace.get(k).into_iter().flatten() {
                             td { (number(*value, 6)) }
                         }
                     }

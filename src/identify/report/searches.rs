@@ -8,7 +8,7 @@ use crate::plot::{Axis, Mark};
 use maud::html;
 
 pub fn section(view: &View) -> Option<Section> {
-    let all = &view.solution.searches;
+    let all = &view.solution.outcome.searches;
     if all.len() < 2 {
         return None;
     }

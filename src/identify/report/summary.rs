@@ -9,25 +9,25 @@ pub fn head(view: &View) -> Markup {
     let solution = view.solution;
     let points: usize = solution.series.iter().map(|series| series.points.len()).sum();
     html! {
-        h1 { (solution.title) }
+        h1 { (solution.subject.title) }
         @if let Some(error) = solution.script_error() {
             p.lead { strong.bad { (error.sentence()) } }
         }
         p.lead { (verdict(view)) }
         dl.facts {
-            div { dt { "Model" } dd { (solution.model) } }
-            div { dt { "Objective (" (solution.fitness_name) ")" } dd { (number(solution.fitness, 6)) } }
+            div { dt { "Model" } dd { (solution.subject.model) } }
+            div { dt { "Objective (" (solution.subject.fitness_name) ")" } dd { (number(solution.fitness, 6)) } }
             div { dt { "Measured points" } dd { (points) } }
-            @if let Some(test) = &solution.chi_square {
+            @if let Some(test) = &solution.likelihood.chi_square {
                 div { dt { "Chi-square (expected)" }
                     dd { (number(test.value, 4)) " (" (number(test.freedom, 4)) "), probability " (number(test.probability, 2)) } }
             }
-            div { dt { "Method" } dd { (solution.method) } }
-            @if !solution.operators.is_empty() {
+            div { dt { "Method" } dd { (solution.subject.method) } }
+            @if !solution.subject.operators.is_empty() {
                 div { dt { "Operators" }
-                    dd { @for (kind, label) in &solution.operators { (kind) " " (label) "; " } } }
+                    dd { @for (kind, label) in &solution.subject.operators { (kind) " " (label) "; " } } }
             }
-            div { dt { "Stopped" } dd { (solution.stop) } }
+            div { dt { "Stopped" } dd { (solution.outcome.stop) } }
         }
         @if !view.notes.is_empty() {
             section aria-labelledby="notes-heading" {

@@ -9,7 +9,7 @@ use maud::{Markup, html};
 
 pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
-    if solution.trace.len() < 2 {
+    if solution.course.trace.len() < 2 {
         return None;
     }
     let content = html! {
@@ -17,7 +17,7 @@ pub fn section(view: &View) -> Option<Section> {
             summary { "The best values so far, generation by generation" }
             div.figures.small {
                 @for (k, parameter) in solution.parameters.iter().enumerate() {
-                    (one(parameter, k, &solution.trace))
+                    (one(parameter, k, &solution.course.trace))
                 }
             }
         }

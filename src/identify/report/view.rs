@@ -95,8 +95,13 @@ impl View<'_> {
                 .collect(),
             validation_curves: solution.validation.iter().map(curve).collect(),
             pairs: pairs(solution),
-            descents: solution.descents.iter().filter_map(descent).collect(),
-            minima: solution.other_minima.iter().map(|m| (m.values.clone(), m.objective)).collect(),
+            descents: solution.outcome.descents.iter().filter_map(descent).collect(),
+            minima: solution
+                .outcome
+                .other_minima
+                .iter()
+                .map(|m| (m.values.clone(), m.objective))
+                .collect(),
             unmeasured: solution.inferred.bands.iter().filter(|b| b.series.is_none()).collect(),
             next: solution.inferred.next_measurement.iter().flat_map(|n| n.sentences()).collect(),
             intervals: solution.inferred.intervals(),
@@ -107,8 +112,8 @@ impl View<'_> {
     /// quantile of the chi-square distribution where the standard deviations of the data are known;
     /// else twice that of F(2, ν), which has the closed form ν (0.05^(−2/ν) − 1).
     pub(crate) fn ellipse_radius_squared(&self) -> f64 {
-        match self.solution.degrees_of_freedom.filter(|freedom| *freedom > 0.0) {
-            Some(freedom) if self.solution.chi_square.is_none() => {
+        match self.solution.likelihood.degrees_of_freedom.filter(|freedom| *freedom > 0.0) {
+            Some(freedom) if self.solution.likelihood.chi_square.is_none() => {
                 freedom * (elementary::powf(0.05f64, -2.0 / freedom) - 1.0)
             }
             _ => CHI_SQUARE,
@@ -117,7 +122,7 @@ impl View<'_> {
 }
 
 fn ending(solution: &Solution) -> Ending<'_> {
-    let class = match solution.ending.kind {
+    let class = match solution.outcome.ending.kind {
         EndingKind::Minimum => "good",
         EndingKind::Untested => "neutral",
         EndingKind::StepLimit
@@ -125,7 +130,7 @@ fn ending(solution: &Solution) -> Ending<'_> {
         | EndingKind::Stopped
         | EndingKind::NoDescent => "bad",
     };
-    Ending { class, sentence: &solution.ending.words }
+    Ending { class, sentence: &solution.outcome.ending.words }
 }
 
 /// `None` where the start could not be simulated.
@@ -147,7 +152,7 @@ fn notes(solution: &Solution) -> Vec<Note<'_>> {
     let refused = solution.inferred.refusals.iter();
     let refused = refused.map(|sentence| Note { sentence, weight: "information" });
     // The head of the page says how the search ended.
-    let findings = solution.findings.iter().filter(|f| f.sentence != solution.ending.words);
+    let findings = solution.findings.iter().filter(|f| f.sentence != solution.outcome.ending.words);
     findings.map(note).chain(refused).collect()
 }
 

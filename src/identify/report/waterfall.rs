@@ -17,7 +17,7 @@ pub fn section(view: &View) -> Option<Section> {
     let best = sorted[0].objective;
     let reached = sorted.iter().filter(|descent| descent.is_best).count();
     // Those whose start could not be simulated count, too, as in the line on the ending.
-    let of = view.solution.descents.len();
+    let of = view.solution.outcome.descents.len();
     let sentence = format!(
         "The best objective, {}, was reached by {reached} of {of} descents.",
         number(best, 5)

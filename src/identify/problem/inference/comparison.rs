@@ -93,9 +93,9 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
     let mut models = Vec::new();
     for (name, solution) in solutions {
         let likelihood = solution.inferred.likelihood.ok_or_else(|| {
-            fault!(BAD_OPTION, "`{name}` minimises `{}`, which is not the likelihood of normal errors", solution.fitness_name; help: "minimise `sum_of_squares`")
+            fault!(BAD_OPTION, "`{name}` minimises `{}`, which is not the likelihood of normal errors", solution.subject.fitness_name; help: "minimise `sum_of_squares`")
         })?;
-        let ending = &solution.ending;
+        let ending = &solution.outcome.ending;
         let no_minimum =
             (ending.kind != EndingKind::Minimum).then(|| ending.words.trim_end_matches('.').into());
         models.push(Compared { no_minimum, ..compared(name, likelihood) });
@@ -166,7 +166,7 @@ fn weigh(models: &mut [Compared]) {
 /// Whether every setting of the smaller problem is one of the larger, with more parameters
 /// estimated there.
 fn is_special_case(smaller: &Solution, larger: &Solution) -> bool {
-    let read = |solution: &Solution| solution.problem.parse::<toml::Table>().ok();
+    let read = |solution: &Solution| solution.provenance.problem.parse::<toml::Table>().ok();
     let (Some(small), Some(large)) = (read(smaller), read(larger)) else { return false };
     let same = |key: &str| small.get(key) == large.get(key);
     if !["model", "files", "experiment", "constraints"].into_iter().all(same)

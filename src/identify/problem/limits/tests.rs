@@ -29,7 +29,7 @@ fn a_line_at_the_limit_of_its_parameters_is_the_textbook_slope() {
     }
     conclude(&mut run);
     let solution = Solution::of(&run, "done", Vec::new()).unwrap();
-    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
+    assert_eq!(solution.outcome.ending.kind, EndingKind::Minimum, "{:?}", solution.outcome.ending);
     let square: f64 = points.iter().map(|(x, _)| (x - 1.0) * (x - 1.0)).sum();
     let slope: f64 = points.iter().map(|(x, y)| (x - 1.0) * (y - 2.5)).sum::<f64>() / square;
     let found = solution.parameters[1].value;

@@ -55,7 +55,7 @@ pub(super) fn try_others(
     undecided: &[Undecided],
     again: &mut Again<'_>,
 ) -> Result<(), Fault> {
-    if solution.ending.kind != EndingKind::Minimum || session.world.interrupted() {
+    if solution.outcome.ending.kind != EndingKind::Minimum || session.world.interrupted() {
         return Ok(());
     }
     for assumed in [Between::Constant, Between::Linear] {
@@ -67,7 +67,7 @@ pub(super) fn try_others(
         let other = again(session, Change::Interpolation(&names, assumed.other()))?;
         let processors = session.world.processors();
         let (found, simulations) = run.objective_with(other.problem.simulator, &processors)?;
-        solution.simulations_for_statistics += simulations;
+        solution.effort.simulations_for_statistics += simulations;
         if session.world.interrupted() {
             let sentence = "Other interpolations of the inputs were not tried: the run was stopped \
                             before.";

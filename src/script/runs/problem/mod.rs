@@ -300,7 +300,7 @@ fn keep_finished(
     options: &RunOptions,
     solution: &Solution,
 ) {
-    if !options.division.is_whole() || solution.ending.kind != EndingKind::Budget {
+    if !options.division.is_whole() || solution.outcome.ending.kind != EndingKind::Budget {
         return;
     }
     let others =
@@ -626,7 +626,7 @@ fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String
     if solution.profiles.is_some() {
         files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
     }
-    if !solution.searches.is_empty() {
+    if !solution.outcome.searches.is_empty() {
         files.push(("searches.csv".to_owned(), solution.searches_csv()));
     }
     files

@@ -330,7 +330,8 @@ fn what_is_changed_in_a_pause_is_recorded_and_done_again() {
         (solution.unwrap_or_else(|errors| panic!("{}", errors[0].message)), text, session)
     };
     let (whole, text, _) = run(world(&files).paused_after(4, &lines[..5]), false);
-    let changes: Vec<_> = whole.changes.iter().map(|(at, what, _)| (*at, what.as_str())).collect();
+    let changes: Vec<_> =
+        whole.effort.changes.iter().map(|(at, what, _)| (*at, what.as_str())).collect();
     assert_eq!(changes, [(4, "mutation"), (4, "min k"), (4, "evaluations")]);
     assert!(text.contains("mutation = 0.5 from generation 5 on"), "{text}");
     assert!(text.contains("`colour`") && text.contains("expected NAME = NUMBER"), "{text}");
@@ -338,7 +339,10 @@ fn what_is_changed_in_a_pause_is_recorded_and_done_again() {
     // Ended in a later pause, it continues from there with the changes that were made.
     let twice = world(&files).paused_after(4, &lines);
     let (ended, text, session) = run(twice, false);
-    assert!(ended.evaluations < whole.evaluations && text.contains("--resume"), "{text}");
+    assert!(
+        ended.effort.evaluations < whole.effort.evaluations && text.contains("--resume"),
+        "{text}"
+    );
     let path = session.world.output_dir().join(JOURNAL);
     let journal = session.world.read(&path).unwrap();
     let (_, _, session) = run(world(&files).with_file(&path, journal), true);
@@ -380,7 +384,11 @@ end undecided;";
     let sum: f64 = own.series[0].points.iter().map(|p| (p[1] - p[2]).powi(2)).sum();
     assert!((own.fitness - sum).abs() < 1e-12 && sum < 0.01, "{} {sum}", own.fitness);
     // That it is a sum of squares is not known, so least squares do not refine it.
-    assert!(own.method == "genetic" && own.fitness_name == "squares", "{}", own.method);
+    assert!(
+        own.subject.method == "genetic" && own.subject.fitness_name == "squares",
+        "{}",
+        own.subject.method
+    );
     let largest = solved(&with("distance"));
     let points = largest.series[0].points.iter();
     let expected = points.map(|p| (p[1] - p[2]).abs()).fold(0.0, f64::max);
@@ -407,9 +415,9 @@ fn simulations_that_cost_too_much_are_failures() {
     solved(&[("p.toml", limited("max_seconds = 1e-9")), ("d.csv", data)]);
 }
 
-/// They would reach the terminal of whoever prints a table of results.
+/// They would reach the terminal of the user who prints a table of results.
 #[test]
-fn texts_of_problems_have_no_control_characters() {
+fn strings_of_problems_have_no_control_characters() {
     let data = table("time,q", DATA);
     let with = |entry: &str| SIMPLE.replace("[[experiment]]", &format!("[[experiment]]\n{entry}"));
     let text = refusal(&with(r#"name = "a\u001b[2Jb""#), &data);

@@ -256,7 +256,12 @@ fn profiles_belong_to_a_minimum() {
     let text = text + "[method]\nname = \"gapilib2006\"\npolish = false\n";
     let options = RunOptions { profile: true, ..RunOptions::default() };
     let solution = solved_with(&[("p.toml", text), ("d.csv", data())], &options);
-    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{}", solution.ending.words);
+    assert_eq!(
+        solution.outcome.ending.kind,
+        EndingKind::Minimum,
+        "{}",
+        solution.outcome.ending.words
+    );
     let profiles = solution.profiles.as_ref().unwrap();
     for (parameter, profile) in solution.parameters.iter().zip(&profiles.profiles) {
         let [Some(low), Some(high)] = profile.interval else { panic!("{profile:?}") };
