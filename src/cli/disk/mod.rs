@@ -407,8 +407,8 @@ pub(super) fn write_named(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Whether a name that the user gives for an output is a link out of its folder, and to no device:
-/// nobody expects that, and it may have come with a stranger's folder.
+/// Whether a name that the user gives for an output is a link out of its folder, and to no device: it
+/// may have come with a stranger's folder.
 fn leads_elsewhere(path: &Path) -> bool {
     let is_device = || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let folder = path.parent().and_then(|folder| Place::of(folder, true).ok());

@@ -38,8 +38,8 @@ pub(super) fn refusal(source: SourceId, text: &str, error: &toml::de::Error) -> 
     fault.at(span)
 }
 
-/// Names and titles stand in reports, tables and pictures: a control character there would reach the
-/// terminal of whoever prints the file.
+/// Names and titles are parts of reports, tables and pictures: a control character would reach the
+/// terminal of the user who prints the file.
 ///
 /// # Errors
 /// A text has one that is no line break and no tab.
