@@ -31,6 +31,7 @@ pub mod bytecode;
 pub mod causalize;
 pub mod codegen;
 pub mod eval;
+mod execute;
 pub mod external;
 pub mod flatten;
 pub mod format;

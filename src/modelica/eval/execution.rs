@@ -6,6 +6,7 @@ use super::{
     Compiled, Evaluator, Function, FunctionBody, FunctionComponent, Scope, ValueType, depth,
 };
 use crate::diag::{At, Diagnostic};
+use crate::execute;
 use crate::fault;
 use crate::source::Span;
 use crate::value::{RecordValue, Value};
@@ -67,7 +68,7 @@ impl Evaluator<'_> {
                 for component in function.outputs.iter().chain(&function.locals) {
                     self.prepare(component.name)?;
                 }
-                self.statements(statements)?;
+                execute::statements(self, statements)?;
             }
         }
         let mut outputs = Vec::with_capacity(function.outputs.len());

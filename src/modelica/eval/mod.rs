@@ -16,7 +16,6 @@ pub mod errors;
 mod execution;
 mod expression;
 mod external;
-mod flow;
 mod function;
 mod host;
 mod iteration;
@@ -37,7 +36,6 @@ mod tests;
 pub use call::Arguments;
 pub use declaration::{Given, declare};
 pub use depth::with_stack;
-pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, RunCompiled};
 pub use scalar_function::Compiled;
@@ -45,6 +43,8 @@ pub use scope::Scope;
 pub use statement::targets;
 
 use crate::diag::Diagnostic;
+pub use crate::execute::Flow;
+use crate::execute::{self, Domain as _};
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::value::Value;
@@ -119,7 +119,7 @@ pub fn execute(
     host: &mut dyn Host,
 ) -> Result<Flow, Diagnostic> {
     let _entry = depth::Entry::new();
-    Evaluator { scope, host }.statements(statements)
+    execute::statements(&mut Evaluator { scope, host }, statements)
 }
 
 /// Calls a function with these arguments and returns its outputs. `span` is where the call is

@@ -1,71 +1,22 @@
-//! Statements (MLS §11.2).
+//! Statements (MLS §11.2), executed with values.
 
+use super::Evaluator;
 use super::deduction::Body;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
 use super::function::Target;
-use super::{Evaluator, Flow};
 use crate::diag::{Diagnostic, Fault};
+use crate::execute::{Branches, Decision, Domain, Done, Flow, if_statement, iterate};
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
 use crate::value::Value;
+use std::convert::Infallible;
 
-impl Evaluator<'_> {
-    /// Executes statements in order, until one leads elsewhere.
-    pub(super) fn statements(&mut self, statements: &[Statement]) -> Result<Flow, Diagnostic> {
-        for (at, statement) in statements.iter().enumerate() {
-            let done = self.statement(statement);
-            let flow = done.inspect_err(|error| self.leave_out(&statements[at + 1..], error))?;
-            if flow != Flow::Next {
-                return Ok(flow);
-            }
-        }
-        Ok(Flow::Next)
-    }
-
-    fn statement(&mut self, statement: &Statement) -> Result<Flow, Diagnostic> {
-        match &statement.kind {
-            StatementKind::Assign { target, value } => {
-                let done = self.assign_value(target, value, statement.span);
-                done.inspect_err(|_| self.lose(std::slice::from_ref(statement)))?;
-            }
-            StatementKind::MultiAssign { targets, value } => {
-                let done = self.assign_outputs(targets, value);
-                done.inspect_err(|_| self.lose(std::slice::from_ref(statement)))?;
-            }
-            StatementKind::Call(call) => {
-                self.check_interrupted(statement.span)?;
-                self.outputs(call)?;
-            }
-            StatementKind::If { branches, otherwise } => {
-                return self.if_statement(branches, otherwise);
-            }
-            StatementKind::For { indices, body } => {
-                let done = self.for_statement(indices, body);
-                return done.inspect_err(|error| self.leave_out(body, error));
-            }
-            StatementKind::While { condition, body } => {
-                let done = self.while_statement(condition, body);
-                return done.inspect_err(|error| self.leave_out(body, error));
-            }
-            // Every statement of a script is an event.
-            StatementKind::When { branches } if self.scope.is_script() => {
-                return self.if_statement(branches, &[]);
-            }
-            StatementKind::When { .. } => {
-                let message = "`when` is allowed only in models and scripts";
-                return Err(Fault::new(MODEL_ONLY, message).at(statement.span));
-            }
-            StatementKind::Break if self.scope.loops == 0 => {
-                return Err(Fault::new(MISPLACED, "`break` outside a loop").at(statement.span));
-            }
-            StatementKind::Break => return Ok(Flow::Break),
-            StatementKind::Return => return Ok(Flow::Return),
-        }
-        Ok(Flow::Next)
-    }
+/// Every condition has a value.
+impl Domain for Evaluator<'_> {
+    type Condition = Infallible;
 
     fn assign_value(
         &mut self,
@@ -73,19 +24,116 @@ impl Evaluator<'_> {
         value: &Expression,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        self.begin_use(value);
-        let new = match self.scalar(value) {
-            Some(scalar) => scalar.into(),
-            None => self.expression(value)?,
+        let done = self.value_to_assign(target, value);
+        let done = done.and_then(|new| self.assign(target, new, span));
+        done.inspect_err(|_| self.lose([target]))
+    }
+
+    /// `(a, , b) := f(x)` (MLS §11.2.1.1)
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let done = self.assign_each(targets, call);
+        done.inspect_err(|_| self.lose(targets.iter().flatten()))
+    }
+
+    fn call_statement(&mut self, call: &Expression, span: Span) -> Result<(), Diagnostic> {
+        self.check_interrupted(span)?;
+        self.outputs(call).map(|_| ())
+    }
+
+    fn decide(&mut self, condition: &Expression) -> Result<Decision<Infallible>, Diagnostic> {
+        self.condition(condition).map(Decision::Known)
+    }
+
+    fn either(
+        &mut self,
+        condition: Infallible,
+        _: impl FnOnce(&mut Self) -> Done<Self>,
+        _: impl FnOnce(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        match condition {}
+    }
+
+    fn for_loop(
+        &mut self,
+        index: &ForIndex,
+        statements: &[Statement],
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let range = self.iterated(index, Body::Statements(statements))?;
+        let (count, mut iterations) = (range.count(), 0..range.count());
+        let watched = self.is_outermost_of_script();
+        let depth = self.scope.iterators.len();
+        self.scope.loops += 1;
+        let next = |evaluator: &mut Self| {
+            let Some(iteration) = iterations.next() else { return Ok(None) };
+            evaluator.check_interrupted(index.name.span)?;
+            if watched {
+                evaluator.host.loop_iteration(iteration, Some(count));
+            }
+            Ok(Some(iteration))
         };
-        self.keep_status(target, &new);
-        self.assign(target, new, span)
+        let result = iterate(self, next, |evaluator, iteration| {
+            evaluator.scope.iterators.truncate(depth);
+            evaluator.scope.iterators.push((index.name.node, range.get(iteration)));
+            body(evaluator)
+        });
+        self.scope.iterators.truncate(depth);
+        self.scope.loops -= 1;
+        result
+    }
+
+    fn while_loop(
+        &mut self,
+        condition: &Expression,
+        _: Span,
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let watched = self.is_outermost_of_script();
+        self.scope.loops += 1;
+        let mut iterations = 0..;
+        let next = |evaluator: &mut Self| {
+            if !evaluator.condition(condition)? {
+                return Ok(None);
+            }
+            evaluator.check_interrupted(condition.span)?;
+            let iteration = iterations.next();
+            if let Some(iteration) = iteration.filter(|_| watched) {
+                evaluator.host.loop_iteration(iteration, None);
+            }
+            Ok(iteration)
+        };
+        let result = iterate(self, next, |evaluator, _| body(evaluator));
+        self.scope.loops -= 1;
+        result
+    }
+
+    /// Every statement of a script is an event.
+    fn when_statement(&mut self, branches: &Branches, span: Span) -> Done<Self> {
+        match self.scope.is_script() {
+            true => if_statement(self, branches, &[]),
+            false => {
+                let message = "`when` is allowed only in models and scripts";
+                Err(Fault::new(MODEL_ONLY, message).at(span))
+            }
+        }
+    }
+
+    fn leave_loop(&mut self, span: Span) -> Done<Self> {
+        match self.scope.loops {
+            0 => Err(Fault::new(MISPLACED, "`break` outside a loop").at(span)),
+            _ => Ok(Flow::Break),
+        }
     }
 
     /// Statements of a script are not reached because of an error: what they would have assigned has no
     /// value, and the host learns which of its commands are not called.
-    pub(super) fn leave_out(&mut self, statements: &[Statement], error: &Diagnostic) {
-        self.lose(statements);
+    fn leave_out(&mut self, statements: &[Statement], error: &Diagnostic) {
+        self.lose(targets(statements));
         if !self.scope.is_script() || !self.host.loses_failed() {
             return;
         }
@@ -99,14 +147,30 @@ impl Evaluator<'_> {
             }
         }
     }
+}
+
+impl Evaluator<'_> {
+    fn value_to_assign(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+    ) -> Result<Value, Diagnostic> {
+        self.begin_use(value);
+        let new = match self.scalar(value) {
+            Some(scalar) => scalar.into(),
+            None => self.expression(value)?,
+        };
+        self.keep_status(target, &new);
+        Ok(new)
+    }
 
     /// What statements of a script that failed or were not reached would have assigned: these variables
     /// have no value, whatever they had before.
-    fn lose(&mut self, statements: &[Statement]) {
+    fn lose<'t>(&mut self, targets: impl IntoIterator<Item = &'t ComponentReference>) {
         if !self.scope.is_script() || !self.host.loses_failed() {
             return;
         }
-        for target in targets(statements) {
+        for target in targets {
             match self.scope.contains(target.parts[0].name) {
                 true => self.scope.forget(target.parts[0].name),
                 false => self.host.lose(target),
@@ -114,8 +178,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// `(a, , b) := f(x)` (MLS §11.2.1.1)
-    fn assign_outputs(
+    fn assign_each(
         &mut self,
         targets: &[Option<ComponentReference>],
         call: &Expression,
@@ -152,103 +215,6 @@ impl Evaluator<'_> {
     /// This value is assigned, which may say whether a command succeeded.
     fn keep_status(&mut self, target: &ComponentReference, value: &Value) {
         self.host.keep_status(target, value);
-    }
-
-    fn if_statement(
-        &mut self,
-        branches: &[(Expression, Vec<Statement>)],
-        otherwise: &[Statement],
-    ) -> Result<Flow, Diagnostic> {
-        for (at, (condition, statements)) in branches.iter().enumerate() {
-            let holds = self.condition(condition).inspect_err(|error| {
-                let bodies = branches[at..].iter().map(|(_, statements)| statements);
-                bodies.for_each(|statements| self.leave_out(statements, error));
-                self.leave_out(otherwise, error);
-            })?;
-            if holds {
-                return self.statements(statements);
-            }
-        }
-        self.statements(otherwise)
-    }
-
-    fn for_statement(
-        &mut self,
-        indices: &[ForIndex],
-        body: &[Statement],
-    ) -> Result<Flow, Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else { return self.statements(body) };
-        let range = self.iterated(index, Body::Statements(body))?;
-        let watched = self.is_outermost_of_script();
-        let depth = self.scope.iterators.len();
-        self.scope.loops += 1;
-        let result =
-            self.iterations(range.count(), watched, index.name.span, |evaluator, iteration| {
-                evaluator.scope.iterators.truncate(depth);
-                evaluator.scope.iterators.push((index.name.node, range.get(iteration)));
-                match inner {
-                    [] => evaluator.statements(body),
-                    inner => evaluator.for_statement(inner, body),
-                }
-            });
-        self.scope.iterators.truncate(depth);
-        self.scope.loops -= 1;
-        result
-    }
-
-    fn iterations(
-        &mut self,
-        count: usize,
-        watched: bool,
-        span: Span,
-        mut body: impl FnMut(&mut Self, usize) -> Result<Flow, Diagnostic>,
-    ) -> Result<Flow, Diagnostic> {
-        for iteration in 0..count {
-            self.check_interrupted(span)?;
-            if watched {
-                self.host.loop_iteration(iteration, Some(count));
-            }
-            match body(self, iteration)? {
-                Flow::Next => {}
-                Flow::Break => return Ok(Flow::Next),
-                Flow::Return => return Ok(Flow::Return),
-            }
-        }
-        Ok(Flow::Next)
-    }
-
-    fn while_statement(
-        &mut self,
-        condition: &Expression,
-        body: &[Statement],
-    ) -> Result<Flow, Diagnostic> {
-        let watched = self.is_outermost_of_script();
-        self.scope.loops += 1;
-        let result = self.while_iterations(condition, body, watched);
-        self.scope.loops -= 1;
-        result
-    }
-
-    fn while_iterations(
-        &mut self,
-        condition: &Expression,
-        body: &[Statement],
-        watched: bool,
-    ) -> Result<Flow, Diagnostic> {
-        let mut iteration = 0;
-        while self.condition(condition)? {
-            self.check_interrupted(condition.span)?;
-            if watched {
-                self.host.loop_iteration(iteration, None);
-            }
-            iteration += 1;
-            match self.statements(body)? {
-                Flow::Next => {}
-                Flow::Break => return Ok(Flow::Next),
-                Flow::Return => return Ok(Flow::Return),
-            }
-        }
-        Ok(Flow::Next)
     }
 
     fn is_outermost_of_script(&self) -> bool {

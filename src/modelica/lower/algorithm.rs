@@ -6,31 +6,27 @@
 
 use super::assigned_variables::AssignedScalar;
 use super::builder::Builder;
+use super::calls_of_statements::assigned_outputs;
 use super::dae::VariableKind;
 use super::equation::Equation;
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_DISCRETE, NOT_SUPPORTED, UNBALANCED_MODEL,
-    UNRESOLVED_REFERENCE,
 };
 use super::execution::Loops;
-use super::expressions::{Lowered, Lowering, Target};
+use super::expressions::{Lowered, Lowering};
 use super::shape::UNKNOWN_TEXT;
 use super::statement_function::may_be_a_function;
 use super::when::is_initial;
 use crate::diag::Diagnostic;
+use crate::execute::{self, Branches, Decision, Domain, Done, Flow, iterate};
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
-use crate::symbolic::{Expr, VarId, substitute};
+use crate::symbolic::{Expr, Pool, VarId, substitute};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
 use rustc_hash::FxHashMap;
-
-/// How a sequence of statements ended: whether a loop was left, as a condition.
-type Broken = Expr;
-
-type Branch<'a> = (&'a Expression, &'a [Statement]);
 
 impl Builder<'_> {
     /// Adds the equations of an algorithm section.
@@ -42,7 +38,7 @@ impl Builder<'_> {
             let before = self.value_before(variable, first.span)?;
             self.execution.values.insert(variable, before);
         }
-        self.statements(statements, &mut Vec::new())?;
+        execute::statements(&mut Algorithm { builder: self, loops: Vec::new() }, statements)?;
         let execution = std::mem::take(&mut self.execution);
         for (variable, right) in execution.values {
             let left = self.dae.pool.variable(variable);
@@ -120,352 +116,6 @@ impl Builder<'_> {
         lowering
     }
 
-    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Broken, Diagnostic> {
-        let mut broken = self.not_broken();
-        for statement in list {
-            broken =
-                self.unless(broken, loops, |builder, loops| builder.statement(statement, loops))?;
-            if self.dae.pool.as_constant(broken) == Some(1.0) {
-                break;
-            }
-        }
-        Ok(broken)
-    }
-
-    fn not_broken(&mut self) -> Broken {
-        self.dae.pool.constant(0.0)
-    }
-
-    /// Carries out what follows in a loop that has been left where `broken` holds.
-    fn unless(
-        &mut self,
-        broken: Broken,
-        loops: &mut Loops,
-        body: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
-    ) -> Result<Broken, Diagnostic> {
-        if self.dae.pool.as_constant(broken) == Some(0.0) {
-            return body(self, loops);
-        }
-        let yes = self.dae.pool.constant(1.0);
-        self.choose(broken, loops, |_, _| Ok(yes), body)
-    }
-
-    fn count_statement(&mut self, span: Span) -> Result<(), Diagnostic> {
-        self.calls.statements = self.calls.statements.saturating_sub(1);
-        match self.calls.statements {
-            0 => Err(fault!(NOT_SUPPORTED, "this model has too many statements").at(span)),
-            _ => Ok(()),
-        }
-    }
-
-    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Broken, Diagnostic> {
-        self.count_statement(s.span)?;
-        let asserted = self.dae.assertions.len();
-        match &s.kind {
-            StatementKind::Assign { target, value } => {
-                match self.assignment(target, value, loops) {
-                    Err(error) if may_be_a_function(&error) => {
-                        self.dae.assertions.truncate(asserted);
-                        self.call_of_statement(s, loops).map_err(|_| error)?;
-                    }
-                    done => done?,
-                }
-                self.guard_new_assertions(asserted);
-            }
-            StatementKind::MultiAssign { targets, value } => {
-                self.assign_outputs(targets, value, loops)?;
-                self.guard_new_assertions(asserted);
-            }
-            StatementKind::If { branches, otherwise } => {
-                let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
-                return self.if_statement(&branches, otherwise, loops);
-            }
-            StatementKind::For { .. } | StatementKind::While { .. } => {
-                return self.loop_statement(s, loops);
-            }
-            StatementKind::When { branches } => {
-                let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
-                let none = self.dae.pool.constant(0.0);
-                self.when_statement(&branches, none, s.span, loops)?;
-            }
-            StatementKind::Call(call) => {
-                self.statement_call(call, loops)?;
-                self.guard_new_assertions(asserted);
-            }
-            StatementKind::Break => return Ok(self.dae.pool.constant(1.0)),
-            StatementKind::Return => {
-                return Err(fault!(NOT_SUPPORTED, "`return` outside a function").at(s.span));
-            }
-        }
-        Ok(self.not_broken())
-    }
-
-    /// A loop is unrolled, or else a function.
-    fn loop_statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Broken, Diagnostic> {
-        // In an unrolled loop, the whole statement becomes a function instead.
-        let before = loops.is_empty().then(|| self.execution.values.clone());
-        let (asserted, guards) = (self.dae.assertions.len(), self.execution.guards.len());
-        let outer = loops.len();
-        let done = match &s.kind {
-            StatementKind::For { indices, body } => self.for_statement(indices, body, loops),
-            StatementKind::While { condition, body } => {
-                self.while_statement(condition, body, s.span, loops)
-            }
-            _ => return Ok(self.not_broken()),
-        };
-        match (done, before) {
-            (Err(error), Some(before)) if may_be_a_function(&error) => {
-                loops.truncate(outer);
-                self.dae.assertions.truncate(asserted);
-                self.execution.values = before;
-                self.execution.guards.truncate(guards);
-                let called = self.call_of_statement(s, loops);
-                // A loop whose end is not known must be a function; else its body is not possible.
-                called.map_err(|why| if error.code == NO_CONSTANT_VALUE { why } else { error })?;
-                self.guard_new_assertions(asserted);
-                Ok(self.not_broken())
-            }
-            (done, _) => done,
-        }
-    }
-
-    fn while_statement(
-        &mut self,
-        condition: &Expression,
-        body: &[Statement],
-        span: Span,
-        loops: &mut Loops,
-    ) -> Result<Broken, Diagnostic> {
-        let mut broken = self.not_broken();
-        while self.statement_lowering(loops).known(condition)? != 0.0 {
-            self.count_statement(span)?;
-            broken =
-                self.unless(broken, loops, |builder, loops| builder.statements(body, loops))?;
-            if self.dae.pool.as_constant(broken) == Some(1.0) {
-                break;
-            }
-        }
-        Ok(self.not_broken())
-    }
-
-    fn assignment(
-        &mut self,
-        target: &ComponentReference,
-        value: &Expression,
-        loops: &Loops,
-    ) -> Result<(), Diagnostic> {
-        if (self.place.in_when || self.place.initial)
-            && let Some(done) = self.confirmed(value, loops)?
-        {
-            return self.assign(target, Lowered::scalar(done), loops);
-        }
-        let mut lowering = self.statement_lowering(loops);
-        let lowered = match lowering.lower(value)? {
-            Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
-                lowering.run_time_string(value)?
-            }
-            lowered => lowered,
-        };
-        self.assign(target, lowered, loops)
-    }
-
-    fn assign(
-        &mut self,
-        target: &ComponentReference,
-        value: Lowered<Expr>,
-        loops: &Loops,
-    ) -> Result<(), Diagnostic> {
-        let places = self.places(target, loops)?;
-        let is_text =
-            |place: &AssignedScalar| self.dae.variable(place.variable).base == BaseType::String;
-        let value = match places.first().is_some_and(is_text) {
-            true => Lowered::scalar(Lowering::new(self).number_of_text(value, target.span)?),
-            false => value,
-        };
-        let mut values = Vec::new();
-        value.append_scalars(&mut values);
-        let expected = places.last().map_or(0, |place| place.element + 1);
-        if expected != values.len() {
-            return Err(fault!(
-                ARRAY_MISMATCH,
-                "{} elements are assigned to {expected}",
-                values.len()
-            )
-            .at(target.span));
-        }
-        for AssignedScalar { variable, element, guard } in places {
-            let Some(before) = self.execution.values.get_mut(&variable) else {
-                let name = self.dae.variable(variable).name.clone();
-                return Err(fault!(NOT_SUPPORTED, "`{name}` cannot be assigned").at(target.span));
-            };
-            *before = match guard {
-                None => values[element],
-                Some(guard) => self.dae.pool.if_then_else(guard, values[element], *before),
-            };
-            if self.place.in_when {
-                self.execution.in_when.insert(variable);
-            }
-        }
-        Ok(())
-    }
-
-    /// `(a, , b) := f(x)`
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        value: &Expression,
-        loops: &Loops,
-    ) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &value.kind else {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "a list of variables on the left side needs a function call on the right side"
-            )
-            .at(value.span));
-        };
-        let name = function.name();
-        let Some(user) = Target::function(self, &name) else {
-            return Err(
-                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
-            );
-        };
-        let mut lowering = self.statement_lowering(loops);
-        let outputs = lowering.outputs_for(targets, &user, arguments, value.span)?;
-        if targets.len() > outputs.len() {
-            return Err(
-                fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len()).at(value.span)
-            );
-        }
-        for (target, output) in targets.iter().zip(outputs) {
-            if let Some(target) = target {
-                self.assign(target, output, loops)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn if_statement(
-        &mut self,
-        branches: &[Branch],
-        otherwise: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<Broken, Diagnostic> {
-        let Some(((condition, body), rest)) = branches.split_first() else {
-            return self.statements(otherwise, loops);
-        };
-        let asserted = self.dae.assertions.len();
-        let condition = self.statement_lowering(loops).scalar(condition)?;
-        self.guard_new_assertions(asserted);
-        if let Some(known) = self.dae.pool.as_constant(condition) {
-            return match known != 0.0 {
-                true => self.statements(body, loops),
-                false => self.if_statement(rest, otherwise, loops),
-            };
-        }
-        self.choose(
-            condition,
-            loops,
-            |builder, loops| builder.statements(body, loops),
-            |builder, loops| builder.if_statement(rest, otherwise, loops),
-        )
-    }
-
-    /// Carries out both branches and merges what they assign.
-    fn choose(
-        &mut self,
-        condition: Expr,
-        loops: &mut Loops,
-        first: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
-        second: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
-    ) -> Result<Broken, Diagnostic> {
-        let before = self.execution.values.clone();
-        self.execution.guards.push(condition);
-        let flow = first(self, loops)?;
-        self.execution.guards.pop();
-        let taken = std::mem::replace(&mut self.execution.values, before);
-        let not = self.dae.pool.not(condition);
-        self.execution.guards.push(not);
-        let other = second(self, loops)?;
-        self.execution.guards.pop();
-        for ((_, value), (_, taken)) in self.execution.values.iter_mut().zip(&taken) {
-            *value = self.dae.pool.if_then_else(condition, *taken, *value);
-        }
-        let pool = &mut self.dae.pool;
-        let (first, second) = (pool.and(condition, flow), pool.and(not, other));
-        Ok(pool.or(first, second))
-    }
-
-    /// The branches of a when-statement, unless one `earlier` is active.
-    fn when_statement(
-        &mut self,
-        branches: &[Branch],
-        earlier: Expr,
-        span: Span,
-        loops: &mut Loops,
-    ) -> Result<Broken, Diagnostic> {
-        let Some(((condition, body), rest)) = branches.split_first() else {
-            return Ok(self.not_broken());
-        };
-        if self.place.initial || self.place.in_when {
-            return Err(
-                fault!(NOT_SUPPORTED, "`when` inside `when` or initial algorithms").at(span)
-            );
-        }
-        let active = self.activation(condition, loops)?;
-        let not = self.dae.pool.not(earlier);
-        let guard = self.dae.pool.and(not, active);
-        let earlier = self.dae.pool.or(earlier, active);
-        self.choose(
-            guard,
-            loops,
-            |builder, loops| {
-                (builder.place.in_when, builder.place.at_start) = (true, is_initial(condition));
-                let flow = builder.statements(body, loops);
-                (builder.place.in_when, builder.place.at_start) = (false, false);
-                flow
-            },
-            |builder, loops| builder.when_statement(rest, earlier, span, loops),
-        )
-    }
-
-    fn for_statement(
-        &mut self,
-        indices: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<Broken, Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else {
-            return self.statements(body, loops);
-        };
-        let mut broken = self.not_broken();
-        for variable in self.statement_lowering(loops).loop_variables(index)? {
-            self.count_statement(index.name.span)?;
-            loops.push(variable);
-            let iteration = self
-                .unless(broken, loops, |builder, loops| builder.for_statement(inner, body, loops));
-            loops.pop();
-            broken = iteration?;
-            if self.dae.pool.as_constant(broken) == Some(1.0) {
-                break;
-            }
-        }
-        Ok(self.not_broken())
-    }
-
-    /// `assert`, `terminate`
-    fn statement_call(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        match (function.name().to_string().as_str(), self.place.in_when) {
-            ("assert", _) => self.assertion(arguments, call.span, loops),
-            ("terminate", true) => {
-                let guard = self.guard();
-                self.terminate(arguments, guard, call.span, loops);
-                Ok(())
-            }
-            _ => self.call_statement(call, loops, self.place.in_when || self.place.initial),
-        }
-    }
-
     /// The conditions of all branches around.
     fn guard(&mut self) -> Expr {
         let mut guard = self.dae.pool.constant(1.0);
@@ -492,5 +142,298 @@ impl Builder<'_> {
             Some(value) => *value,
             None => self.dae.pool.variable(variable),
         }
+    }
+}
+
+/// An algorithm section being evaluated.
+struct Algorithm<'a, 'b> {
+    builder: &'a mut Builder<'b>,
+    loops: Loops,
+}
+
+/// Conditions that are not known merge what their branches assign.
+impl Domain for Algorithm<'_, '_> {
+    type Condition = Expr;
+
+    fn statement(&mut self, statement: &Statement) -> Done<Self> {
+        self.count(statement.span)?;
+        match &statement.kind {
+            StatementKind::Assign { .. } => self.assignment_or_function(statement),
+            StatementKind::For { .. } | StatementKind::While { .. } => {
+                self.loop_or_function(statement)
+            }
+            _ => execute::execute(self, statement),
+        }
+    }
+
+    fn assign_value(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let asserted = self.builder.dae.assertions.len();
+        let value = self.value(value)?;
+        self.assign(target, value)?;
+        self.builder.guard_new_assertions(asserted);
+        Ok(())
+    }
+
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let asserted = self.builder.dae.assertions.len();
+        let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
+            own.outputs_for(targets, user, given, call.span)
+        })?;
+        outputs.into_iter().try_for_each(|(target, output)| self.assign(target, output))?;
+        self.builder.guard_new_assertions(asserted);
+        Ok(())
+    }
+
+    /// `assert`, `terminate`
+    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
+        let Algorithm { builder, loops } = self;
+        let (in_when, asserted) = (builder.place.in_when, builder.dae.assertions.len());
+        match (function.name().to_string().as_str(), in_when) {
+            ("assert", _) => builder.assertion(arguments, call.span, loops)?,
+            ("terminate", true) => {
+                let guard = builder.guard();
+                builder.terminate(arguments, guard, call.span, loops);
+            }
+            _ => builder.call_statement(call, loops, in_when || builder.place.initial)?,
+        }
+        builder.guard_new_assertions(asserted);
+        Ok(())
+    }
+
+    fn decide(&mut self, condition: &Expression) -> Result<Decision<Expr>, Diagnostic> {
+        let asserted = self.builder.dae.assertions.len();
+        let condition = self.lowering().scalar(condition)?;
+        self.builder.guard_new_assertions(asserted);
+        Ok(match self.builder.dae.pool.as_constant(condition) {
+            Some(known) => Decision::Known(known != 0.0),
+            None => Decision::Open(condition),
+        })
+    }
+
+    fn either(
+        &mut self,
+        condition: Expr,
+        first: impl FnOnce(&mut Self) -> Done<Self>,
+        second: impl FnOnce(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let before = self.builder.execution.values.clone();
+        self.builder.execution.guards.push(condition);
+        let flow = first(self)?;
+        self.builder.execution.guards.pop();
+        let taken = std::mem::replace(&mut self.builder.execution.values, before);
+        let not = self.builder.dae.pool.not(condition);
+        self.builder.execution.guards.push(not);
+        let other = second(self)?;
+        let Builder { execution, dae, .. } = &mut *self.builder;
+        execution.guards.pop();
+        for ((_, value), (_, taken)) in execution.values.iter_mut().zip(&taken) {
+            *value = dae.pool.if_then_else(condition, *taken, *value);
+        }
+        let (first, second) = (leaves_loop(&mut dae.pool, flow), leaves_loop(&mut dae.pool, other));
+        let (first, second) = (dae.pool.and(condition, first), dae.pool.and(not, second));
+        let left = dae.pool.or(first, second);
+        Ok(match dae.pool.as_constant(left) {
+            Some(0.0) => Flow::Next,
+            Some(_) => Flow::Break,
+            None => Flow::BreakIf(left),
+        })
+    }
+
+    fn for_loop(
+        &mut self,
+        index: &ForIndex,
+        _: &[Statement],
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let mut variables = self.lowering().loop_variables(index)?.into_iter();
+        let next = |own: &mut Self| match variables.next() {
+            Some(variable) => own.count(index.name.span).map(|()| Some(variable)),
+            None => Ok(None),
+        };
+        iterate(self, next, |own, variable| {
+            own.loops.push(variable);
+            let done = body(own);
+            own.loops.pop();
+            done
+        })
+    }
+
+    fn while_loop(
+        &mut self,
+        condition: &Expression,
+        span: Span,
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let next = |own: &mut Self| match own.lowering().known(condition)? != 0.0 {
+            true => own.count(span).map(Some),
+            false => Ok(None),
+        };
+        iterate(self, next, |own, ()| body(own))
+    }
+
+    fn when_statement(&mut self, branches: &Branches, span: Span) -> Done<Self> {
+        let none = self.builder.dae.pool.constant(0.0);
+        self.when_unless(branches, none, span)
+    }
+
+    fn leave_function(&mut self, span: Span) -> Done<Self> {
+        Err(fault!(NOT_SUPPORTED, "`return` outside a function").at(span))
+    }
+}
+
+impl<'b> Algorithm<'_, 'b> {
+    fn lowering(&mut self) -> Lowering<'_, Builder<'b>> {
+        self.builder.statement_lowering(&self.loops)
+    }
+
+    /// One more statement or iteration.
+    fn count(&mut self, span: Span) -> Result<(), Diagnostic> {
+        let left = &mut self.builder.calls.statements;
+        *left = left.saturating_sub(1);
+        match left {
+            0 => Err(fault!(NOT_SUPPORTED, "this model has too many statements").at(span)),
+            _ => Ok(()),
+        }
+    }
+
+    /// An assignment is evaluated, or else a function.
+    fn assignment_or_function(&mut self, statement: &Statement) -> Done<Self> {
+        let asserted = self.builder.dae.assertions.len();
+        match execute::execute(self, statement) {
+            Err(error) if may_be_a_function(&error) => {
+                self.builder.dae.assertions.truncate(asserted);
+                let called = self.builder.call_of_statement(statement, &self.loops);
+                called.map_err(|_| error)?;
+                self.builder.guard_new_assertions(asserted);
+                Ok(Flow::Next)
+            }
+            done => done,
+        }
+    }
+
+    /// A loop is unrolled, or else a function.
+    fn loop_or_function(&mut self, statement: &Statement) -> Done<Self> {
+        // In an unrolled loop, the whole statement becomes a function instead.
+        if !self.loops.is_empty() {
+            return execute::execute(self, statement);
+        }
+        let before = self.builder.execution.values.clone();
+        let asserted = self.builder.dae.assertions.len();
+        let guards = self.builder.execution.guards.len();
+        match execute::execute(self, statement) {
+            Err(error) if may_be_a_function(&error) => {
+                self.builder.dae.assertions.truncate(asserted);
+                self.builder.execution.values = before;
+                self.builder.execution.guards.truncate(guards);
+                let called = self.builder.call_of_statement(statement, &self.loops);
+                // A loop whose end is not known must be a function; else its body is not possible.
+                called.map_err(|why| if error.code == NO_CONSTANT_VALUE { why } else { error })?;
+                self.builder.guard_new_assertions(asserted);
+                Ok(Flow::Next)
+            }
+            done => done,
+        }
+    }
+
+    fn value(&mut self, value: &Expression) -> Result<Lowered<Expr>, Diagnostic> {
+        let place = self.builder.place;
+        if (place.in_when || place.initial)
+            && let Some(done) = self.builder.confirmed(value, &self.loops)?
+        {
+            return Ok(Lowered::scalar(done));
+        }
+        let mut lowering = self.lowering();
+        match lowering.lower(value)? {
+            Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => lowering.run_time_string(value),
+            lowered => Ok(lowered),
+        }
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Lowered<Expr>,
+    ) -> Result<(), Diagnostic> {
+        let Algorithm { builder, loops } = self;
+        let places = builder.places(target, loops)?;
+        let is_text =
+            |place: &AssignedScalar| builder.dae.variable(place.variable).base == BaseType::String;
+        let value = match places.first().is_some_and(is_text) {
+            true => Lowered::scalar(Lowering::new(*builder).number_of_text(value, target.span)?),
+            false => value,
+        };
+        let mut values = Vec::new();
+        value.append_scalars(&mut values);
+        let expected = places.last().map_or(0, |place| place.element + 1);
+        if expected != values.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} elements are assigned to {expected}",
+                values.len()
+            )
+            .at(target.span));
+        }
+        for AssignedScalar { variable, element, guard } in places {
+            let Some(before) = builder.execution.values.get_mut(&variable) else {
+                let name = builder.dae.variable(variable).name.clone();
+                return Err(fault!(NOT_SUPPORTED, "`{name}` cannot be assigned").at(target.span));
+            };
+            *before = match guard {
+                None => values[element],
+                Some(guard) => builder.dae.pool.if_then_else(guard, values[element], *before),
+            };
+            if builder.place.in_when {
+                builder.execution.in_when.insert(variable);
+            }
+        }
+        Ok(())
+    }
+
+    /// The branches of a when-statement, unless one `earlier` is active.
+    fn when_unless(&mut self, branches: &Branches, earlier: Expr, span: Span) -> Done<Self> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return Ok(Flow::Next);
+        };
+        let Algorithm { builder, loops } = self;
+        if builder.place.initial || builder.place.in_when {
+            return Err(
+                fault!(NOT_SUPPORTED, "`when` inside `when` or initial algorithms").at(span)
+            );
+        }
+        let active = builder.activation(condition, loops)?;
+        let not = builder.dae.pool.not(earlier);
+        let guard = builder.dae.pool.and(not, active);
+        let earlier = builder.dae.pool.or(earlier, active);
+        self.either(
+            guard,
+            |own| {
+                let at_start = is_initial(condition);
+                (own.builder.place.in_when, own.builder.place.at_start) = (true, at_start);
+                let done = execute::statements(own, body);
+                (own.builder.place.in_when, own.builder.place.at_start) = (false, false);
+                done
+            },
+            |own| own.when_unless(rest, earlier, span),
+        )
+    }
+}
+
+/// The condition under which a loop is left.
+fn leaves_loop(pool: &mut Pool, flow: Flow<Expr>) -> Expr {
+    match flow {
+        Flow::Next => pool.constant(0.0),
+        Flow::Break | Flow::Return => pool.constant(1.0),
+        Flow::BreakIf(condition) => condition,
     }
 }

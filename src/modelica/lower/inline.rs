@@ -6,25 +6,24 @@
 //! to the bytecode of `function`, which refuses impure functions.
 
 use super::builder::{Builder, MAX_STATEMENTS};
+use super::calls_of_statements::{AssertArguments, CallStatement, assigned_outputs};
 use super::component_shape::{Declared, declared};
 use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::execution::Loops;
+use super::expressions::message_parts;
 use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
-use super::expressions::{message_parts, nth};
-use super::function::{component_type, fails, local_value};
+use super::function::{component_type, local_value};
 use super::shape::UNKNOWN_TEXT;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::execute::{Branches, Decision, Domain, Done, Flow, execute, iterate, statements};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator};
-use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
-    Subscript,
-};
+use crate::syntax::ast::{ComponentReference, Expression, ForIndex, Statement, Subscript};
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -33,14 +32,6 @@ const MAX_CALLS: usize = 40;
 
 /// Most statements that one call may run where it can be compiled instead.
 pub(super) const MAX_INLINED: usize = 2_000;
-
-/// How a sequence of statements ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Flow {
-    Next,
-    Break,
-    Return,
-}
 
 /// The outputs of a call.
 pub(super) fn inline(
@@ -63,8 +54,14 @@ pub(super) fn inline(
         return refuse("calls itself without an end that is known at translation");
     }
     builder.calls.depth += 1;
-    let mut call =
-        Call { builder, function: function.clone(), locals: Vec::new(), unassigned: false };
+    let mut call = Call {
+        builder,
+        function: function.clone(),
+        locals: Vec::new(),
+        loops: Vec::new(),
+        unassigned: false,
+        statement: span,
+    };
     let result = call.run(function, statements, arguments, span);
     builder.calls.depth -= 1;
     result
@@ -76,6 +73,9 @@ struct Call<'a, 'b> {
     function: Arc<Function>,
     /// Variables with their values; NaN where nothing was assigned.
     locals: Vec<(Ident, Lowered<Expr>)>,
+    loops: Loops,
+    /// The statement being executed.
+    statement: Span,
     /// Whether a decision depended on a variable without value.
     unassigned: bool,
 }
@@ -84,7 +84,7 @@ impl Call<'_, '_> {
     fn run(
         &mut self,
         function: &Function,
-        statements: &[Statement],
+        algorithm: &[Statement],
         arguments: Vec<Lowered<Expr>>,
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
@@ -101,7 +101,7 @@ impl Call<'_, '_> {
             let value = Lowered::from_scalars(&shape, &mut scalars);
             self.locals.push((component.name, value));
         }
-        self.statements(statements, &mut Vec::new())?;
+        statements(self, algorithm)?;
         let outputs: Vec<Lowered<Expr>> = function
             .outputs
             .iter()
@@ -123,189 +123,35 @@ impl Call<'_, '_> {
         Ok(outputs)
     }
 
-    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Flow, Diagnostic> {
-        for statement in list {
-            let flow = self.statement(statement, loops)?;
-            if flow != Flow::Next {
-                return Ok(flow);
-            }
-        }
-        Ok(Flow::Next)
-    }
-
-    fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+    fn lowering(&mut self) -> Lowering<'_, Self> {
+        let loops = self.loops.clone();
         let mut lowering = Lowering::new(self);
-        lowering.loops = loops.clone();
+        lowering.loops = loops;
         lowering.live = true;
         lowering
     }
 
-    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
-        self.builder.calls.inlined = self.builder.calls.inlined.saturating_sub(1);
-        if self.builder.calls.inlined == 0 {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "functions in equations execute more than {MAX_STATEMENTS} statements"
-            )
-            .at(s.span));
-        }
-        match &s.kind {
-            StatementKind::Assign { target, value } => {
-                let value = self.lowering(loops).lower(value)?;
-                self.assign(target, value, loops)?;
-            }
-            StatementKind::MultiAssign { targets, value } => {
-                let ExpressionKind::Call { function, arguments } = &value.kind else {
-                    return Err(fault!(
-                        NOT_SUPPORTED,
-                        "a list of variables on the left side needs \
-                        a function call on the right side"
-                    )
-                    .at(s.span));
-                };
-                let name = function.name();
-                let Some(user) = self.function(&name) else {
-                    return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`")
-                        .at(function.span));
-                };
-                let outputs = self.lowering(loops).user_call(&user, arguments, s.span)?;
-                for (target, output) in targets.iter().zip(outputs) {
-                    if let Some(target) = target {
-                        self.assign(target, output, loops)?;
-                    }
-                }
-            }
-            StatementKind::If { branches, otherwise } => {
-                return self.branches(branches, otherwise, s.span, loops);
-            }
-            StatementKind::For { indices, body } => return self.repeat(indices, body, loops),
-            StatementKind::While { condition, body } => {
-                while self.lowering(loops).known(condition)? != 0.0 {
-                    match self.statements(body, loops)? {
-                        Flow::Next => {}
-                        Flow::Break => break,
-                        Flow::Return => return Ok(Flow::Return),
-                    }
-                    self.builder.calls.inlined = self.builder.calls.inlined.saturating_sub(1);
-                    if self.builder.calls.inlined == 0 {
-                        return Err(fault!(NOT_SUPPORTED, "this loop does not end").at(s.span));
-                    }
-                }
-            }
-            StatementKind::Break => return Ok(Flow::Break),
-            StatementKind::Return => return Ok(Flow::Return),
-            StatementKind::Call(call) => self.call_statement(call, loops)?,
-            StatementKind::When { .. } => {
-                return Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span));
-            }
-        }
-        Ok(Flow::Next)
-    }
-
-    fn branches(
-        &mut self,
-        branches: &[(Expression, Vec<Statement>)],
-        otherwise: &[Statement],
-        span: Span,
-        loops: &mut Loops,
-    ) -> Result<Flow, Diagnostic> {
-        let Some(((condition, body), rest)) = branches.split_first() else {
-            return self.statements(otherwise, loops);
-        };
-        let condition = self.lowering(loops).scalar(condition)?;
-        if let Some(known) = self.as_constant(condition) {
-            return match known != 0.0 {
-                true => self.statements(body, loops),
-                false => self.branches(rest, otherwise, span, loops),
-            };
-        }
-        let before = self.locals.clone();
-        let asserted = self.builder.dae.assertions.len();
-        let first = self.statements(body, loops);
-        self.builder.guard_assertions(asserted, condition);
-        let taken = std::mem::replace(&mut self.locals, before);
-        let not = self.unary(Unary::Not, condition);
-        let asserted = self.builder.dae.assertions.len();
-        let second = self.branches(rest, otherwise, span, loops);
-        self.builder.guard_assertions(asserted, not);
-        if (first?, second?) != (Flow::Next, Flow::Next) {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "`break` or `return` under a condition that depends on variables"
-            )
-            .at(span));
-        }
-        for ((_, local), (_, taken)) in self.locals.iter_mut().zip(&taken) {
-            merge(self.builder, condition, taken, local);
-        }
-        Ok(Flow::Next)
-    }
-
-    fn repeat(
-        &mut self,
-        indices: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<Flow, Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else {
-            return self.statements(body, loops);
-        };
-        for variable in self.lowering(loops).loop_variables(index)? {
-            loops.push(variable);
-            let flow = self.repeat(inner, body, loops);
-            loops.pop();
-            match flow? {
-                Flow::Next => {}
-                Flow::Break => break,
-                Flow::Return => return Ok(Flow::Return),
-            }
-        }
-        Ok(Flow::Next)
-    }
-
-    fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        if function.as_ident().is_some_and(|name| name == "assert") {
-            return self.assertion(call, arguments, loops);
-        }
-        match self.function(&function.name()) {
-            Some(user) if fails(&user) => {
-                let condition = self.builder.dae.pool.constant(0.0);
-                let text = nth(arguments, 0, "string");
-                self.assert_with(condition, Level::Error, text, call.span, loops);
-                Ok(())
-            }
-            Some(user) => {
-                let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
-                self.builder.unused(&outputs, call.span);
-                Ok(())
-            }
-            None => {
-                let name = function.name();
-                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span))
-            }
+    /// One more statement or iteration.
+    fn count(&mut self, refusal: impl FnOnce() -> Fault, span: Span) -> Result<(), Diagnostic> {
+        let left = &mut self.builder.calls.inlined;
+        *left = left.saturating_sub(1);
+        match left {
+            0 => Err(refusal().at(span)),
+            _ => Ok(()),
         }
     }
 
     fn assertion(
         &mut self,
-        call: &Expression,
-        arguments: &Arguments,
-        loops: &Loops,
+        AssertArguments { condition, message, level }: AssertArguments<'_>,
+        span: Span,
     ) -> Result<(), Diagnostic> {
-        let find = |position: usize, name: &str| {
-            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
-            arguments.positional.get(position).or(named)
-        };
-        let Some(condition) = find(0, "condition") else {
-            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
-        };
-        let level = match find(2, "level") {
-            Some(level) if self.lowering(loops).shaping(level)? == 1.0 => Level::Warning,
+        let level = match level {
+            Some(level) if self.lowering().shaping(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
-        let condition = self.lowering(loops).scalar(condition)?;
-        self.assert_with(condition, level, find(1, "message"), call.span, loops);
+        let condition = self.lowering().scalar(condition)?;
+        self.assert_with(condition, level, message, span);
         Ok(())
     }
 
@@ -316,10 +162,9 @@ impl Call<'_, '_> {
         level: Level,
         text: Option<&Expression>,
         span: Span,
-        loops: &Loops,
     ) {
         let asserted = self.builder.dae.assertions.len();
-        let parts = message_parts(&mut self.lowering(loops), text);
+        let parts = message_parts(&mut self.lowering(), text);
         self.builder.dae.assertions.truncate(asserted);
         self.builder.dae.assertions.push(Assertion::new(condition, parts, level, span));
     }
@@ -328,7 +173,6 @@ impl Call<'_, '_> {
         &mut self,
         target: &ComponentReference,
         value: Lowered<Expr>,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let (last, path) = match target.parts.split_last() {
             Some((last, path)) if path.iter().all(|part| part.subscripts.is_empty()) => {
@@ -347,7 +191,7 @@ impl Call<'_, '_> {
             }
             _ => Vec::new(),
         };
-        let positions = self.positions(&dims, &last.subscripts, target.span, loops)?;
+        let positions = self.positions(&dims, &last.subscripts, target.span)?;
         let place = self.local(&names).ok_or_else(unknown)?;
         let Some(positions) = positions else {
             if !place.fits(&value) {
@@ -385,13 +229,12 @@ impl Call<'_, '_> {
         dims: &[usize],
         subscripts: &[Subscript],
         span: Span,
-        loops: &Loops,
     ) -> Result<Option<Vec<usize>>, Diagnostic> {
         if subscripts.is_empty() {
             return Ok(None);
         }
         let mut positions = vec![0];
-        let mut choices = self.lowering(loops).choices(dims, subscripts, span)?.into_iter();
+        let mut choices = self.lowering().choices(dims, subscripts, span)?.into_iter();
         for size in dims {
             let chosen: Vec<usize> = match choices.next() {
                 Some(Choice::Known { positions, .. }) => positions,
@@ -474,6 +317,137 @@ fn check_rank(
         )
         .at(span)),
         _ => Ok(()),
+    }
+}
+
+/// Conditions that are not known merge what their branches assign.
+impl Domain for Call<'_, '_> {
+    type Condition = Expr;
+
+    fn statement(&mut self, statement: &Statement) -> Done<Self> {
+        let refusal = || {
+            fault!(
+                NOT_SUPPORTED,
+                "functions in equations execute more than {MAX_STATEMENTS} statements"
+            )
+        };
+        self.count(refusal, statement.span)?;
+        let around = std::mem::replace(&mut self.statement, statement.span);
+        let done = execute(self, statement);
+        self.statement = around;
+        done
+    }
+
+    fn assign_value(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let value = self.lowering().lower(value)?;
+        self.assign(target, value)
+    }
+
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
+            own.user_call(user, given, span)
+        })?;
+        outputs.into_iter().try_for_each(|(target, output)| self.assign(target, output))
+    }
+
+    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+        match CallStatement::new(self, call)? {
+            CallStatement::Assert(arguments) => self.assertion(arguments, call.span)?,
+            CallStatement::Fail(message) => {
+                let condition = self.builder.dae.pool.constant(0.0);
+                self.assert_with(condition, Level::Error, message, call.span);
+            }
+            CallStatement::Call(user, arguments) => {
+                let outputs = self.lowering().user_call(&user, arguments, call.span)?;
+                self.builder.unused(&outputs, call.span);
+            }
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, condition: &Expression) -> Result<Decision<Expr>, Diagnostic> {
+        let condition = self.lowering().scalar(condition)?;
+        Ok(match self.as_constant(condition) {
+            Some(known) => Decision::Known(known != 0.0),
+            None => Decision::Open(condition),
+        })
+    }
+
+    fn either(
+        &mut self,
+        condition: Expr,
+        first: impl FnOnce(&mut Self) -> Done<Self>,
+        second: impl FnOnce(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let before = self.locals.clone();
+        let asserted = self.builder.dae.assertions.len();
+        let first = first(self);
+        self.builder.guard_assertions(asserted, condition);
+        let taken = std::mem::replace(&mut self.locals, before);
+        let not = self.unary(Unary::Not, condition);
+        let asserted = self.builder.dae.assertions.len();
+        let second = second(self);
+        self.builder.guard_assertions(asserted, not);
+        if (first?, second?) != (Flow::Next, Flow::Next) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`break` or `return` under a condition that depends on variables"
+            )
+            .at(self.statement));
+        }
+        for ((_, local), (_, taken)) in self.locals.iter_mut().zip(&taken) {
+            merge(self.builder, condition, taken, local);
+        }
+        Ok(Flow::Next)
+    }
+
+    fn for_loop(
+        &mut self,
+        index: &ForIndex,
+        _: &[Statement],
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let mut variables = self.lowering().loop_variables(index)?.into_iter();
+        iterate(
+            self,
+            |_| Ok(variables.next()),
+            |call, variable| {
+                call.loops.push(variable);
+                let done = body(call);
+                call.loops.pop();
+                done
+            },
+        )
+    }
+
+    fn while_loop(
+        &mut self,
+        condition: &Expression,
+        span: Span,
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let mut is_first = true;
+        let next = |call: &mut Self| {
+            if !std::mem::replace(&mut is_first, false) {
+                call.count(|| fault!(NOT_SUPPORTED, "this loop does not end"), span)?;
+            }
+            Ok((call.lowering().known(condition)? != 0.0).then_some(()))
+        };
+        iterate(self, next, |call, ()| body(call))
+    }
+
+    fn when_statement(&mut self, _: &Branches, span: Span) -> Done<Self> {
+        Err(fault!(NOT_SUPPORTED, "`when` in a function").at(span))
     }
 }
 

@@ -12,6 +12,7 @@ mod algorithm;
 mod assigned_variables;
 mod build;
 mod builder;
+mod calls_of_statements;
 mod clocks;
 mod component_shape;
 mod dae;

@@ -20,7 +20,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("modelica/codegen/translation.rs", "instruction", PER_CASE),
     ("modelica/flatten/expressions/resolve.rs", "resolve_kind", PER_CASE),
     ("modelica/lower/expressions/expression.rs", "lower_kind", PER_CASE),
-    ("modelica/lower/inline.rs", "statement", PER_CASE),
     ("modelica/syntax/failure.rs", "described", PER_CASE),
     ("modelica/syntax/print/expression.rs", "expression", PER_CASE),
 ];
