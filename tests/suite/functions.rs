@@ -211,7 +211,7 @@ impl Host for Functions {
 }
 
 /// f(u, n) as the interpreter computes it.
-fn interpreted(library: &Library, u: f64, n: i64) -> f64 {
+pub(super) fn interpreted(library: &Library, u: f64, n: i64) -> f64 {
     let name = Name::parse("P.f");
     let functions = library.function(&name).expect("ready").expect("declared");
     let function = functions[&name].clone();

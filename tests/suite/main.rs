@@ -87,6 +87,7 @@ mod oracles;
 mod page;
 mod permissions;
 mod plot;
+mod random_functions;
 mod ranks;
 mod record_arrays;
 mod recorded_inputs;

@@ -53,26 +53,26 @@ impl Body<'_, '_> {
     /// The shape of the right side; its instructions are forgotten.
     fn shape_assigned(&mut self, assignment: &Assignment<'_>) -> Result<Option<Shape>, Diagnostic> {
         let before = self.emitter.checkpoint();
-        let branches = self.branches.len();
+        let (branches, loops) = (self.branches.len(), self.loops.len());
         self.emitter.open();
-        let mut loops = Vec::with_capacity(assignment.loops.len());
         for name in &assignment.loops {
             let value = Operand::Register(self.emitter.block(1));
-            loops.push(LoopVariable { name: *name, value, value_type: ValueType::Integer });
+            self.loops.push(LoopVariable { name: *name, value, value_type: ValueType::Integer });
         }
         let value = match (assignment.output, &assignment.value.kind) {
             (Some(output), ExpressionKind::Call { function, arguments }) => {
                 match self.function(&function.name()) {
                     Some(user) => self
-                        .lowering(&loops)
+                        .lowering()
                         .user_call(&user, arguments, assignment.value.span)
                         .map(|outputs| outputs.into_iter().nth(output)),
                     None => Ok(None),
                 }
             }
             (Some(_), _) => Ok(None),
-            (None, _) => self.lowering(&loops).lower(assignment.value).map(Some),
+            (None, _) => self.lowering().lower(assignment.value).map(Some),
         };
+        self.loops.truncate(loops);
         self.branches.truncate(branches);
         self.emitter.rollback(before);
         Ok(value?.as_ref().and_then(Lowered::shape))

@@ -33,7 +33,7 @@ impl Body<'_, '_> {
         self.emitter.open();
         let mut arguments = Vec::with_capacity(clause.arguments.len());
         for argument in &clause.arguments {
-            let value = self.lowering(&Vec::new()).lower(argument)?;
+            let value = self.lowering().lower(argument)?;
             let component = match &argument.kind {
                 ast::ExpressionKind::Reference(reference) => reference.as_ident(),
                 _ => None,
@@ -109,7 +109,7 @@ impl Body<'_, '_> {
         if let ast::ExpressionKind::Reference(own) = &mut within.kind {
             own.parts.splice(0..0, record.iter().cloned());
         }
-        match self.lowering(&Vec::new()).scalar(&within) {
+        match self.lowering().scalar(&within) {
             Ok(size) => Ok(Some(size)),
             Err(_) if !record.is_empty() => Ok(None),
             Err(error) => Err(error),

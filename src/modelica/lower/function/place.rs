@@ -2,7 +2,7 @@
 
 use super::emitter::Operand;
 use super::instances::Argument;
-use super::statements::{Body, Loops, elements};
+use super::statements::{Body, elements};
 use crate::bytecode::{Instruction, Register};
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, FunctionComponent};
@@ -81,7 +81,7 @@ impl Body<'_, '_> {
         let mut assigned_shape = |body: &mut Self, path: &[Ident]| body.assigned(path, statements);
         let is_assigned = assigned.contains(&component.name);
         let is_external = matches!(self.function.body, FunctionBody::External(_));
-        let lowering = &mut self.lowering(&Vec::new());
+        let lowering = &mut self.lowering();
         // Strings that change have numbers.
         lowering.composes &= is_assigned || is_external;
         let Declared { mut shape, mut scalars } =
@@ -147,7 +147,6 @@ impl Body<'_, '_> {
         &mut self,
         target: &ComponentReference,
         value: Lowered<Operand>,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let names: Vec<Ident> = target.parts.iter().map(|part| part.name).collect();
         let place = self.local(&names).cloned().ok_or_else(|| {
@@ -156,7 +155,7 @@ impl Body<'_, '_> {
         let value = self.with_numbers_like(value, &place, target.span)?;
         let subscripts = self.subscripts_of(target)?;
         if !subscripts.is_empty() {
-            return self.assign_elements(&place, &subscripts, &value, target, loops);
+            return self.assign_elements(&place, &subscripts, &value, target);
         }
         let mut scalars = Vec::new();
         value.append_scalars(&mut scalars);
@@ -236,21 +235,20 @@ impl Body<'_, '_> {
         subscripts: &[Subscript],
         value: &Lowered<Operand>,
         target: &ComponentReference,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
         if let (Lowered::Record(places), Lowered::Record(values)) = (place, value) {
             for (name, place) in places {
                 let Some((_, value)) = values.iter().find(|(field, _)| field == name) else {
                     continue;
                 };
-                self.assign_elements(place, subscripts, value, target, loops)?;
+                self.assign_elements(place, subscripts, value, target)?;
             }
             return Ok(());
         }
         let (Some(array), Some(value)) = (elements(place), elements(value)) else {
             return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
         };
-        let choices = self.lowering(loops).choices(&array.dims, subscripts, target.span)?;
+        let choices = self.lowering().choices(&array.dims, subscripts, target.span)?;
         let chosen = self.chosen(&array.dims, choices, target.span)?;
         if chosen.positions.len() != value.elements.len() {
             return Err(fault!(

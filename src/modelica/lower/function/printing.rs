@@ -2,7 +2,7 @@
 //! numbers that are known only when they are executed.
 
 use super::emitter::Operand;
-use super::statements::{Body, Loops};
+use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::Diagnostic;
 use crate::external::{FAIL, PRINT};
@@ -19,21 +19,20 @@ impl Body<'_, '_> {
         &mut self,
         arguments: &ast::Arguments,
         span: Span,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
         if self.instances.silent {
             return Ok(());
         }
         self.emitter.place(span);
         self.emitter.open();
-        let file = message_text(&mut self.lowering(loops), nth(arguments, 1, "fileName"));
+        let file = message_text(&mut self.lowering(), nth(arguments, 1, "fileName"));
         if file.contains(UNKNOWN_TEXT) {
             return Err(
                 fault!(NOT_SUPPORTED, "the name of the file must be known at translation").at(span)
             );
         }
         let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
-        let text = message_parts(&mut self.with_known_strings(loops), nth(arguments, 0, "string"));
+        let text = message_parts(&mut self.with_known_strings(), nth(arguments, 0, "string"));
         parts.extend(self.slots(&text));
         let call = ExternalCall::new(&PRINT, parts, None);
         let external = self.emitter.external(call);
@@ -43,13 +42,8 @@ impl Body<'_, '_> {
     }
 
     /// Warns with a text unless a condition holds.
-    pub(super) fn warn_unless(
-        &mut self,
-        condition: Operand,
-        text: Option<&ast::Expression>,
-        loops: &Loops,
-    ) {
-        let known = message_text(&mut self.with_known_strings(loops), text);
+    pub(super) fn warn_unless(&mut self, condition: Operand, text: Option<&ast::Expression>) {
+        let known = message_text(&mut self.with_known_strings(), text);
         let (a, message) = (self.emitter.register(condition), self.emitter.message(known.into()));
         self.emitter.emit(Instruction::Warn { a, message });
     }
@@ -60,9 +54,8 @@ impl Body<'_, '_> {
         condition: Operand,
         text: Option<&ast::Expression>,
         span: Span,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
-        let known = message_text(&mut self.with_known_strings(loops), text);
+        let known = message_text(&mut self.with_known_strings(), text);
         let a = self.emitter.register(condition);
         if !known.contains(UNKNOWN_TEXT) {
             let message = self.emitter.message(known.into());
@@ -73,7 +66,7 @@ impl Body<'_, '_> {
         let fails = self.emitter.block(1);
         self.emitter.emit(Instruction::Not { d: fails, a });
         let holds = self.emitter.jump_unless(Operand::Register(fails));
-        let parts = message_parts(&mut self.with_known_strings(loops), text);
+        let parts = message_parts(&mut self.with_known_strings(), text);
         let mut arguments = vec![self.slot(Lowered::Text(known.into()), None, span)?];
         arguments.extend(self.slots(&parts));
         let external = self.emitter.external(ExternalCall::new(&FAIL, arguments, None));

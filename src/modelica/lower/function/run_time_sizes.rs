@@ -6,10 +6,11 @@
 //! come first, as their code is shorter.
 
 use super::emitter::{Checkpoint, Operand};
-use super::statements::{Body, Loops};
+use super::statements::Body;
 use crate::bytecode::Instruction;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
+use crate::execute::execute;
 use crate::lower::errors::NO_CONSTANT_VALUE;
 use crate::lower::expressions::{Lowered, Target as _};
 use crate::name::Ident;
@@ -55,29 +56,20 @@ impl Body<'_, '_> {
     }
 
     /// A statement, some sizes in which may be known only at run time.
-    pub(super) fn statement_of_any_size(
-        &mut self,
-        s: &Statement,
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
+    pub(super) fn statement_of_any_size(&mut self, s: &Statement) -> Result<(), Diagnostic> {
         let mark = self.mark();
-        match self.statement(s, loops) {
+        match execute(self, s) {
             Err(e) if e.code == NO_CONSTANT_VALUE && self.instances.sizes_at_run_time => {
                 self.restore(&mark);
-                self.size_by_size(s, loops, e)
+                self.size_by_size(s, e)
             }
-            result => result,
+            result => result.map(|_| ()),
         }
     }
 
     /// The statement for each value of the first Integer that makes its sizes known, perhaps with
     /// others.
-    fn size_by_size(
-        &mut self,
-        s: &Statement,
-        loops: &mut Loops,
-        error: Diagnostic,
-    ) -> Result<(), Diagnostic> {
+    fn size_by_size(&mut self, s: &Statement, error: Diagnostic) -> Result<(), Diagnostic> {
         let is_simple = matches!(
             s.kind,
             StatementKind::Assign { .. }
@@ -95,9 +87,9 @@ impl Body<'_, '_> {
         let known_once = std::mem::take(&mut self.known_once);
         self.bound_integers += 1;
         let mut result = Err(error);
-        for name in self.deciding_integers(s, loops) {
+        for name in self.deciding_integers(s) {
             let mark = self.mark();
-            result = self.branch_by_branch(s, loops, name, largest + 1);
+            result = self.branch_by_branch(s, name, largest + 1);
             match &result {
                 Err(e) if e.code == NO_CONSTANT_VALUE => self.restore(&mark),
                 _ => break,
@@ -112,20 +104,19 @@ impl Body<'_, '_> {
     fn branch_by_branch(
         &mut self,
         s: &Statement,
-        loops: &mut Loops,
         name: Ident,
         largest: usize,
     ) -> Result<(), Diagnostic> {
-        let Some(integer) = self.integer(name, loops) else { return Ok(()) };
+        let Some(integer) = self.integer(name) else { return Ok(()) };
         let (mut ends, mut refused, mut n_possible) = (Vec::new(), None, 0);
         for number in 0..=largest {
             let mark = self.mark();
             let value = Operand::Constant(number as f64);
             let is_it = self.relation(RelationOperator::Equal, integer, value, true, s.span);
             let skip = self.emitter.jump_unless(is_it);
-            self.bind(name, value, loops);
-            let compiled = self.statement_of_any_size(s, loops);
-            self.bind(name, integer, loops);
+            self.bind(name, value);
+            let compiled = self.statement_of_any_size(s);
+            self.bind(name, integer);
             match compiled {
                 Ok(()) => {
                     n_possible += 1;
@@ -152,8 +143,8 @@ impl Body<'_, '_> {
     }
 
     /// The register of a scalar Integer of the function or of a loop.
-    fn integer(&self, name: Ident, loops: &Loops) -> Option<Operand> {
-        if let Some(variable) = loops.iter().rev().find(|variable| variable.name == name) {
+    fn integer(&self, name: Ident) -> Option<Operand> {
+        if let Some(variable) = self.loops.iter().rev().find(|variable| variable.name == name) {
             let is_free = self.loop_sizes && matches!(variable.value, Operand::Register(_));
             return is_free.then_some(variable.value);
         }
@@ -170,8 +161,8 @@ impl Body<'_, '_> {
     }
 
     /// Gives an Integer another operand.
-    fn bind(&mut self, name: Ident, operand: Operand, loops: &mut Loops) {
-        if let Some(own) = loops.iter_mut().rev().find(|own| own.name == name) {
+    fn bind(&mut self, name: Ident, operand: Operand) {
+        if let Some(own) = self.loops.iter_mut().rev().find(|own| own.name == name) {
             own.value = operand;
         } else if let Some((_, value)) = self.locals.iter_mut().find(|(own, _)| *own == name) {
             *value = Lowered::scalar(operand);
@@ -179,7 +170,7 @@ impl Body<'_, '_> {
     }
 
     /// Integers that the statement reads and does not assign, those in ranges first.
-    fn deciding_integers(&self, s: &Statement, loops: &Loops) -> Vec<Ident> {
+    fn deciding_integers(&self, s: &Statement) -> Vec<Ident> {
         let mut read = Names::default();
         read.statement(s);
         let assigned: Vec<Ident> = match &s.kind {
@@ -192,7 +183,7 @@ impl Body<'_, '_> {
         let mut found = Vec::new();
         for name in read.in_ranges.into_iter().chain(read.all) {
             let is_new = !found.contains(&name) && !assigned.contains(&name);
-            if is_new && self.integer(name, loops).is_some() {
+            if is_new && self.integer(name).is_some() {
                 found.push(name);
             }
         }

@@ -1,24 +1,22 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
-use super::external_kinds::{fails, prints};
+use super::external_kinds::prints;
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::execute::{self, Branches, Decision, Domain, Done, Flow};
 use crate::fault;
 use crate::flatten::FlatModel;
-use crate::lower::errors::{
-    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE,
-};
-use crate::lower::expressions::{Array, Lowered, Lowering, Target, nth};
-use crate::lower::loops::LoopVariable;
+use crate::lower::calls_of_statements::{AssertArguments, CallStatement, assigned_outputs};
+use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use crate::lower::expressions::{Array, Lowered, Lowering};
+use crate::lower::loops::{LoopVariable, Loops};
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
-};
+use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, ForIndex, Statement};
 use std::sync::Arc;
 
 /// A function being compiled.
@@ -31,6 +29,8 @@ pub(super) struct Body<'a, 'f> {
     pub(super) locals: Vec<(Ident, Lowered<Operand>)>,
     /// Jumps of if-expressions being written, innermost last.
     pub(super) branches: Vec<usize>,
+    /// The variables of the loops being written, innermost last.
+    pub(super) loops: Loops<Operand>,
     /// `break` of every loop being written, innermost last.
     pub(super) breaks: Vec<Vec<usize>>,
     pub(super) returns: Vec<usize>,
@@ -45,9 +45,6 @@ pub(super) struct Body<'a, 'f> {
     pub(super) composes: bool,
 }
 
-/// Loop variables, innermost last.
-pub(super) type Loops = crate::lower::loops::Loops<Operand>;
-
 impl<'a, 'f> Body<'a, 'f> {
     pub(super) fn new(
         flat: &'f FlatModel,
@@ -61,6 +58,7 @@ impl<'a, 'f> Body<'a, 'f> {
             emitter: Emitter::default(),
             locals: Vec::new(),
             branches: Vec::new(),
+            loops: Vec::new(),
             breaks: Vec::new(),
             returns: Vec::new(),
             n_inputs: 0,
@@ -77,7 +75,7 @@ impl<'a, 'f> Body<'a, 'f> {
             self.external(clause)?;
         }
         self.known_once = assigned_once(statements);
-        self.statements(statements, &mut Vec::new())?;
+        execute::statements(&mut self, statements)?;
         for jump in std::mem::take(&mut self.returns) {
             self.emitter.land(jump);
         }
@@ -134,69 +132,20 @@ impl<'a, 'f> Body<'a, 'f> {
         }
     }
 
-    pub(super) fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+    pub(super) fn lowering(&mut self) -> Lowering<'_, Self> {
+        let loops = self.loops.clone();
         let mut lowering = Lowering::new(self);
-        lowering.loops = loops.clone();
+        lowering.loops = loops;
         lowering.composes = lowering.target.composes;
         lowering.live = true;
         lowering
     }
 
     /// As [`Body::lowering`], for messages: what is not known of them is not computed.
-    pub(super) fn with_known_strings(&mut self, loops: &Loops) -> Lowering<'_, Self> {
-        let mut lowering = self.lowering(loops);
+    pub(super) fn with_known_strings(&mut self) -> Lowering<'_, Self> {
+        let mut lowering = self.lowering();
         lowering.composes = false;
         lowering
-    }
-
-    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<(), Diagnostic> {
-        for statement in list {
-            if self.emitter.len() > MAX_INSTRUCTIONS {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "this function needs more than {MAX_INSTRUCTIONS} instructions"
-                )
-                .at(statement.span));
-            }
-            self.emitter.place(statement.span);
-            self.emitter.open();
-            self.statement_of_any_size(statement, loops)?;
-            self.emitter.close();
-        }
-        Ok(())
-    }
-
-    pub(super) fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<(), Diagnostic> {
-        match &s.kind {
-            StatementKind::Assign { target, value } => {
-                let value = self.lowering(loops).lower(value)?;
-                if self.becomes_known(target, &value) {
-                    return Ok(());
-                }
-                self.assign(target, value, loops)
-            }
-            StatementKind::MultiAssign { targets, value } => {
-                self.assign_outputs(targets, value, loops)
-            }
-            StatementKind::If { branches, otherwise } => self.branches(branches, otherwise, loops),
-            StatementKind::For { indices, body } => self.for_loop(indices, body, loops),
-            StatementKind::While { condition, body } => self.while_loop(condition, body, loops),
-            StatementKind::Break => match self.breaks.last_mut() {
-                Some(breaks) => {
-                    breaks.push(self.emitter.jump());
-                    Ok(())
-                }
-                None => Err(fault!(NOT_SUPPORTED, "`break` outside a loop").at(s.span)),
-            },
-            StatementKind::Return => {
-                self.returns.push(self.emitter.jump());
-                Ok(())
-            }
-            StatementKind::Call(call) => self.call_statement(call, loops),
-            StatementKind::When { .. } => {
-                Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span))
-            }
-        }
     }
 
     /// Whether a local variable is a number from here on, which needs no register.
@@ -224,134 +173,19 @@ impl<'a, 'f> Body<'a, 'f> {
         }
     }
 
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        loops: &Loops,
-    ) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "a list of variables on the left side needs a function call on the right side"
-            )
-            .at(call.span));
-        };
-        let name = function.name();
-        let Some(user) = self.function(&name) else {
-            return Err(
-                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
-            );
-        };
-        let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
-        if outputs.len() < targets.len() {
-            return Err(
-                fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len()).at(call.span)
-            );
-        }
-        for (target, output) in targets.iter().zip(outputs) {
-            if let Some(target) = target {
-                self.assign(target, output, loops)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn branches(
-        &mut self,
-        branches: &[(Expression, Vec<Statement>)],
-        otherwise: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
-        let mut ends = Vec::new();
-        for (condition, body) in branches {
-            let condition = self.lowering(loops).scalar(condition)?;
-            match condition {
-                Operand::Constant(value) if value != 0.0 => {
-                    self.statements(body, loops)?;
-                    ends.into_iter().for_each(|end| self.emitter.land(end));
-                    return Ok(());
-                }
-                Operand::Constant(_) => continue,
-                Operand::Register(_) => {}
-            }
-            let skip = self.emitter.jump_unless(condition);
-            self.statements(body, loops)?;
-            ends.push(self.emitter.jump());
-            self.emitter.land(skip);
-        }
-        self.statements(otherwise, loops)?;
-        ends.into_iter().for_each(|end| self.emitter.land(end));
-        Ok(())
-    }
-
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
-        let start = self.emitter.len();
-        self.emitter.place(condition.span);
-        let condition = self.lowering(loops).scalar(condition)?;
-        let exit = match condition {
-            Operand::Constant(0.0) => return Ok(()),
-            Operand::Constant(_) => None,
-            register => Some(self.emitter.jump_unless(register)),
-        };
-        self.breaks.push(Vec::new());
-        self.statements(body, loops)?;
-        self.emitter.jump_to(start);
-        exit.into_iter().for_each(|exit| self.emitter.land(exit));
-        self.end_loop();
-        Ok(())
-    }
-
-    fn end_loop(&mut self) {
+    fn end_loop(&mut self) -> Flow<Operand> {
         for jump in self.breaks.pop().unwrap_or_default() {
             self.emitter.land(jump);
         }
-    }
-
-    /// As a loop; unrolled if the body needs sizes that change from iteration to iteration; where
-    /// that is not possible either, the statements with such sizes are written size by size.
-    fn for_loop(
-        &mut self,
-        indices: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
-        let Some((index, inner)) = indices.split_first() else {
-            return self.statements(body, loops);
-        };
-        let mark = self.mark();
-        let error = match self.counted(index, inner, body, loops) {
-            Err(e) if e.code == NO_CONSTANT_VALUE => e,
-            result => return result,
-        };
-        self.restore(&mark);
-        match self.unrolled(index, inner, body, loops) {
-            Err(e) if e.code == NO_CONSTANT_VALUE => {}
-            result => return result,
-        }
-        if !self.instances.sizes_at_run_time || self.loop_sizes {
-            return Err(error);
-        }
-        self.restore(&mark);
-        self.loop_sizes = true;
-        let result = self.counted(index, inner, body, loops);
-        self.loop_sizes = false;
-        result
+        Flow::Next
     }
 
     fn unrolled(
         &mut self,
         index: &ForIndex,
-        inner: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
-        let mut variables = self.lowering(loops).loop_variables(index)?;
+        body: &mut impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let mut variables = self.lowering().loop_variables(index)?;
         for LoopVariable { value, .. } in &mut variables {
             if let Operand::Register(_) = value {
                 *value = Operand::Register(self.emitter.copies(&[*value]));
@@ -359,23 +193,20 @@ impl<'a, 'f> Body<'a, 'f> {
         }
         self.breaks.push(Vec::new());
         for variable in variables {
-            loops.push(variable);
-            let iteration = self.for_loop(inner, body, loops);
-            loops.pop();
+            self.loops.push(variable);
+            let iteration = body(self);
+            self.loops.pop();
             iteration?;
         }
-        self.end_loop();
-        Ok(())
+        Ok(self.end_loop())
     }
 
     fn counted(
         &mut self,
         index: &ForIndex,
-        inner: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-    ) -> Result<(), Diagnostic> {
-        let range = self.iterated(index, loops)?;
+        body: &mut impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let range = self.iterated(index)?;
         let (counter, value) = (self.emitter.block(1), self.emitter.block(1));
         let one = self.emitter.register(Operand::Constant(1.0));
         let goes_on = self.emitter.block(1);
@@ -396,92 +227,209 @@ impl<'a, 'f> Body<'a, 'f> {
         }
         self.emitter.emit(Instruction::Add { d: counter, a: counter, b: one });
         self.breaks.push(Vec::new());
-        let value_type = self.lowering(loops).type_of_index(index);
+        let value_type = self.lowering().type_of_index(index);
         let value = Operand::Register(value);
-        loops.push(LoopVariable { name: index.name.node, value, value_type });
-        let iteration = self.for_loop(inner, body, loops);
-        loops.pop();
+        self.loops.push(LoopVariable { name: index.name.node, value, value_type });
+        let iteration = body(self);
+        self.loops.pop();
         iteration?;
         self.emitter.jump_to(start);
         self.emitter.land(exit);
-        self.end_loop();
-        Ok(())
+        Ok(self.end_loop())
     }
 
     /// What a loop runs over, computed once.
-    fn iterated(&mut self, index: &ForIndex, loops: &Loops) -> Result<Iterated, Diagnostic> {
+    fn iterated(&mut self, index: &ForIndex) -> Result<Iterated, Diagnostic> {
         if let Some(ExpressionKind::Range { start, step, stop }) =
             index.range.as_ref().map(|range| &range.kind)
         {
-            let start = self.lowering(loops).scalar(start)?;
+            let start = self.lowering().scalar(start)?;
             let step = match step {
-                Some(step) => self.lowering(loops).scalar(step)?,
+                Some(step) => self.lowering().scalar(step)?,
                 None => Operand::Constant(1.0),
             };
-            let stop = self.lowering(loops).scalar(stop)?;
+            let stop = self.lowering().scalar(stop)?;
             let first = self.emitter.copies(&[start, step, stop]);
             let iterations = self.emitter.block(1);
             self.emitter.emit(Instruction::Iterations { d: iterations, range: first });
             return Ok(Iterated::Range { first, iterations });
         }
-        let variables = self.lowering(loops).loop_variables(index)?;
+        let variables = self.lowering().loop_variables(index)?;
         let elements: Vec<_> = variables.iter().map(|variable| variable.value).collect();
         let first = self.emitter.copies(&elements);
         Ok(Iterated::Elements { first, n: elements.len() })
     }
 
-    fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
-        let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "this is not a statement").at(call.span));
-        };
-        if function.as_ident().is_some_and(|name| name == "assert") {
-            return self.assertion(arguments, call.span, loops);
-        }
-        let name = function.name();
-        match self.function(&name) {
-            Some(user) if prints(&user) => self.printing(arguments, call.span, loops),
-            Some(user) if fails(&user) => {
-                let text = nth(arguments, 0, "string");
-                self.fail_unless(Operand::Constant(0.0), text, call.span, loops)
-            }
-            Some(user) => {
-                self.lowering(loops).user_call(&user, arguments, call.span)?;
-                Ok(())
-            }
-            None => {
-                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span))
-            }
-        }
-    }
-
     fn assertion(
         &mut self,
-        arguments: &crate::syntax::ast::Arguments,
+        AssertArguments { condition, message, level }: AssertArguments<'_>,
         span: Span,
-        loops: &Loops,
     ) -> Result<(), Diagnostic> {
-        let find = |position: usize, name: &str| {
-            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
-            arguments.positional.get(position).or(named)
-        };
-        let Some(condition) = find(0, "condition") else {
-            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
-        };
-        let is_warning = match find(2, "level") {
-            Some(level) => self.lowering(loops).known(level)? == 1.0,
+        let is_warning = match level {
+            Some(level) => self.lowering().known(level)? == 1.0,
             None => false,
         };
-        let condition = self.lowering(loops).scalar(condition)?;
+        let condition = self.lowering().scalar(condition)?;
         if let Operand::Constant(value) = condition
             && value != 0.0
         {
             return Ok(());
         }
         match is_warning {
-            true => self.warn_unless(condition, find(1, "message"), loops),
-            false => self.fail_unless(condition, find(1, "message"), span, loops)?,
+            true => self.warn_unless(condition, message),
+            false => self.fail_unless(condition, message, span)?,
         }
         Ok(())
+    }
+}
+
+/// A condition that is not known is a jump. What is left by `break` and `return` is too: the walk goes
+/// on with the statement after it, which has its place in the code.
+impl Domain for Body<'_, '_> {
+    type Condition = Operand;
+
+    fn statement(&mut self, statement: &Statement) -> Done<Self> {
+        if self.emitter.len() > MAX_INSTRUCTIONS {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "this function needs more than {MAX_INSTRUCTIONS} instructions"
+            )
+            .at(statement.span));
+        }
+        self.emitter.place(statement.span);
+        self.emitter.open();
+        self.statement_of_any_size(statement)?;
+        self.emitter.close();
+        Ok(Flow::Next)
+    }
+
+    fn assign_value(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let value = self.lowering().lower(value)?;
+        match self.becomes_known(target, &value) {
+            true => Ok(()),
+            false => self.assign(target, value),
+        }
+    }
+
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+        _: Span,
+    ) -> Result<(), Diagnostic> {
+        let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
+            own.user_call(user, given, call.span)
+        })?;
+        outputs.into_iter().try_for_each(|(target, output)| self.assign(target, output))
+    }
+
+    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+        match CallStatement::new(self, call)? {
+            CallStatement::Assert(arguments) => self.assertion(arguments, call.span),
+            CallStatement::Fail(message) => {
+                self.fail_unless(Operand::Constant(0.0), message, call.span)
+            }
+            CallStatement::Call(user, arguments) if prints(&user) => {
+                self.printing(arguments, call.span)
+            }
+            CallStatement::Call(user, arguments) => {
+                self.lowering().user_call(&user, arguments, call.span).map(|_| ())
+            }
+        }
+    }
+
+    fn decide(&mut self, condition: &Expression) -> Result<Decision<Operand>, Diagnostic> {
+        Ok(match self.lowering().scalar(condition)? {
+            Operand::Constant(value) => Decision::Known(value != 0.0),
+            register => Decision::Open(register),
+        })
+    }
+
+    fn either(
+        &mut self,
+        condition: Operand,
+        first: impl FnOnce(&mut Self) -> Done<Self>,
+        second: impl FnOnce(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let skip = self.emitter.jump_unless(condition);
+        first(self)?;
+        let end = self.emitter.jump();
+        self.emitter.land(skip);
+        second(self)?;
+        self.emitter.land(end);
+        Ok(Flow::Next)
+    }
+
+    /// As a loop; unrolled if the body needs sizes that change from iteration to iteration; where
+    /// that is not possible either, the statements with such sizes are written size by size.
+    fn for_loop(
+        &mut self,
+        index: &ForIndex,
+        _: &[Statement],
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let mark = self.mark();
+        let error = match self.counted(index, &mut body) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => e,
+            result => return result,
+        };
+        self.restore(&mark);
+        match self.unrolled(index, &mut body) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => {}
+            result => return result,
+        }
+        if !self.instances.sizes_at_run_time || self.loop_sizes {
+            return Err(error);
+        }
+        self.restore(&mark);
+        self.loop_sizes = true;
+        let result = self.counted(index, &mut body);
+        self.loop_sizes = false;
+        result
+    }
+
+    fn while_loop(
+        &mut self,
+        condition: &Expression,
+        _: Span,
+        mut body: impl FnMut(&mut Self) -> Done<Self>,
+    ) -> Done<Self> {
+        let start = self.emitter.len();
+        self.emitter.place(condition.span);
+        let exit = match self.decide(condition)? {
+            Decision::Known(false) => return Ok(Flow::Next),
+            Decision::Known(true) => None,
+            Decision::Open(register) => Some(self.emitter.jump_unless(register)),
+        };
+        self.breaks.push(Vec::new());
+        body(self)?;
+        self.emitter.jump_to(start);
+        exit.into_iter().for_each(|exit| self.emitter.land(exit));
+        Ok(self.end_loop())
+    }
+
+    fn when_statement(&mut self, _: &Branches, span: Span) -> Done<Self> {
+        Err(fault!(NOT_SUPPORTED, "`when` in a function").at(span))
+    }
+
+    fn leave_loop(&mut self, span: Span) -> Done<Self> {
+        match self.breaks.last_mut() {
+            Some(breaks) => {
+                breaks.push(self.emitter.jump());
+                Ok(Flow::Next)
+            }
+            None => Err(fault!(NOT_SUPPORTED, "`break` outside a loop").at(span)),
+        }
+    }
+
+    fn leave_function(&mut self, _: Span) -> Done<Self> {
+        self.returns.push(self.emitter.jump());
+        Ok(Flow::Next)
     }
 }
 
