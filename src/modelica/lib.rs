@@ -7,7 +7,8 @@
 //!
 //! - [`syntax`], [`mod@format`]: the grammar of classes and scripts, trees, printing, layout;
 //! - [`value`], [`functions`], [`external`], [`eval`]: values, the functions and operators of the
-//!   language, `external` functions of libraries, the interpreter;
+//!   language, `external` functions of libraries, the interpreter; `execute`: the walk of statements
+//!   that the interpreter, equations and the code of functions share;
 //! - `names`: the lookup of names; [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
 //!   equations;
 //! - [`symbolic`], [`causalize`]: scalar expressions; index reduction, block lower triangular form,

@@ -61,12 +61,10 @@ fn statement(place: Place) -> BoxedStrategy<String> {
     let within = Place { iterators: place.iterators + 1, in_loop: true, ..place };
     let iterator = within.iterators;
     let stop = prop::sample::select(vec!["0", "1", "3", "n"]);
-    let repeated = (stop, body(within)).prop_map(move |(stop, body)| {
-        format!("for i{iterator} in 1:{stop} loop {body}end for; ")
-    });
-    let conditional = (1..4, body(Place { in_loop: true, ..place })).prop_map(|(most, body)| {
-        format!("while k < {most} loop k := k + 1; {body}end while; ")
-    });
+    let repeated = (stop, body(within))
+        .prop_map(move |(stop, body)| format!("for i{iterator} in 1:{stop} loop {body}end for; "));
+    let conditional = (1..4, body(Place { in_loop: true, ..place }))
+        .prop_map(|(most, body)| format!("while k < {most} loop k := k + 1; {body}end while; "));
     let left = condition(place).prop_map(|c| format!("if {c} then break; end if; "));
     let returned = condition(place).prop_map(|c| format!("if {c} then return; end if; "));
     prop_oneof![

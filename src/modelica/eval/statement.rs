@@ -5,7 +5,9 @@ use super::deduction::Body;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
 use super::function::Target;
 use crate::diag::{Diagnostic, Fault};
-use crate::execute::{Branches, Decision, Domain, Done, Flow, if_statement, iterate};
+use crate::execute::{
+    Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets, if_statement,
+};
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -20,28 +22,23 @@ impl Domain for Evaluator<'_> {
 
     fn assign_value(
         &mut self,
-        target: &ComponentReference,
+        to: &ComponentReference,
         value: &Expression,
         span: Span,
-    ) -> Result<(), Diagnostic> {
-        let done = self.value_to_assign(target, value);
-        let done = done.and_then(|new| self.assign(target, new, span));
-        done.inspect_err(|_| self.lose([target]))
+    ) -> Executed {
+        let done = self.value_to_assign(to, value);
+        let done = done.and_then(|new| self.assign(to, new, span));
+        done.inspect_err(|_| self.lose([to]))
     }
 
     /// `(a, , b) := f(x)` (MLS §11.2.1.1)
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_outputs(&mut self, targets: &Targets, call: &Expression) -> Executed {
         let done = self.assign_each(targets, call);
         done.inspect_err(|_| self.lose(targets.iter().flatten()))
     }
 
-    fn call_statement(&mut self, call: &Expression, span: Span) -> Result<(), Diagnostic> {
-        self.check_interrupted(span)?;
+    fn call_statement(&mut self, call: &Expression) -> Executed {
+        self.check_interrupted(call.span)?;
         self.outputs(call).map(|_| ())
     }
 
@@ -58,56 +55,42 @@ impl Domain for Evaluator<'_> {
         match condition {}
     }
 
-    fn for_loop(
-        &mut self,
-        index: &ForIndex,
-        statements: &[Statement],
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
-        let range = self.iterated(index, Body::Statements(statements))?;
-        let (count, mut iterations) = (range.count(), 0..range.count());
+    fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
+        let range = self.iterated(index, Body::Statements(body.statements))?;
         let watched = self.is_outermost_of_script();
         let depth = self.scope.iterators.len();
         self.scope.loops += 1;
-        let next = |evaluator: &mut Self| {
-            let Some(iteration) = iterations.next() else { return Ok(None) };
+        let mut iterations = 0..range.count();
+        let result = body.repeat(self, |evaluator| {
+            let Some(iteration) = iterations.next() else { return Ok(false) };
             evaluator.check_interrupted(index.name.span)?;
             if watched {
-                evaluator.host.loop_iteration(iteration, Some(count));
+                evaluator.host.loop_iteration(iteration, Some(range.count()));
             }
-            Ok(Some(iteration))
-        };
-        let result = iterate(self, next, |evaluator, iteration| {
             evaluator.scope.iterators.truncate(depth);
             evaluator.scope.iterators.push((index.name.node, range.get(iteration)));
-            body(evaluator)
+            Ok(true)
         });
         self.scope.iterators.truncate(depth);
         self.scope.loops -= 1;
         result
     }
 
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        _: Span,
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn while_loop(&mut self, condition: &Expression, body: Iteration<'_>) -> Done<Self> {
         let watched = self.is_outermost_of_script();
         self.scope.loops += 1;
-        let mut iterations = 0..;
-        let next = |evaluator: &mut Self| {
+        let mut iteration = 0;
+        let result = body.repeat(self, |evaluator| {
             if !evaluator.condition(condition)? {
-                return Ok(None);
+                return Ok(false);
             }
             evaluator.check_interrupted(condition.span)?;
-            let iteration = iterations.next();
-            if let Some(iteration) = iteration.filter(|_| watched) {
+            if watched {
                 evaluator.host.loop_iteration(iteration, None);
             }
-            Ok(iteration)
-        };
-        let result = iterate(self, next, |evaluator, _| body(evaluator));
+            iteration += 1;
+            Ok(true)
+        });
         self.scope.loops -= 1;
         result
     }
@@ -178,11 +161,7 @@ impl Evaluator<'_> {
         }
     }
 
-    fn assign_each(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-    ) -> Result<(), Diagnostic> {
+    fn assign_each(&mut self, targets: &Targets, call: &Expression) -> Executed {
         if !matches!(call.kind, ExpressionKind::Call { .. }) {
             let message = "only the outputs of a function call can be assigned to a list";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));

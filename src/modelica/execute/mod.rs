@@ -40,6 +40,12 @@ pub enum Decision<C> {
 /// The branches of `if` or `when`: conditions with statements.
 pub type Branches = [(Expression, Vec<Statement>)];
 
+/// The variables that the outputs of a call are assigned to, as far as they are.
+pub type Targets = [Option<ComponentReference>];
+
+/// Why a statement after which the next one follows cannot be executed.
+pub type Executed = Result<(), Diagnostic>;
+
 /// How a statement ended, or why it cannot be executed.
 pub type Done<D> = Result<Flow<<D as Domain>::Condition>, Diagnostic>;
 
@@ -52,22 +58,12 @@ pub trait Domain: Sized {
     fn statement(&mut self, statement: &Statement) -> Done<Self> {
         execute(self, statement)
     }
-    /// `target := value`
-    fn assign_value(
-        &mut self,
-        target: &ComponentReference,
-        value: &Expression,
-        span: Span,
-    ) -> Result<(), Diagnostic>;
+    /// `to := value`
+    fn assign_value(&mut self, to: &ComponentReference, value: &Expression, at: Span) -> Executed;
     /// `(a, , b) := f(x)`
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        span: Span,
-    ) -> Result<(), Diagnostic>;
+    fn assign_outputs(&mut self, targets: &Targets, call: &Expression) -> Executed;
     /// A call as a statement.
-    fn call_statement(&mut self, call: &Expression, span: Span) -> Result<(), Diagnostic>;
+    fn call_statement(&mut self, call: &Expression) -> Executed;
     /// The condition of a branch.
     fn decide(&mut self, condition: &Expression) -> Result<Decision<Self::Condition>, Diagnostic>;
     /// The first where a condition holds, else the second.
@@ -77,20 +73,10 @@ pub trait Domain: Sized {
         first: impl FnOnce(&mut Self) -> Done<Self>,
         second: impl FnOnce(&mut Self) -> Done<Self>,
     ) -> Done<Self>;
-    /// `for index loop statements`, of which `body` executes one iteration.
-    fn for_loop(
-        &mut self,
-        index: &ForIndex,
-        statements: &[Statement],
-        body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self>;
-    /// `while condition loop`, of which `body` executes one iteration.
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        span: Span,
-        body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self>;
+    /// `for index loop`
+    fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self>;
+    /// `while condition loop`
+    fn while_loop(&mut self, condition: &Expression, body: Iteration<'_>) -> Done<Self>;
     /// `when`
     fn when_statement(&mut self, branches: &Branches, span: Span) -> Done<Self>;
     /// `break`
@@ -142,19 +128,20 @@ pub fn execute<D: Domain>(domain: &mut D, statement: &Statement) -> Done<D> {
             domain.assign_value(target, value, statement.span)?;
         }
         StatementKind::MultiAssign { targets, value } => {
-            domain.assign_outputs(targets, value, statement.span)?;
+            domain.assign_outputs(targets, value)?;
         }
-        StatementKind::Call(call) => domain.call_statement(call, statement.span)?,
+        StatementKind::Call(call) => domain.call_statement(call)?,
         StatementKind::If { branches, otherwise } => {
             return if_statement(domain, branches, otherwise);
         }
         StatementKind::For { indices, body } => {
-            let done = for_statement(domain, indices, body);
+            let loops = Iteration { indices, statements: body, span: statement.span };
+            let done = loops.execute(domain);
             return done.inspect_err(|error| domain.leave_out(body, error));
         }
         StatementKind::While { condition, body } => {
-            let done =
-                domain.while_loop(condition, statement.span, |domain| statements(domain, body));
+            let iteration = Iteration { indices: &[], statements: body, span: statement.span };
+            let done = domain.while_loop(condition, iteration);
             return done.inspect_err(|error| domain.leave_out(body, error));
         }
         StatementKind::When { branches } => {
@@ -193,30 +180,40 @@ pub fn if_statement<D: Domain>(
     statements(domain, otherwise)
 }
 
-fn for_statement<D: Domain>(domain: &mut D, indices: &[ForIndex], body: &[Statement]) -> Done<D> {
-    match indices.split_first() {
-        None => statements(domain, body),
-        Some((index, inner)) => {
-            domain.for_loop(index, body, |domain| for_statement(domain, inner, body))
-        }
-    }
+/// What a loop repeats: its statements, perhaps in loops over further indices.
+#[derive(Debug, Clone, Copy)]
+pub struct Iteration<'s> {
+    indices: &'s [ForIndex],
+    /// The statements.
+    pub statements: &'s [Statement],
+    /// The place of the loop.
+    pub span: Span,
 }
 
-/// Executes iterations in order, until there are no more or one leaves the loop. `next` gives what
-/// an iteration begins with.
-pub fn iterate<D: Domain, I>(
-    domain: &mut D,
-    mut next: impl FnMut(&mut D) -> Result<Option<I>, Diagnostic>,
-    mut body: impl FnMut(&mut D, I) -> Done<D>,
-) -> Done<D> {
-    let mut flow = Flow::Next;
-    while let Some(iteration) = next(domain)? {
-        flow = go_on(domain, flow, |domain| body(domain, iteration))?;
-        match flow {
-            Flow::Next | Flow::BreakIf(_) => {}
-            Flow::Break => break,
-            Flow::Return => return Ok(Flow::Return),
+impl Iteration<'_> {
+    /// Executes it once.
+    pub fn execute<D: Domain>(self, domain: &mut D) -> Done<D> {
+        match self.indices.split_first() {
+            None => statements(domain, self.statements),
+            Some((index, indices)) => domain.for_loop(index, Iteration { indices, ..self }),
         }
     }
-    Ok(Flow::Next)
+
+    /// Executes it as often as there is a next one, unless the loop is left.
+    pub fn repeat<D: Domain>(
+        self,
+        domain: &mut D,
+        mut next: impl FnMut(&mut D) -> Result<bool, Diagnostic>,
+    ) -> Done<D> {
+        let mut flow = Flow::Next;
+        while next(domain)? {
+            flow = go_on(domain, flow, |domain| self.execute(domain))?;
+            match flow {
+                Flow::Next | Flow::BreakIf(_) => {}
+                Flow::Break => break,
+                Flow::Return => return Ok(Flow::Return),
+            }
+        }
+        Ok(Flow::Next)
+    }
 }

@@ -18,7 +18,7 @@ use super::shape::UNKNOWN_TEXT;
 use super::statement_function::may_be_a_function;
 use super::when::is_initial;
 use crate::diag::Diagnostic;
-use crate::execute::{self, Branches, Decision, Domain, Done, Flow, iterate};
+use crate::execute::{self, Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets};
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
@@ -158,33 +158,22 @@ impl Domain for Algorithm<'_, '_> {
     fn statement(&mut self, statement: &Statement) -> Done<Self> {
         self.count(statement.span)?;
         match &statement.kind {
-            StatementKind::Assign { .. } => self.assignment_or_function(statement),
-            StatementKind::For { .. } | StatementKind::While { .. } => {
-                self.loop_or_function(statement)
-            }
+            StatementKind::Assign { .. }
+            | StatementKind::For { .. }
+            | StatementKind::While { .. } => self.or_function(statement),
             _ => execute::execute(self, statement),
         }
     }
 
-    fn assign_value(
-        &mut self,
-        target: &ComponentReference,
-        value: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_value(&mut self, to: &ComponentReference, value: &Expression, _: Span) -> Executed {
         let asserted = self.builder.dae.assertions.len();
         let value = self.value(value)?;
-        self.assign(target, value)?;
+        self.assign(to, value)?;
         self.builder.guard_new_assertions(asserted);
         Ok(())
     }
 
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_outputs(&mut self, targets: &Targets, call: &Expression) -> Executed {
         let asserted = self.builder.dae.assertions.len();
         let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
             own.outputs_for(targets, user, given, call.span)
@@ -195,7 +184,7 @@ impl Domain for Algorithm<'_, '_> {
     }
 
     /// `assert`, `terminate`
-    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+    fn call_statement(&mut self, call: &Expression) -> Executed {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
         let Algorithm { builder, loops } = self;
         let (in_when, asserted) = (builder.place.in_when, builder.dae.assertions.len());
@@ -250,36 +239,24 @@ impl Domain for Algorithm<'_, '_> {
         })
     }
 
-    fn for_loop(
-        &mut self,
-        index: &ForIndex,
-        _: &[Statement],
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let mut variables = self.lowering().loop_variables(index)?.into_iter();
-        let next = |own: &mut Self| match variables.next() {
-            Some(variable) => own.count(index.name.span).map(|()| Some(variable)),
-            None => Ok(None),
-        };
-        iterate(self, next, |own, variable| {
+        let outside = self.loops.len();
+        let done = body.repeat(self, |own| {
+            own.loops.truncate(outside);
+            let Some(variable) = variables.next() else { return Ok(false) };
             own.loops.push(variable);
-            let done = body(own);
-            own.loops.pop();
-            done
-        })
+            own.count(index.name.span).map(|()| true)
+        });
+        self.loops.truncate(outside);
+        done
     }
 
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        span: Span,
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
-        let next = |own: &mut Self| match own.lowering().known(condition)? != 0.0 {
-            true => own.count(span).map(Some),
-            false => Ok(None),
-        };
-        iterate(self, next, |own, ()| body(own))
+    fn while_loop(&mut self, condition: &Expression, body: Iteration<'_>) -> Done<Self> {
+        body.repeat(self, |own| match own.lowering().known(condition)? != 0.0 {
+            true => own.count(body.span).map(|()| true),
+            false => Ok(false),
+        })
     }
 
     fn when_statement(&mut self, branches: &Branches, span: Span) -> Done<Self> {
@@ -307,43 +284,30 @@ impl<'b> Algorithm<'_, 'b> {
         }
     }
 
-    /// An assignment is evaluated, or else a function.
-    fn assignment_or_function(&mut self, statement: &Statement) -> Done<Self> {
-        let asserted = self.builder.dae.assertions.len();
-        match execute::execute(self, statement) {
-            Err(error) if may_be_a_function(&error) => {
-                self.builder.dae.assertions.truncate(asserted);
-                let called = self.builder.call_of_statement(statement, &self.loops);
-                called.map_err(|_| error)?;
-                self.builder.guard_new_assertions(asserted);
-                Ok(Flow::Next)
-            }
-            done => done,
-        }
-    }
-
-    /// A loop is unrolled, or else a function.
-    fn loop_or_function(&mut self, statement: &Statement) -> Done<Self> {
-        // In an unrolled loop, the whole statement becomes a function instead.
-        if !self.loops.is_empty() {
+    /// A loop is unrolled, an assignment evaluated; or else they are functions.
+    fn or_function(&mut self, statement: &Statement) -> Done<Self> {
+        let is_loop = !matches!(statement.kind, StatementKind::Assign { .. });
+        if is_loop && !self.loops.is_empty() {
+            // In an unrolled loop, the whole statement becomes a function instead.
             return execute::execute(self, statement);
         }
-        let before = self.builder.execution.values.clone();
+        let before = is_loop.then(|| self.builder.execution.values.clone());
         let asserted = self.builder.dae.assertions.len();
         let guards = self.builder.execution.guards.len();
-        match execute::execute(self, statement) {
-            Err(error) if may_be_a_function(&error) => {
-                self.builder.dae.assertions.truncate(asserted);
-                self.builder.execution.values = before;
-                self.builder.execution.guards.truncate(guards);
-                let called = self.builder.call_of_statement(statement, &self.loops);
-                // A loop whose end is not known must be a function; else its body is not possible.
-                called.map_err(|why| if error.code == NO_CONSTANT_VALUE { why } else { error })?;
-                self.builder.guard_new_assertions(asserted);
-                Ok(Flow::Next)
-            }
-            done => done,
-        }
+        let error = match execute::execute(self, statement) {
+            Err(error) if may_be_a_function(&error) => error,
+            done => return done,
+        };
+        let Builder { dae, execution, .. } = &mut *self.builder;
+        dae.assertions.truncate(asserted);
+        execution.values = before.unwrap_or_else(|| std::mem::take(&mut execution.values));
+        execution.guards.truncate(guards);
+        // A loop whose end is not known must be a function; else its body is not possible.
+        let is_open = is_loop && error.code == NO_CONSTANT_VALUE;
+        let called = self.builder.call_of_statement(statement, &self.loops);
+        called.map_err(|why| if is_open { why } else { error })?;
+        self.builder.guard_new_assertions(asserted);
+        Ok(Flow::Next)
     }
 
     fn value(&mut self, value: &Expression) -> Result<Lowered<Expr>, Diagnostic> {

@@ -1,6 +1,7 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
 use super::builder::{Builder, Folding};
+use super::calls_of_statements::AssertArguments;
 use super::dae::{Dae, StateSelect, Variable, VariableKind};
 use super::equation::{Assertion, Equation, Instance, Level};
 use super::errors::{
@@ -591,25 +592,19 @@ impl<'a> Builder<'a> {
         span: Span,
         loops: &[LoopVariable<Expr>],
     ) -> Result<(), Diagnostic> {
-        let find = |position: usize, name: &str| {
-            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
-            arguments.positional.get(position).or(named)
-        };
-        let Some(condition) = find(0, "condition") else {
-            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
-        };
+        let AssertArguments { condition, message, level } = AssertArguments::new(arguments, span)?;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = true;
         let condition = lowering.scalar(condition)?;
-        let level = match find(2, "level") {
+        let level = match level {
             Some(level) if lowering.shaping(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
         let condition = up_to_rounding(&mut lowering.target.dae.pool, condition);
         // What a message reads need not hold where the condition does.
         let asserted = lowering.target.dae.assertions.len();
-        let parts = message_parts(&mut lowering, find(1, "message"));
+        let parts = message_parts(&mut lowering, message);
         self.dae.assertions.truncate(asserted);
         self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())

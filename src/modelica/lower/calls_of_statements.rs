@@ -6,6 +6,7 @@ use super::expressions::{Lowered, Lowering, Target, nth};
 use super::function::fails;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
+use crate::execute::Targets;
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
@@ -74,7 +75,7 @@ fn called(
 /// The outputs that a `call` gives, with the variables that they are assigned to.
 pub(super) fn assigned_outputs<'t, T: Target>(
     lowering: &mut Lowering<'_, T>,
-    targets: &'t [Option<ComponentReference>],
+    targets: &'t Targets,
     value: &Expression,
     call: impl FnOnce(
         &mut Lowering<'_, T>,

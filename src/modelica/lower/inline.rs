@@ -17,7 +17,9 @@ use super::function::{component_type, local_value};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use crate::execute::{Branches, Decision, Domain, Done, Flow, execute, iterate, statements};
+use crate::execute::{
+    Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets, execute, statements,
+};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -338,29 +340,19 @@ impl Domain for Call<'_, '_> {
         done
     }
 
-    fn assign_value(
-        &mut self,
-        target: &ComponentReference,
-        value: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_value(&mut self, to: &ComponentReference, value: &Expression, _: Span) -> Executed {
         let value = self.lowering().lower(value)?;
-        self.assign(target, value)
+        self.assign(to, value)
     }
 
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        span: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_outputs(&mut self, targets: &Targets, call: &Expression) -> Executed {
         let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
-            own.user_call(user, given, span)
+            own.user_call(user, given, call.span)
         })?;
         outputs.into_iter().try_for_each(|(target, output)| self.assign(target, output))
     }
 
-    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+    fn call_statement(&mut self, call: &Expression) -> Executed {
         match CallStatement::new(self, call)? {
             CallStatement::Assert(arguments) => self.assertion(arguments, call.span)?,
             CallStatement::Fail(message) => {
@@ -411,39 +403,26 @@ impl Domain for Call<'_, '_> {
         Ok(Flow::Next)
     }
 
-    fn for_loop(
-        &mut self,
-        index: &ForIndex,
-        _: &[Statement],
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let mut variables = self.lowering().loop_variables(index)?.into_iter();
-        iterate(
-            self,
-            |_| Ok(variables.next()),
-            |call, variable| {
-                call.loops.push(variable);
-                let done = body(call);
-                call.loops.pop();
-                done
-            },
-        )
+        let outside = self.loops.len();
+        let done = body.repeat(self, |call| {
+            call.loops.truncate(outside);
+            call.loops.extend(variables.next());
+            Ok(call.loops.len() > outside)
+        });
+        self.loops.truncate(outside);
+        done
     }
 
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        span: Span,
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn while_loop(&mut self, condition: &Expression, body: Iteration<'_>) -> Done<Self> {
         let mut is_first = true;
-        let next = |call: &mut Self| {
+        body.repeat(self, |call| {
             if !std::mem::replace(&mut is_first, false) {
-                call.count(|| fault!(NOT_SUPPORTED, "this loop does not end"), span)?;
+                call.count(|| fault!(NOT_SUPPORTED, "this loop does not end"), body.span)?;
             }
-            Ok((call.lowering().known(condition)? != 0.0).then_some(()))
-        };
-        iterate(self, next, |call, ()| body(call))
+            Ok(call.lowering().known(condition)? != 0.0)
+        })
     }
 
     fn when_statement(&mut self, _: &Branches, span: Span) -> Done<Self> {

@@ -7,7 +7,7 @@ use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use crate::execute::{self, Branches, Decision, Domain, Done, Flow};
+use crate::execute::{self, Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::lower::calls_of_statements::{AssertArguments, CallStatement, assigned_outputs};
@@ -180,11 +180,7 @@ impl<'a, 'f> Body<'a, 'f> {
         Flow::Next
     }
 
-    fn unrolled(
-        &mut self,
-        index: &ForIndex,
-        body: &mut impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn unrolled(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let mut variables = self.lowering().loop_variables(index)?;
         for LoopVariable { value, .. } in &mut variables {
             if let Operand::Register(_) = value {
@@ -194,18 +190,14 @@ impl<'a, 'f> Body<'a, 'f> {
         self.breaks.push(Vec::new());
         for variable in variables {
             self.loops.push(variable);
-            let iteration = body(self);
+            let iteration = body.execute(self);
             self.loops.pop();
             iteration?;
         }
         Ok(self.end_loop())
     }
 
-    fn counted(
-        &mut self,
-        index: &ForIndex,
-        body: &mut impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn counted(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let range = self.iterated(index)?;
         let (counter, value) = (self.emitter.block(1), self.emitter.block(1));
         let one = self.emitter.register(Operand::Constant(1.0));
@@ -230,7 +222,7 @@ impl<'a, 'f> Body<'a, 'f> {
         let value_type = self.lowering().type_of_index(index);
         let value = Operand::Register(value);
         self.loops.push(LoopVariable { name: index.name.node, value, value_type });
-        let iteration = body(self);
+        let iteration = body.execute(self);
         self.loops.pop();
         iteration?;
         self.emitter.jump_to(start);
@@ -283,8 +275,8 @@ impl<'a, 'f> Body<'a, 'f> {
     }
 }
 
-/// A condition that is not known is a jump. What is left by `break` and `return` is too: the walk goes
-/// on with the statement after it, which has its place in the code.
+/// A condition that is not known is a jump, and so are `break` and `return`: the walk continues with the
+/// statement after them, which has its place in the code.
 impl Domain for Body<'_, '_> {
     type Condition = Operand;
 
@@ -303,32 +295,22 @@ impl Domain for Body<'_, '_> {
         Ok(Flow::Next)
     }
 
-    fn assign_value(
-        &mut self,
-        target: &ComponentReference,
-        value: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_value(&mut self, to: &ComponentReference, value: &Expression, _: Span) -> Executed {
         let value = self.lowering().lower(value)?;
-        match self.becomes_known(target, &value) {
+        match self.becomes_known(to, &value) {
             true => Ok(()),
-            false => self.assign(target, value),
+            false => self.assign(to, value),
         }
     }
 
-    fn assign_outputs(
-        &mut self,
-        targets: &[Option<ComponentReference>],
-        call: &Expression,
-        _: Span,
-    ) -> Result<(), Diagnostic> {
+    fn assign_outputs(&mut self, targets: &Targets, call: &Expression) -> Executed {
         let outputs = assigned_outputs(&mut self.lowering(), targets, call, |own, user, given| {
             own.user_call(user, given, call.span)
         })?;
         outputs.into_iter().try_for_each(|(target, output)| self.assign(target, output))
     }
 
-    fn call_statement(&mut self, call: &Expression, _: Span) -> Result<(), Diagnostic> {
+    fn call_statement(&mut self, call: &Expression) -> Executed {
         match CallStatement::new(self, call)? {
             CallStatement::Assert(arguments) => self.assertion(arguments, call.span),
             CallStatement::Fail(message) => {
@@ -367,19 +349,14 @@ impl Domain for Body<'_, '_> {
 
     /// As a loop; unrolled if the body needs sizes that change from iteration to iteration; where
     /// that is not possible either, the statements with such sizes are written size by size.
-    fn for_loop(
-        &mut self,
-        index: &ForIndex,
-        _: &[Statement],
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn for_loop(&mut self, index: &ForIndex, body: Iteration<'_>) -> Done<Self> {
         let mark = self.mark();
-        let error = match self.counted(index, &mut body) {
+        let error = match self.counted(index, body) {
             Err(e) if e.code == NO_CONSTANT_VALUE => e,
             result => return result,
         };
         self.restore(&mark);
-        match self.unrolled(index, &mut body) {
+        match self.unrolled(index, body) {
             Err(e) if e.code == NO_CONSTANT_VALUE => {}
             result => return result,
         }
@@ -388,17 +365,12 @@ impl Domain for Body<'_, '_> {
         }
         self.restore(&mark);
         self.loop_sizes = true;
-        let result = self.counted(index, &mut body);
+        let result = self.counted(index, body);
         self.loop_sizes = false;
         result
     }
 
-    fn while_loop(
-        &mut self,
-        condition: &Expression,
-        _: Span,
-        mut body: impl FnMut(&mut Self) -> Done<Self>,
-    ) -> Done<Self> {
+    fn while_loop(&mut self, condition: &Expression, body: Iteration<'_>) -> Done<Self> {
         let start = self.emitter.len();
         self.emitter.place(condition.span);
         let exit = match self.decide(condition)? {
@@ -407,7 +379,7 @@ impl Domain for Body<'_, '_> {
             Decision::Open(register) => Some(self.emitter.jump_unless(register)),
         };
         self.breaks.push(Vec::new());
-        body(self)?;
+        body.execute(self)?;
         self.emitter.jump_to(start);
         exit.into_iter().for_each(|exit| self.emitter.land(exit));
         Ok(self.end_loop())
