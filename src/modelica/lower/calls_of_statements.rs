@@ -72,6 +72,9 @@ fn called(
     })
 }
 
+/// Variables with the outputs that are assigned to them.
+type AssignedOutputs<'t, S> = Vec<(&'t ComponentReference, Lowered<S>)>;
+
 /// The outputs that a `call` gives, with the variables that they are assigned to.
 pub(super) fn assigned_outputs<'t, T: Target>(
     lowering: &mut Lowering<'_, T>,
@@ -82,7 +85,7 @@ pub(super) fn assigned_outputs<'t, T: Target>(
         &Arc<Function>,
         &Arguments,
     ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic>,
-) -> Result<Vec<(&'t ComponentReference, Lowered<T::Scalar>)>, Diagnostic> {
+) -> Result<AssignedOutputs<'t, T::Scalar>, Diagnostic> {
     let ExpressionKind::Call { function, arguments } = &value.kind else {
         return Err(fault!(
             NOT_SUPPORTED,
