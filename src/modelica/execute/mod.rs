@@ -80,19 +80,15 @@ pub trait Domain: Sized {
     /// `when`
     fn when_statement(&mut self, branches: &Branches, span: Span) -> Done<Self>;
     /// `break`
-    fn leave_loop(&mut self, span: Span) -> Done<Self> {
-        let _ = span;
+    fn leave_loop(&mut self, _: Span) -> Done<Self> {
         Ok(Flow::Break)
     }
     /// `return`
-    fn leave_function(&mut self, span: Span) -> Done<Self> {
-        let _ = span;
+    fn leave_function(&mut self, _: Span) -> Done<Self> {
         Ok(Flow::Return)
     }
     /// Statements are not executed because of an error.
-    fn leave_out(&mut self, statements: &[Statement], error: &Diagnostic) {
-        let _ = (statements, error);
-    }
+    fn leave_out(&mut self, _: &[Statement], _: &Diagnostic) {}
 }
 
 /// Executes statements in order, until one leads elsewhere.

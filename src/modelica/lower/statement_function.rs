@@ -9,7 +9,7 @@ use super::expressions::{Array, Lowered, Lowering, Target};
 use super::function::call_of_any_size;
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType, targets};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -50,7 +50,8 @@ impl Builder<'_> {
         if let Some(failure) = failure {
             return Err(failure);
         }
-        let assigned = assigned(&statement);
+        let assigned = targets(std::slice::from_ref(&statement));
+        let assigned: FxHashSet<_> = assigned.iter().map(|target| target.parts[0].name).collect();
         let (mut inputs, mut outputs, mut arguments) = (Vec::new(), Vec::new(), Vec::new());
         for LoopVariable { name, value, value_type } in loops {
             inputs.push(component(*name, value_type.clone(), &[], None, s.span));
@@ -268,31 +269,6 @@ impl Visit for Iterators {
             _ => {}
         }
         walk_expression(self, expression);
-    }
-}
-
-/// The variables on the left sides of a statement.
-fn assigned(statement: &Statement) -> FxHashSet<Ident> {
-    let mut search = Assigned(FxHashSet::default());
-    search.statement(statement);
-    search.0
-}
-
-struct Assigned(FxHashSet<Ident>);
-
-impl Visit for Assigned {
-    fn statement(&mut self, statement: &Statement) {
-        match &statement.kind {
-            StatementKind::Assign { target, .. } => {
-                self.0.extend(target.parts.first().map(|p| p.name))
-            }
-            StatementKind::MultiAssign { targets, .. } => {
-                let first = |target: &ComponentReference| target.parts.first().map(|p| p.name);
-                self.0.extend(targets.iter().flatten().filter_map(first));
-            }
-            _ => {}
-        }
-        walk_statement(self, statement);
     }
 }
 

@@ -5,7 +5,7 @@ use super::instances::Argument;
 use super::statements::{Body, elements};
 use crate::bytecode::{Instruction, Register};
 use crate::diag::Diagnostic;
-use crate::eval::{FunctionBody, FunctionComponent};
+use crate::eval::{FunctionBody, FunctionComponent, targets};
 use crate::fault;
 use crate::lower::component_shape::{Declared, declared};
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
@@ -13,7 +13,7 @@ use crate::lower::expressions::{Array, Choice, Lowered, Lowering, size_fault};
 use crate::lower::shape::Shape;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Statement, StatementKind, Subscript};
+use crate::syntax::ast::{ComponentReference, Statement, Subscript};
 use rustc_hash::FxHashSet;
 
 impl Body<'_, '_> {
@@ -31,8 +31,7 @@ impl Body<'_, '_> {
         for input in &function.inputs {
             self.check_input(input, span)?;
         }
-        let mut assigned = FxHashSet::default();
-        collect_assigned(statements, &mut assigned);
+        let assigned = targets(statements).iter().map(|target| target.parts[0].name).collect();
         let mut shapes = vec![None; function.outputs.len()];
         let outputs = function.outputs.iter().enumerate().map(|(at, output)| (Some(at), output));
         let locals = function.locals.iter().map(|local| (None, local));
@@ -376,30 +375,6 @@ fn runs(scalars: &[Option<Operand>]) -> Vec<(Vec<Operand>, Register)> {
         follows = scalar.is_some();
     }
     runs
-}
-
-/// The variables that statements assign to.
-fn collect_assigned(statements: &[Statement], found: &mut FxHashSet<Ident>) {
-    let first = |target: &ComponentReference| target.parts.first().map(|part| part.name);
-    for statement in statements {
-        match &statement.kind {
-            StatementKind::Assign { target, .. } => found.extend(first(target)),
-            StatementKind::MultiAssign { targets, .. } => {
-                found.extend(targets.iter().flatten().filter_map(first));
-            }
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| collect_assigned(body, found));
-                collect_assigned(otherwise, found);
-            }
-            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-                collect_assigned(body, found);
-            }
-            StatementKind::When { branches } => {
-                branches.iter().for_each(|(_, body)| collect_assigned(body, found));
-            }
-            StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
-        }
-    }
 }
 
 /// A variable whose size changes with what is assigned to it, among those that wait for others.

@@ -1,5 +1,6 @@
 //! Local variables with one value: what is assigned to them is known wherever it is a number.
 
+use crate::eval::targets;
 use crate::name::Ident;
 use crate::syntax::ast::{Statement, StatementKind};
 use rustc_hash::FxHashMap;
@@ -7,33 +8,15 @@ use rustc_hash::FxHashMap;
 /// The variables that one statement assigns to as a whole, which is executed exactly once: it is in
 /// no branch and in no loop, and nothing returns before it.
 pub(super) fn assigned_once(statements: &[Statement]) -> Vec<Ident> {
-    let mut counts = FxHashMap::default();
-    count(statements, &mut counts);
+    let mut counts: FxHashMap<Ident, usize> = FxHashMap::default();
+    for target in targets(statements) {
+        *counts.entry(target.parts[0].name).or_default() += 1;
+    }
     let plain = statements.iter().take_while(|s| !may_return(s)).filter_map(|s| match &s.kind {
         StatementKind::Assign { target, .. } => target.as_ident(),
         _ => None,
     });
     plain.filter(|name| counts.get(name) == Some(&1)).collect()
-}
-
-fn count(statements: &[Statement], counts: &mut FxHashMap<Ident, usize>) {
-    let mut one = |target: &crate::syntax::ast::ComponentReference| {
-        *counts.entry(target.parts[0].name).or_default() += 1;
-    };
-    for statement in statements {
-        match &statement.kind {
-            StatementKind::Assign { target, .. } => one(target),
-            StatementKind::MultiAssign { targets, .. } => {
-                targets.iter().flatten().for_each(&mut one)
-            }
-            _ => {}
-        }
-    }
-    for statement in statements {
-        for body in bodies(statement) {
-            count(body, counts);
-        }
-    }
 }
 
 fn may_return(statement: &Statement) -> bool {
