@@ -41,6 +41,12 @@ package classes "names that mean nothing, in classes of every kind"
     Real x = perhapsInherited;
   end Derived;
 
+  model DerivedOnce
+    extends Absent.Part;
+    extends Absent.Other;
+    extends Derived(anything = 1);
+  end DerivedOnce;
+
   partial package Constants
     import Missing.Package.*;
     constant Real c = missingOther;

@@ -107,6 +107,7 @@ impl Places {
         match element {
             Element::Class(nested) => self.class(&nested.class),
             Element::Extends(extends) => {
+                self.0.push(extends.base.span);
                 let (arguments, span) = (extends.modification.clone(), extends.span);
                 let modification = Modification { arguments, binding: None, span };
                 visit::walk_modification(self, &modification);

@@ -23,10 +23,7 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 /// (MLS §5.3.1).
 fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
     let first = *name.parts.first().filter(|_| !name.global)?;
-    let around = std::iter::successors(Some(class), |scope| {
-        if scope.definition().encapsulated { None } else { scope.parent() }
-    });
-    for scope in around {
+    for scope in std::iter::successors(Some(class), |scope| scope.around()) {
         if element(scope, first).is_some() || imports::names(scope, first) {
             return None;
         }
@@ -62,7 +59,7 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
     let span = *span;
     let (first, rest) = name.parts.split_first()?;
     let start = Name { global: name.global, parts: vec![*first] };
-    if !name.global && names::is_component(class, *first) {
+    if !name.global && class.means_component(*first) {
         return None;
     }
     let mut inside = class.class_named(&start)?;

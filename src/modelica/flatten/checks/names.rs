@@ -42,22 +42,6 @@ pub fn of(class: Scope<'_>) -> Vec<Written> {
     walk.written
 }
 
-/// Whether a name means a component of a class or of one around it.
-pub fn is_component(class: Scope<'_>, name: Ident) -> bool {
-    let around = std::iter::successors(Some(class), |scope| {
-        if scope.definition().encapsulated { None } else { scope.parent() }
-    });
-    for scope in around {
-        if scope.component(name).is_some() {
-            return true;
-        }
-        if scope.class_element(name).is_some() {
-            return false;
-        }
-    }
-    false
-}
-
 #[derive(Default)]
 struct WrittenNames {
     written: Vec<Written>,

@@ -1,6 +1,7 @@
 //! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
 
 use super::lineage::Lineage;
+use crate::flatten::declared::Declared;
 use crate::flatten::declared::classes::Type;
 use crate::flatten::library::{BaseProperty, ClassId, Library};
 use crate::flatten::lookup::types::Predefined;
@@ -53,6 +54,11 @@ impl<'a> Scope<'a> {
     /// The class that it is written in.
     pub fn parent(self) -> Option<Scope<'a>> {
         self.library.class(self.class).parent.map(|parent| self.of(parent))
+    }
+
+    /// The class around it whose names it sees: none for an encapsulated class.
+    pub(super) fn around(self) -> Option<Scope<'a>> {
+        self.library.around(self.class).map(|around| self.of(around))
     }
 
     /// Its sections; none for a short class.
@@ -156,6 +162,12 @@ impl<'a> Scope<'a> {
     /// The component that a reference names, as [`Scope::path`] finds it.
     pub(crate) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
         self.path(reference)?.pop()
+    }
+
+    /// Whether a simple name means a component in it.
+    pub(super) fn means_component(self, name: Ident) -> bool {
+        let found = self.library.parts_of_reference(Some(self.class), &name.into());
+        matches!(found.first(), Some(Some(Declared::Component(..))))
     }
 
     /// What a name of a type or class means in it.

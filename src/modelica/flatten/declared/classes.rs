@@ -65,7 +65,7 @@ impl Names for DeclaredClasses<'_, '_> {
 
 impl Library {
     /// The class around another one whose names that one sees.
-    pub(super) fn around(&self, class: ClassId) -> Option<ClassId> {
+    pub(in crate::flatten) fn around(&self, class: ClassId) -> Option<ClassId> {
         let class = self.class(class);
         class.parent.filter(|_| !class.definition.encapsulated)
     }

@@ -8,25 +8,28 @@ use crate::flatten::library::{BaseProperty, ClassId, Library};
 use crate::syntax::ast::{ClassSpecifier, Restriction};
 
 impl<'a> Scope<'a> {
-    /// Whether it may have elements that no declaration shows: it, or a class that it extends, is
-    /// replaceable, an expandable connector, or extends an unknown class.
+    /// Whether it may have elements that no declaration shows: it is replaceable, or
+    /// [inherits](Scope::inherits_open) such.
     pub fn is_open(self) -> bool {
+        self.library.is_replaceable(self.class) || self.inherits_open()
+    }
+
+    /// Whether it, or a class that it extends, is an expandable connector, or extends an unknown or a
+    /// replaceable class. What `redeclare model extends M` replaces (MLS §7.3.1) is replaceable, but
+    /// there it is the inherited one.
+    fn inherits_open(self) -> bool {
         self.first(BaseProperty::Open, |class| {
-            class.library.is_replaceable(class.class)
-                || class.restriction() == Restriction::ExpandableConnector
-                || class.has_open_base()
+            class.restriction() == Restriction::ExpandableConnector || class.has_open_base()
         })
         .is_some()
     }
 
     /// Whether names in its text may mean elements that no declaration shows.
     pub fn has_open_names(self) -> bool {
-        let mut around = std::iter::successors(Some(self), |scope| {
-            if scope.definition().encapsulated { None } else { scope.parent() }
-        });
+        let mut around = std::iter::successors(Some(self), |scope| scope.around());
         let has_open = |class: Scope<'a>| {
             let bases = class.library.declared_bases(class.class);
-            class.has_open_base() || bases.iter().any(|base| class.of(*base).is_open())
+            class.has_open_base() || bases.iter().any(|base| class.of(*base).inherits_open())
         };
         around.any(has_open)
     }

@@ -90,7 +90,9 @@ impl<'a> NameCheck<'a, '_> {
             Element::Import(import) => self.import(&import.kind, import.span),
             Element::Extends(extends) => {
                 let parts = self.library.parts_of_base(class.class, &extends.base.name);
-                let base = self.class_of(&extends.base, &parts);
+                // What the class itself inherits gives no base class a meaning (MLS §5.6.1.4).
+                let is_open = class.around().is_some_and(Scope::has_open_names);
+                let base = self.class_of(&extends.base, &parts, is_open);
                 self.arguments(&base, &extends.modification);
             }
             Element::Component(clause) => self.clause(clause),
@@ -165,15 +167,21 @@ impl<'a> NameCheck<'a, '_> {
     fn specifier(&mut self, specifier: &TypeSpecifier) -> Modified<'a> {
         let scope = self.scope.map(|scope| scope.class);
         let parts = self.library.parts_of_type(scope, &specifier.name);
-        self.class_of(specifier, &parts)
+        self.class_of(specifier, &parts, self.is_open)
     }
 
-    /// What the parts of a type specifier mean; says so if nothing.
-    fn class_of(&mut self, specifier: &TypeSpecifier, parts: &[Option<Declared>]) -> Modified<'a> {
+    /// What the parts of a type specifier mean; says so if nothing. The first may mean an element that no
+    /// declaration shows if `is_open`.
+    fn class_of(
+        &mut self,
+        specifier: &TypeSpecifier,
+        parts: &[Option<Declared>],
+        is_open: bool,
+    ) -> Modified<'a> {
         let Some(at) = parts.iter().position(Option::is_none) else {
             return Modified::by_parts(self.library, parts);
         };
-        if !self.may_be_undeclared(parts, at) {
+        if !may_be_undeclared(self.library, parts, at, is_open) {
             let scope = self.scope.map(|scope| scope.class);
             self.unknown_class(scope, &specifier.name, at, specifier.span);
         }
@@ -182,10 +190,7 @@ impl<'a> NameCheck<'a, '_> {
 
     /// Whether the part of a name at `at`, which is not found, may exist where the class is used.
     fn may_be_undeclared(&self, parts: &[Option<Declared>], at: usize) -> bool {
-        match at {
-            0 => self.is_open,
-            _ => !is_certain(self.library, &parts[..at]),
-        }
+        may_be_undeclared(self.library, parts, at, self.is_open)
     }
 
     fn unknown_class(&mut self, scope: Option<ClassId>, name: &Name, at: usize, span: Span) {
@@ -200,4 +205,15 @@ impl<'a> NameCheck<'a, '_> {
         let package = name.first().filter(|_| at == 0 && !name.is_simple());
         package.is_none_or(|package| self.unknown_packages.insert(package))
     }
+}
+
+/// Whether the part of a name at `at`, which is not found, may exist where its class is used; the first
+/// one if `is_open`.
+fn may_be_undeclared(
+    library: &Library,
+    parts: &[Option<Declared>],
+    at: usize,
+    is_open: bool,
+) -> bool {
+    if at == 0 { is_open } else { !is_certain(library, &parts[..at]) }
 }
