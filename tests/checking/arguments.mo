@@ -38,6 +38,7 @@ package arguments "calls with other arguments than the function has"
     y := scaled(factor = 2);
     y := more(u, offest = 1);
     y := sin(u, 2) + max();
+    y := homotopy(actual = u, simplfied = 2) + noEvent(expression = u);
     y := misspelled(u) + cso(u);
     y := f(u, 1, 2, 3);
   end applied;

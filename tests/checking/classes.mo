@@ -59,6 +59,30 @@ package classes "names that mean nothing, in classes of every kind"
     function derivative = der(missingFunction, u);
   end Constants;
 
+  function annotated
+    input Real x;
+    input Real y;
+    output Real z = x*y;
+    annotation (
+      derivative(noDerivative = missingInput) = missingDerivative,
+      derivative(order = 2) = classes.missingSecond,
+      inverse(x = missingInverse(y, z), w = divided(z, missingDivisor), y = divided(z)),
+      smoothOrder(normallyConstant = missingNormally) = 2);
+  end annotated;
+
+  function divided
+    input Real a;
+    input Real b;
+    output Real c = a/b;
+    annotation (derivative = annotated, inverse(a = annotated(b, c)));
+  end divided;
+
+  function byMissing = der(divided, a, missingVariable);
+
+  partial model Removing
+    extends Incomplete(break missingPart);
+  end Removing;
+
   operator record Pair
     Real a, b;
     encapsulated operator '+'

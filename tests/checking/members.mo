@@ -13,6 +13,25 @@ package members "elements that components and packages do not have"
     end half;
   end Numbers;
 
+  partial package Medium
+    replaceable record State
+      Real p;
+    end State;
+  end Medium;
+
+  package Air
+    extends Medium;
+    redeclare record extends State
+      Real T;
+    end State;
+    function pressure
+      input State state;
+      output Real p = state.p + state.q + state.T;
+    algorithm
+      p := State(p = 1, T = 2, X = 3).p;
+    end pressure;
+  end Air;
+
   partial model Part
     Pin p, n[2];
     outer Pin ground;

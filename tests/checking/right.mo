@@ -37,6 +37,25 @@ package right "what is declared, or may be where the class is used"
     end density;
   end Water;
 
+  package Ice
+    extends Water;
+    redeclare model extends Properties(other = 3)
+      Real more = p + d + anything;
+    end Properties;
+  end Ice;
+
+  function frozen
+    input Real u;
+    output Real y = u*half(u);
+    annotation (derivative(order = 1) = frozen_der, inverse(u = half(u = y)), smoothOrder = 2);
+  end frozen;
+
+  function frozen_der
+    input Real u;
+    input Real der_u;
+    output Real der_y = 2*u*der_u;
+  end frozen_der;
+
   connector Signal = output Real;
 
   expandable connector Bus

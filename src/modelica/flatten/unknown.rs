@@ -5,6 +5,7 @@ use super::errors::{UNKNOWN_CLASS, UNKNOWN_ELEMENT, UNKNOWN_NAME};
 use super::lookup::types::ATTRIBUTES;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
+use crate::functions::errors::WRONG_ARGUMENTS;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::foreign;
@@ -57,6 +58,28 @@ pub(crate) fn component_of_variable(variable: &str, name: Ident, span: Span) -> 
 pub(crate) fn element(class: &Name, name: Ident, known: &[Ident], span: Span) -> Diagnostic {
     fault!(UNKNOWN_ELEMENT, "`{class}` has no component `{name}` to modify")
         .help_if(near(name.as_str(), known))
+        .at(span)
+}
+
+/// An element to remove that a class with the elements `known` does not have.
+pub(crate) fn removed_element(
+    class: &Name,
+    name: Ident,
+    known: &[Ident],
+    span: Span,
+) -> Diagnostic {
+    fault!(UNKNOWN_ELEMENT, "`{class}` has no component `{name}` to remove")
+        .help_if(near(name.as_str(), known))
+        .at(span)
+}
+
+/// An input of a function with the inputs `known`, as in `der(f, x)`, that it does not have.
+pub(crate) fn input(function: &Name, name: Ident, known: &[Ident], span: Span) -> Diagnostic {
+    let list = known.iter().map(|known| format!("`{known}`")).collect::<Vec<_>>().join(", ");
+    let inputs = if list.is_empty() { "none".into() } else { list };
+    fault!(WRONG_ARGUMENTS, "`{function}` has no input `{name}`")
+        .help_if(near(name.as_str(), known))
+        .help(format!("its inputs are {inputs}"))
         .at(span)
 }
 

@@ -59,7 +59,7 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
     let span = *span;
     let (first, rest) = name.parts.split_first()?;
     let start = Name { global: name.global, parts: vec![*first] };
-    if !name.global && class.means_component(*first) {
+    if !name.global && names::is_component(class, *first) {
         return None;
     }
     let mut inside = class.class_named(&start)?;

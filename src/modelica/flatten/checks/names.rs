@@ -1,6 +1,7 @@
 //! The names that a class writes: of types, base classes, and in its expressions.
 
 use super::scope::Scope;
+use crate::flatten::declared::Declared;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -40,6 +41,12 @@ pub fn of(class: Scope<'_>) -> Vec<Written> {
         }
     }
     walk.written
+}
+
+/// Whether a simple name means a component in a class.
+pub fn is_component(class: Scope<'_>, name: Ident) -> bool {
+    let found = class.library.parts_of_reference(Some(class.class), &name.into());
+    matches!(found.first(), Some(Some(Declared::Component(..))))
 }
 
 #[derive(Default)]

@@ -1,7 +1,6 @@
 //! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
 
 use super::lineage::Lineage;
-use crate::flatten::declared::Declared;
 use crate::flatten::declared::classes::Type;
 use crate::flatten::library::{BaseProperty, ClassId, Library};
 use crate::flatten::lookup::types::Predefined;
@@ -162,12 +161,6 @@ impl<'a> Scope<'a> {
     /// The component that a reference names, as [`Scope::path`] finds it.
     pub(crate) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
         self.path(reference)?.pop()
-    }
-
-    /// Whether a simple name means a component in it.
-    pub(super) fn means_component(self, name: Ident) -> bool {
-        let found = self.library.parts_of_reference(Some(self.class), &name.into());
-        matches!(found.first(), Some(Some(Declared::Component(..))))
     }
 
     /// What a name of a type or class means in it.

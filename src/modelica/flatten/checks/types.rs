@@ -268,7 +268,7 @@ impl TypeCheck<'_, '_> {
         if !reference.global && self.loops.contains(&first) {
             return None;
         }
-        if !reference.global && self.class.means_component(first) {
+        if !reference.global && super::names::is_component(self.class, first) {
             let path = self.class.path(reference)?;
             let is_scalar = |one: &Component<'_>| {
                 one.declaration.subscripts.is_empty() && one.clause.subscripts.is_empty()

@@ -1,7 +1,7 @@
 //! Selective model extension (MLS §7.4): components and connections that an extends clause leaves
 //! out of its base class, `extends B(break f, break connect(a, b))`.
 
-use crate::diag::{Diagnostic, suggest};
+use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{TYPE_MISMATCH, UNKNOWN_ELEMENT};
 use crate::flatten::ids::ScopeId;
@@ -10,6 +10,7 @@ use crate::flatten::lookup::classes::Classes;
 use crate::flatten::lookup::scope::Text;
 use crate::flatten::lookup::types::Predefined;
 use crate::flatten::lookup::types::Type;
+use crate::flatten::unknown;
 use crate::name::Ident;
 use crate::source::Spanned;
 use crate::syntax::ast::{
@@ -71,15 +72,8 @@ impl Classes<'_> {
         let elements = self.elements(base)?;
         let Some(declaration) = elements.get(name.node) else {
             let known: Vec<Ident> = elements.names().collect();
-            let known = known.iter().map(|known| known.as_str());
             let class = &self.text(base).name;
-            return Err(fault!(
-                UNKNOWN_ELEMENT,
-                "`{class}` has no component `{}` to remove",
-                name.node
-            )
-            .help_if(suggest::did_you_mean(name.node.as_str(), known))
-            .at(name.span));
+            return Err(unknown::removed_element(class, name.node, &known, name.span));
         };
         if self.can_be_left_out(declaration)? {
             return Ok(());

@@ -2,7 +2,8 @@
 
 use super::NameCheck;
 use super::certainty::is_certain;
-use crate::diag::{Diagnostic, suggest};
+use super::modified::Modified;
+use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::checks::scope::{Component, Scope};
 use crate::flatten::checks::usage;
@@ -13,7 +14,7 @@ use crate::flatten::lookup::types::Predefined;
 use crate::flatten::unknown;
 use crate::functions::{self, errors::WRONG_ARGUMENTS};
 use crate::name::{Ident, Name};
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Arguments, CausalityPrefix, ClassSpecifier, ComponentReference, NamedArgument, Restriction,
     Visibility,
@@ -66,8 +67,17 @@ impl<'a> NameCheck<'a, '_> {
         }
     }
 
+    /// The inputs by which a function is differentiated (MLS §12.7.2).
+    pub(super) fn derivative_by(&mut self, of: &Modified<'a>, variables: &[Spanned<Ident>]) {
+        if let Modified::Class { class, is_certain: true } = of
+            && let Some(inputs) = Inputs::of(*class)
+        {
+            self.errors.extend(inputs.unknown_name(variables.iter().copied()));
+        }
+    }
+
     /// The class that a call means, if nothing replaces it; says so if it means nothing.
-    fn function(&mut self, name: &Name, span: Span) -> Option<Scope<'a>> {
+    pub(super) fn function(&mut self, name: &Name, span: Span) -> Option<Scope<'a>> {
         let first = name.first()?;
         if self.is_loop_variable(name, first) {
             return None;
@@ -106,17 +116,24 @@ impl<'a> NameCheck<'a, '_> {
     /// A call of a function of the language with another number of arguments than it takes.
     fn builtin_call(&mut self, function: &ComponentReference, arguments: &Arguments) {
         let Some(name) = function.as_ident() else { return };
-        let only_positional = arguments.named.is_empty() && arguments.iterators.is_empty();
         let is_declared = || {
             let scope = self.scope.map(|scope| scope.class);
             self.library.parts_of_reference(scope, &name.into())[0].is_some()
         };
-        if let Some(builtin) = functions::find(name.as_str())
-            && only_positional
-            && !is_declared()
-            && let Err(fault) = builtin.check_count(arguments.positional.len())
+        let Some(builtin) = functions::find(name.as_str()) else { return };
+        if !arguments.iterators.is_empty() || is_declared() {
+            return;
+        }
+        let is_input = |name: Ident| builtin.inputs.contains(&name.as_str());
+        let mut named = arguments.named.iter().map(|argument| argument.name);
+        if arguments.named.is_empty() {
+            let count = builtin.check_count(arguments.positional.len());
+            self.errors.extend(count.err().map(|fault| fault.at(function.span)));
+        } else if !builtin.inputs.is_empty()
+            && let Some(wrong) = named.find(|name| !is_input(name.node))
         {
-            self.errors.push(fault.at(function.span));
+            let known: Vec<Ident> = builtin.inputs.iter().map(|input| Ident::new(input)).collect();
+            self.errors.push(unknown::input(&name.into(), wrong.node, &known, wrong.span));
         }
     }
 }
@@ -179,18 +196,16 @@ impl<'a> Inputs<'a> {
         })
     }
 
-    /// A named argument that is not an input.
+    /// The first named argument that is not an input.
     fn unknown(&self, named: &[NamedArgument]) -> Option<Diagnostic> {
-        let is_input = |name: Ident| self.inputs.iter().any(|input| input.name() == name);
-        let argument = named.iter().find(|argument| !is_input(argument.name.node))?;
-        let name = argument.name.node;
-        let known = self.inputs.iter().map(|input| input.name().as_str());
-        Some(
-            fault!(WRONG_ARGUMENTS, "`{}` has no input `{name}`", self.function.name())
-                .help_if(suggest::did_you_mean(name.as_str(), known))
-                .help(format!("its inputs are {}", self.names()))
-                .at(argument.name.span),
-        )
+        self.unknown_name(named.iter().map(|argument| argument.name))
+    }
+
+    /// The first name that is not one of an input.
+    fn unknown_name(&self, mut names: impl Iterator<Item = Spanned<Ident>>) -> Option<Diagnostic> {
+        let known: Vec<Ident> = self.inputs.iter().map(Component::name).collect();
+        let name = names.find(|name| !known.contains(&name.node))?;
+        Some(unknown::input(self.function.name(), name.node, &known, name.span))
     }
 
     /// An input of a predefined type that no argument and no default gives.

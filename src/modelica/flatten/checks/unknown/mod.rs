@@ -2,6 +2,7 @@
 //! expressions, of modified elements (§7.2) and of arguments (§12.4.1). Every class is checked by itself,
 //! with what depends on conditions and on redeclarations: also what no model instantiates.
 
+mod annotations;
 mod calls;
 mod certainty;
 mod expressions;
@@ -46,7 +47,10 @@ pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
             walk.body(class);
         }
         ClassSpecifier::Short(short) => walk.short(short),
-        ClassSpecifier::Derivative(derivative) => _ = walk.specifier(&derivative.target),
+        ClassSpecifier::Derivative(derivative) => {
+            let function = walk.specifier(&derivative.target);
+            walk.derivative_by(&function, &derivative.variables);
+        }
         ClassSpecifier::Enumeration(_) => {}
     }
 }
@@ -79,8 +83,10 @@ impl<'a> NameCheck<'a, '_> {
                 Section::External(external) => {
                     external.output.iter().for_each(|output| self.reference(output));
                     external.arguments.iter().for_each(|argument| self.expression(argument));
+                    external.annotation.iter().for_each(|one| self.annotation(class, one));
                 }
-                Section::Elements { .. } | Section::Annotation(_) => {}
+                Section::Annotation(annotation) => self.annotation(class, annotation),
+                Section::Elements { .. } => {}
             }
         }
     }
@@ -94,6 +100,7 @@ impl<'a> NameCheck<'a, '_> {
                 let is_open = class.around().is_some_and(Scope::has_open_names);
                 let base = self.class_of(&extends.base, &parts, is_open);
                 self.arguments(&base, &extends.modification);
+                self.excluded(&base, &extends.excluded);
             }
             Element::Component(clause) => self.clause(clause),
             // The class is checked by itself.

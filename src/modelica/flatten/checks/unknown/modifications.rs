@@ -6,7 +6,7 @@ use crate::flatten::lookup::types::ATTRIBUTES;
 use crate::flatten::unknown;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{Argument, Binding, Modification, RedeclaredElement};
+use crate::syntax::ast::{Argument, Binding, Exclusion, Modification, RedeclaredElement};
 use crate::syntax::visit::Visit as _;
 
 impl<'a> NameCheck<'a, '_> {
@@ -34,6 +34,21 @@ impl<'a> NameCheck<'a, '_> {
                         self.clause(clause);
                     }
                 },
+            }
+        }
+    }
+
+    /// Elements that an extends clause removes (MLS §7.4); those of connections are checked where the
+    /// connections are.
+    pub(super) fn excluded(&mut self, of: &Modified<'a>, excluded: &[Exclusion]) {
+        let Modified::Class { class, is_certain: true } = of else { return };
+        for exclusion in excluded {
+            if let Exclusion::Component(name) = exclusion
+                && self.library.element(class.class, name.node).is_none()
+            {
+                let known = self.library.component_names(class.class);
+                let wrong = unknown::removed_element(class.name(), name.node, &known, name.span);
+                self.errors.push(wrong);
             }
         }
     }
