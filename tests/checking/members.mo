@@ -27,8 +27,7 @@ package members "elements that components and packages do not have"
     function pressure
       input State state;
       output Real p = state.p + state.q + state.T;
-    algorithm
-      p := State(p = 1, T = 2, X = 3).p;
+      output State other = State(p = 1, T = 2, X = 3);
     end pressure;
   end Air;
 

@@ -25,7 +25,7 @@ package right "what is declared, or may be where the class is used"
   package Water
     extends Medium;
     constant Real extra = 3;
-    redeclare model extends Properties(p = 1)
+    redeclare replaceable model extends Properties(p = 1)
       parameter Real anything = 0;
       Real other = 2;
       Real d = density(p) + extra + n;
