@@ -33,13 +33,13 @@ const STYLES: Styles = Styles::styled()
 const EXAMPLES: &str = "\
 Examples:
   gapi run scripts/GAPILib.mos                 identify a measured polarization curve
-  gapi run scripts/GAPILib.mos --out fit1      the same, results in the folder fit1
+  gapi run scripts/GAPILib.mos --out fit1      the same, with the results in the folder fit1
   gapi check models --model CaseStudies.PolarizationCurve
   gapi simulate models --model CaseStudies.PolarizationCurve --set R=0.3 --output curve.csv
   gapi explain unknown-class                   what a diagnostic's code means";
 
-/// Runs GAPILib scripts: identifies the parameters of Modelica models from measured data with a
-/// genetic algorithm.
+/// Identifies the parameters of Modelica models from measured data, by GAPILib
+/// scripts or problem files; also simulates, checks and formats models.
 #[derive(Debug, Parser)]
 #[command(name = "gapi", version, styles = STYLES, after_help = EXAMPLES)]
 #[command(propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
@@ -80,7 +80,7 @@ pub(super) enum Command {
     Flatten(FlattenArgs),
     /// Format Modelica files and scripts
     Fmt(FmtArgs),
-    /// Serve an editor by the Language Server Protocol
+    /// Start a language server (LSP) for an editor
     #[cfg(feature = "lsp")]
     Lsp(LspArgs),
     /// Recreate the report of an identification from its files

@@ -34,7 +34,7 @@ pub(super) struct CompareArgs {
     /// A file with the signals to compare, one per line [default: all of the reference]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub signals: Option<PathBuf>,
-    /// Half width and half height of the tube, relative to the range of the reference
+    /// Half-width and half-height of the tube, relative to the range of the reference
     #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
     pub tolerance: f64,
 }

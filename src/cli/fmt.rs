@@ -30,7 +30,7 @@ pub(super) struct FmtArgs {
     /// Write nothing; show what would change, as a unified diff
     #[arg(long)]
     pub diff: bool,
-    /// The name of what standard input contains: `.mo` or `.mos` at its end is the language
+    /// The name of what standard input contains: its ending, `.mo` or `.mos`, selects the language
     #[arg(long, value_name = "NAME")]
     pub(crate) stdin_name: Option<String>,
 }

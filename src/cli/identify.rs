@@ -107,7 +107,7 @@ pub(super) struct IdentifyArgs {
     /// A file with settings (name = number) that can be changed during the run
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
-    /// Show only a progress bar, no live view (which a terminal shows after one second)
+    /// Show a progress bar instead of the live view (which otherwise appears after one second on a terminal)
     #[arg(long)]
     pub plain: bool,
     /// Show only errors

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Columns are matched with model variables by name; parameter ranges are those of the model, or \
-                        one decade around its values. Each guess is a commented line of the file.
+                        one decade around its values. Every guess is marked by a comment.
 
 Examples:
   gapi new curve.csv --model Curve.mo
@@ -24,7 +24,7 @@ Examples:
 
 Exit code: 0 if the file was written, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct NewArgs {
-    /// The measured data (CSV, instrument text file, MAT, XLSX)
+    /// The measured data (CSV, text file of an instrument, MAT, XLSX)
     #[arg(value_hint = ValueHint::FilePath)]
     pub data: PathBuf,
     /// The Modelica file or folder, or a library class

@@ -13,8 +13,8 @@ pub(super) struct Global {
     /// A folder with Modelica packages to load by name (repeatable; also MODELICAPATH)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub library: Vec<PathBuf>,
-    /// Translate models again, and keep none for later [large ones are in
-    /// the folder `gapi` of the user's cache]
+    /// Neither use nor write the cache of translated models
+    /// [the folder `gapi` of the user's cache]
     #[arg(long, global = true, env = "GAPI_NO_CACHE", hide_env = true)]
     #[arg(value_parser = clap::builder::FalseyValueParser::new())]
     pub(crate) no_cache: bool,

@@ -25,7 +25,7 @@ Examples:
   gapi report --merge s1 s2 s3 --out study     the report of all shards
 
 It reads result.json, history.csv and individuals.csv, as written by `gapi run` and `gapi \
-                        identify`; in a folder with several problems, the files written last.
+                        identify`; if the folder holds several results, the most recent one.
 
 Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
 pub(super) struct ReportArgs {

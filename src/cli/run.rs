@@ -25,7 +25,7 @@ Examples:
   gapi run my.mos --resume              resume after Ctrl-C, a crash or a power failure
   gapi run --parse-only scripts
 
-Exit code: 0 on success, 1 on an error that the script did not read, 2 for an invalid command \
+Exit code: 0 on success, 1 on an error that the script did not handle, 2 for an invalid command \
                         line, 130 if interrupted.")]
 pub(super) struct RunArgs {
     /// The script (.mos)
@@ -49,7 +49,7 @@ pub(super) struct RunArgs {
     /// Seconds between two checkpoints
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
     pub checkpoint: f64,
-    /// Show only a progress bar, no live view (which a terminal shows after one second)
+    /// Show a progress bar instead of the live view (which otherwise appears after one second on a terminal)
     #[arg(long)]
     pub plain: bool,
     /// Record the steps of the genetic algorithm, for `gapi teach`
@@ -58,13 +58,13 @@ pub(super) struct RunArgs {
     /// Skip the final least-squares fit that starts from the best individual
     #[arg(long)]
     pub(crate) no_probe: bool,
-    /// Compute profile likelihoods from there: intervals that are also valid for strongly nonlinear models
+    /// Compute profile likelihoods at the minimum: intervals that are also valid for strongly nonlinear models
     #[arg(long, conflicts_with = "no_probe")]
     pub profile: bool,
     /// Show only errors and what the script prints
     #[arg(long, short)]
     pub quiet: bool,
-    /// Show statements and results in the format of the dialect's tool
+    /// Echo statements and results as Dymola or omc would
     #[arg(long, conflicts_with = "quiet")]
     pub echo: bool,
     /// Stop at the first error

@@ -42,8 +42,8 @@ Examples:
 
 Defaults come from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
-    /// Modelica files or package folders, and the class; files that are found by name can be
-    /// omitted
+    /// Modelica files or package folders, and the class; files that can be found by
+    /// class name can be omitted
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to simulate, optionally with a modification: 'M(p = 2)'
@@ -83,11 +83,11 @@ pub(super) struct SimulateArgs {
     /// Print the system after a compiler pass instead of simulating it
     #[arg(long, value_name = "PASS", value_parser = pass_names())]
     pub dump: Option<String>,
-    /// Print statistics of the simulation and what made it work: the variables that limit its
+    /// Print statistics of the simulation and what it spent its effort on: the variables that limit its
     /// steps, the relations that cause its events, its algebraic loops
     #[arg(long)]
     pub stats: bool,
-    /// Stop at chattering and Zeno behaviour, instead of sliding or resting there
+    /// Stop at chattering and Zeno behaviour, instead of continuing in sliding mode or at rest
     #[arg(long)]
     pub(crate) no_sliding: bool,
     /// Plot a variable over time, in the terminal or to --figure (repeatable)

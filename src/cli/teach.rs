@@ -47,13 +47,13 @@ pub(super) struct TeachArgs {
     /// Run again with this statement executed at the first generation shown, and compare; repeat the option for several statements
     #[arg(long, value_name = "STATEMENT", conflicts_with = "quiz")]
     pub what_if: Vec<String>,
-    /// Compare over this number of runs, each with another seed
+    /// Compare over this number of runs with different seeds
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one, requires = "what_if")]
     pub runs: usize,
     /// The first generation to show
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,
-    /// Number of generations to print as text [default: 1; all calls of a script that only calls operators]
+    /// Number of generations to print as text [default: 1; for a script that only calls operators: all calls]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub count: Option<usize>,
     /// Write a figure of the first generation shown and the next one (SVG), instead of text

@@ -48,7 +48,7 @@ impl Objective {
             Objective::SumOfSquares(_) => "weighted sum of squares",
             Objective::Root(_) => "root of a sum of squares",
             Objective::Script => "function of the script",
-            Objective::Assumed => "sum of squares (the script's own fitness is not known)",
+            Objective::Assumed => "sum of squares; the script does not use it as its fitness",
         }
     }
 

@@ -44,7 +44,7 @@ fn shard(here: &TempDir, shard: &str, more: &[&str]) {
     let arguments = [&STUDY, &["--shard", shard, "--out", &out][..], more].concat();
     let (code, text, errors) = gapi(here, &arguments);
     assert_eq!(code, 0, "{errors}");
-    assert!(text.contains("belongs to other shards") || shard.ends_with("/1"), "{text}");
+    assert!(text.contains("Other shards compute the rest") || shard.ends_with("/1"), "{text}");
 }
 
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {

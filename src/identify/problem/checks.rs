@@ -332,7 +332,7 @@ fn correlated(own: &Own<'_>, test: &ResidualTest, alpha: f64) -> Finding {
     let rho = test.autocorrelation;
     let factor = significant(((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt(), 2);
     let numbers = format!(
-        "lag-1 autocorrelation {}, {} runs of equal sign, {} expected",
+        "lag-1 autocorrelation {}, {} runs of the same sign, {} expected",
         significant(rho, 2),
         test.runs,
         significant(test.expected_runs, 3)
@@ -474,13 +474,13 @@ fn chi_square(
     let what = if ratio > 1.0 {
         "Either sigma is too small, or the model does not describe part of these data"
     } else {
-        "Sigma is too large: this is not a very good fit"
+        "Sigma is too large: the residuals are smaller than it allows"
     };
     Some(
         Finding::new(
             FindingKind::Sigma,
             format!(
-                "The residuals are {} times the given sigma (chi-square {} for {} degrees of \
+                "On average, the residuals are {} times the given sigma (chi-square {} for {} degrees of \
                  freedom, two-sided probability {}). {what}. The standard errors use the given \
                  sigma; scaled by the residuals they are: {}.",
                 significant(ratio, 2),

@@ -89,7 +89,7 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
         let [min, max] = parameter.range;
         let (kind, sentence) = match effect {
             Effect::None => {
-                (FindingKind::NoEffect, format!("{name} has no effect on the compared points."))
+                (FindingKind::NoEffect, format!("{name} has no effect on the measured points."))
             }
             Effect::Finite(finite) => {
                 let acts = match finite.how {

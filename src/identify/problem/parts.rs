@@ -177,7 +177,7 @@ fn address((kind, values): (&str, &[f64])) -> (String, u64) {
 
 /// What is said where other shards have a part of it.
 pub(super) fn other_shards(what: &str) -> String {
-    format!("A part of the {what} belongs to other shards: merge them with `gapi report --merge`.")
+    format!("Other shards compute the rest of the {what}: merge them with `gapi report --merge`.")
 }
 
 /// Which of `count` shards these files leave out.

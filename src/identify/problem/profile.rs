@@ -170,7 +170,7 @@ pub fn profiles(
     let Some(all) = all else {
         bail!(
             BAD_OPTION,
-            "A part of the profile likelihoods belongs to other shards: merge them with \
+            "Other shards compute the rest of the profile likelihoods: merge them with \
              `gapi report --merge`"
         );
     };

@@ -321,7 +321,7 @@ pub struct SolvedSeries {
     /// Whether that was estimated with the parameters.
     #[serde(default)]
     pub(crate) sigma_estimated: bool,
-    /// Runs of equal sign, how many are expected, the probability of that by chance, and the
+    /// Runs of the same sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub(crate) residual_test: Option<[f64; 4]>,
     /// The simulated curve between the points, by ascending X, where it was simulated.

@@ -152,7 +152,7 @@ fn a_parameter_without_effect_is_named() {
     let line = |p: &[f64], x: f64| p[0] * x;
     let run = Run::new(problem("cma_es", line, &[2.0, 3.0], &NOISE), 1).unwrap();
     let (solution, _) = finish(run);
-    assert_eq!(solution.findings[0].sentence, "p1 has no effect on the compared points.");
+    assert_eq!(solution.findings[0].sentence, "p1 has no effect on the measured points.");
     assert!((solution.parameters[0].value - 2.0).abs() < 0.02);
     let model = solution.modelica();
     assert!(model.contains("extends M(\n    q = 1,\n    p0 = "), "{model}");

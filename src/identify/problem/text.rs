@@ -70,7 +70,7 @@ impl Solution {
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
         if let Some(chi) = &self.likelihood.chi_square {
             let text = format!(
-                "{} for {} degrees of freedom, probability of more {}",
+                "{} for {} degrees of freedom, p-value {}",
                 significant(chi.value, 5),
                 chi.freedom,
                 significant(chi.probability, 3)

@@ -43,7 +43,7 @@ pub(crate) const R_SQUARED: Explanation = Explanation {
 };
 pub const RUNS: Explanation = Explanation {
     topic: "runs of the residuals",
-    line: "A run is a sequence of residuals of equal sign; far fewer runs than expected indicate \
+    line: "A run is a sequence of residuals of the same sign; far fewer runs than expected indicate \
            a systematic model error. All residual tests together raise a false alarm in at most \
            1 of 100 cases.",
 };
@@ -66,8 +66,7 @@ pub(crate) const SEARCHES: Explanation = Explanation {
 pub(crate) const CONVERGENCE: Explanation = Explanation {
     topic: "convergence",
     line: "The best so far can only decrease; the best of the generation shows the state of the \
-           population. A curve that still decreases at the end means that the search stopped too \
-           early.",
+           population. A curve that still decreases at the end may mean that the search stopped too early.",
 };
 pub(crate) const CORRELATION: Explanation = Explanation {
     topic: "correlations",

@@ -88,8 +88,8 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
 fn bands(curve: &[CurvePoint]) -> Vec<Series> {
     type Half = fn(&CurvePoint) -> Option<f64>;
     let kinds: [(&str, usize, Half); 2] = [
-        ("95 % of new measurements", 3, |at| at.prediction),
-        ("95 % band of the curve", 1, |at| at.confidence),
+        ("95 % prediction band", 3, |at| at.prediction),
+        ("95 % confidence band", 1, |at| at.confidence),
     ];
     let mut all = Vec::new();
     for (name, colour, half) in kinds {

@@ -115,7 +115,7 @@ fn drawing(view: &View, pair: &Pair) -> Option<Figure> {
         vec![series("95 % ellipse", &edge, Mark::Area, 1), series("", &edge, Mark::Line, 1)];
     let clouds = [
         ("evaluated", &others, Mark::Dots, 3),
-        ("best tenth", &good, Mark::Dots, 2),
+        ("best 10 %", &good, Mark::Dots, 2),
         ("failed", &failed, Mark::Crosses, 4),
     ];
     let shown = clouds.into_iter().filter(|cloud| !cloud.1.is_empty());
@@ -162,7 +162,7 @@ fn widened(parameter: &SolvedParameter, low: f64, high: f64) -> [f64; 2] {
 
 type Points = Vec<(f64, f64)>;
 
-/// What was evaluated within the frame: the best tenth of it, the others, and what failed; an even
+/// What was evaluated within the frame: the best 10 % of it, the others, and what failed; an even
 /// choice where it is much.
 fn individuals(view: &View, pair: &Pair, wide: [f64; 2], high: [f64; 2]) -> [Points; 3] {
     let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);

@@ -61,7 +61,7 @@ pub const PASSES: &[Pass] = &[
     pass("eliminate_aliases", "alias elimination: `a = b` and `a = -b`", |system| {
         system.eliminate_aliases()
     }),
-    pass("fold_conditions", "branches that are never taken left out", |system| {
+    pass("fold_conditions", "branches that are never taken are removed", |system| {
         system.fold_conditions()
     }),
     pass("drop_vanishing", "derivatives with zero coefficients removed", |system| {

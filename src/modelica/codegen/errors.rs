@@ -14,13 +14,13 @@ crate::codes! {
     /// A simulation that could not be finished.
     SIMULATION_FAILED = "simulation-failed":
         "## What it means\nThe simulation could not be completed: the step size became too small, an algebraic loop did not converge, or a limit was reached.\n\n\
-         ## Example\nA pole of the solution at the time given.\n\n\
-         ## What to do\nCheck the time and the equations in the message; loosen the tolerance, give start values, or check the parameters.",
+         ## Example\nThe solution grows without bound at this time.\n\n\
+         ## What to do\nCheck the time and the equations in the message; first check parameters and start values; loosen the tolerance last.",
     /// A relation that would cause events without end.
     CHATTERING = "chattering":
         "## What it means\nA relation is chattering: it would switch repeatedly at one point. The simulation continues: the relation is evaluated between steps, or the solution slides along it with the mean of both branches (sliding mode, Filippov), or it stays at rest where impacts accumulate (Zeno behaviour).\n\n\
          ## Example\n`der(x) = if x > 0 then -1 else 1` stays at `x = 0`.\n\n\
-         ## What to do\nNothing, if the model intends it. Otherwise use a hysteresis, `smooth` or `noEvent`; `method` and tolerance do not change it.",
+         ## What to do\nNothing, if the model intends it. Otherwise use a hysteresis, `smooth` or `noEvent`; another method or tolerance does not help.",
     /// Initial values that could not be found.
     INITIALIZATION_FAILED = "initialization-failed":
         "## What it means\nNo consistent values could be found for the start of the simulation.\n\n\

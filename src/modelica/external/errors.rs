@@ -19,7 +19,7 @@ crate::codes! {
          ## What to do\nGive the values as parameters, or read the file in a script.",
     /// A C function of a library that the user has not allowed.
     EXTERNAL_REFUSED = "external-refused":
-        "## What it means\nA library brings a function in C along. Compiling and calling it lets the library do anything on this machine that you may do, so it is not done without your permission. The message names the files.\n\n\
+        "## What it means\nA library contains an external C function. Compiling and calling it lets the library do anything on this machine that you may do, so it is not done without your permission. The message names the files.\n\n\
          ## Example\n`external \"C\" y = f(x) annotation(Include = \"#include <f.c>\");`\n\n\
          ## What to do\nIf you trust the library, allow it with `--allow-external`. A C compiler is needed.",
     /// C code of a library that cannot be compiled or loaded.

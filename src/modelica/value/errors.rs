@@ -5,7 +5,7 @@ use crate::codes;
 codes! {
     /// An operand or argument of a type that does not fit.
     TYPE_MISMATCH = "type-mismatch":
-        "## What it means\n\nAn operator, a function or a variable got a value of a type that it does not accept. Only Integer is converted to Real implicitly; nothing is converted to String, Integer or Boolean.\n\n## Example\n\n`\"run\" + 3` adds a String and an Integer.\n\n## What to do\n\nConvert explicitly: `String(3)`, `integer(x)`, `Integer(e)`; for operators between a scalar and an array use the element-wise forms `.+`, `.-`, `./`, `.^`.",
+        "## What it means\n\nAn operator, a function or a variable received a value of the wrong type. Only Integer is converted to Real implicitly; nothing is converted to String, Integer or Boolean.\n\n## Example\n\n`\"run\" + 3` adds a String and an Integer.\n\n## What to do\n\nConvert explicitly: `String(3)`, `integer(x)`, `Integer(e)`; for operators between a scalar and an array use the element-wise forms `.+`, `.-`, `./`, `.^`.",
     /// A subscript that names no element.
     INDEX_OUT_OF_RANGE = "index-out-of-range":
         "## What it means\n\nA subscript is outside its dimension. The first element has the subscript 1, the last one `size(a, d)`.\n\n## Example\n\n`v[4]` where `v` has 3 elements.\n\n## What to do\n\nCompare the subscript with `size(v, 1)`; inside the brackets, `end` is the last subscript.",

@@ -100,7 +100,7 @@ pub const KINDS: [OperatorKind; 5] = [
     },
     OperatorKind {
         name: "crossover",
-        summary: "makes two children of two parents",
+        summary: "creates two children from two parents",
         frequency: Some(("probability", "probability that a pair is crossed")),
         signature: crossover::SIGNATURE,
         entries: || listed(CROSSOVERS),

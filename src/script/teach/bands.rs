@@ -58,7 +58,7 @@ impl Repeated {
         pairs.filter(|(own, other)| own.last() < other.last()).count()
     }
 
-    /// The middle half of the runs as an area, and their median as a line.
+    /// The interquartile range of the runs as an area, and their median as a line.
     fn series(&self, colour: usize) -> [Series; 2] {
         let points = |values: Vec<f64>| {
             let numbered = values.into_iter().enumerate().map(|(k, y)| (k as f64 + 1.0, y));
@@ -75,11 +75,11 @@ impl Repeated {
     }
 }
 
-/// The medians over the generations, with the middle half of the runs as bands.
+/// The medians over the generations, with their interquartile range as bands.
 pub fn figure(settings: &[Repeated]) -> Figure {
     let runs = settings.first().map_or(0, |first| first.curves.len());
     Figure {
-        title: format!("median of {runs} runs, and the middle half of them"),
+        title: format!("median of {runs} runs, and their interquartile range"),
         panels: vec![Panel {
             x: Axis::linear("generation", ""),
             y: Axis::logarithmic("best fitness (smaller is better)", ""),
@@ -105,7 +105,7 @@ pub fn summary(settings: &[Repeated]) -> String {
     let mut text = format!(
         "The best fitness at the end of {runs} runs with different seeds\n  {:width$}  {:>9}  {:>22}  \
          {}\n",
-        "", "median", "middle half", "better than original"
+        "", "median", "interquartile range", "better than original"
     );
     for setting in settings {
         let [low, median, high] = setting.endings().map(short);

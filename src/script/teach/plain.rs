@@ -145,7 +145,7 @@ fn individuals(
     order: &[usize],
     known: Known,
 ) -> String {
-    let last = if known == Known::Rank { "becomes" } else { "came as" };
+    let last = if known == Known::Rank { "becomes" } else { "origin" };
     let mut text = heading(walk, &["no", "fitness"], last);
     for (rank, &k) in order.iter().take(LISTED).enumerate() {
         let fitness = match generation.fitness.get(k) {

@@ -273,7 +273,7 @@ impl Bootstrap {
             Resampling::Cases => "resampled points",
         };
         let kind = match self.interval {
-            IntervalKind::Bca => "bias-corrected and accelerated (BCa)",
+            IntervalKind::Bca => "bias-corrected and accelerated, BCa",
             IntervalKind::Percentile => "percentiles",
             IntervalKind::Basic => "basic",
         };

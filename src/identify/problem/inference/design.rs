@@ -413,7 +413,7 @@ impl NextMeasurement {
         let worth = gains.iter().filter(|(gain, ..)| *gain < WORTH);
         let sentence = |(_, proposal, k): &(f64, &Proposal, usize)| {
             let what = capitalized(&places(&proposal.plans, self.several()));
-            format!("{what} would bring {}.", self.change(proposal, *k))
+            format!("{what} would narrow the 95 % interval of {}.", self.change(proposal, *k))
         };
         let mut sentences: Vec<String> = worth.map(sentence).collect();
         let left = gains.iter().filter(|(gain, ..)| *gain >= WORTH).map(|(.., k)| *k);
@@ -454,11 +454,11 @@ impl NextMeasurement {
         };
         match (proposal.criterion.as_str(), proposal.volume) {
             ("D", Some(volume)) => Some(format!(
-                "For all parameters together (D-optimal) {what}: the volume of their confidence region shrinks to {} %.",
+                "For all parameters together (D-optimal): {what}: the volume of their confidence region shrinks to {} %.",
                 significant(100.0 * volume, 2)
             )),
             ("D", None) => {
-                Some(format!("For all parameters together (D-optimal) {what}: {}.", changes()))
+                Some(format!("For all parameters together (D-optimal): {what}: {}.", changes()))
             }
             ("A", _) => Some(format!(
                 "For the sum of relative variances (A-optimal) {what}: {}.",
@@ -467,7 +467,7 @@ impl NextMeasurement {
             ("repeat", _) => {
                 let plan = proposal.plans.first()?;
                 Some(format!(
-                    "Measuring all {} points of {} once more would bring {}.",
+                    "Measuring all {} points of {} once more would narrow the 95 % interval of {}.",
                     plan.points,
                     if plan.experiment.is_empty() { "the experiment" } else { &plan.experiment },
                     changes()

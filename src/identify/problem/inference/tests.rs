@@ -288,7 +288,10 @@ fn a_further_output_may_be_worth_more_than_points() {
     assert_eq!(proposal.plans[0].variable, "first");
     let sentences = next.sentences();
     assert!(sentences[0].starts_with("Four points of first between x = "), "{sentences:?}");
-    assert!(sentences[0].contains("would bring p0 from unbounded to ±"), "{sentences:?}");
+    assert!(
+        sentences[0].contains("would narrow the 95 % interval of p0 from unbounded to ±"),
+        "{sentences:?}"
+    );
 }
 
 #[test]

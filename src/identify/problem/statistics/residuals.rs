@@ -11,7 +11,7 @@ use crate::elementary;
 /// Whether residuals in the order of X look like noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ResidualTest {
-    /// Runs of equal sign.
+    /// Runs of the same sign.
     pub runs: usize,
     /// How many would be expected.
     pub(crate) expected_runs: f64,

@@ -435,7 +435,7 @@ fn analysed(
         return Ok(None);
     }
     let Some(found) = found else {
-        session.print("\nA part of the sensitivity analysis belongs to other shards.\n");
+        session.print("\nOther shards compute the rest of the sensitivity analysis.\n");
         return Ok(None);
     };
     session.print(&found.text());

@@ -54,7 +54,7 @@ fn bands_and_plans_reach_beyond_what_was_measured() {
     // An exact output is worth more than a noisy one: it gives k/area, and q gives k.
     assert_eq!(plans[1].plans[0].variable, "h", "{plans:?}");
     let text = solution.text();
-    assert!(text.contains("would bring area from ±"), "{text}");
+    assert!(text.contains("would narrow the 95 % interval of area from ±"), "{text}");
     assert!(text.contains("h of empties, which was not measured, is known to ±0."), "{text}");
     let again: Solution = serde_json::from_str(&solution.to_json()).unwrap();
     assert_eq!(again.text(), text);
