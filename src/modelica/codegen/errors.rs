@@ -43,7 +43,7 @@ crate::codes! {
          ## What to do\nUse a name that the model declares; names are case-sensitive.",
     /// A parameter that cannot be set without compiling again.
     STRUCTURAL_PARAMETER = "structural-parameter":
-        "## What it means\nThe parameter is structural, that is, evaluated at translation (an array size, a selected branch), or it is final. The compiled model has no slot for it.\n\n\
+        "## What it means\nThe parameter is structural, that is, evaluated at translation (an array size, a selected branch), or it is final. It is fixed at translation.\n\n\
          ## Example\nIdentifying the number of control volumes `n`.\n\n\
-         ## What to do\nChange it with a modification when translating the model.",
+         ## What to do\nSet a structural parameter with a modification, `model = \"M(n = 3)\"`; a final one cannot be changed.",
 }
