@@ -23,6 +23,7 @@ mod conversions;
 mod diagnostics;
 mod digits;
 mod displacement;
+mod drafts;
 mod empty_ports;
 mod events_of_time;
 mod every_element;

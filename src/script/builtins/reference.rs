@@ -11,8 +11,8 @@ const BEGINNING: &str = "\
 `gapi help --reference` writes this chapter; `gapi help NAME` shows one command. Each command is \
                          declared as a Modelica function: inputs with a value after `=` are \
                          optional. An input of type `TypeName` or `VariableName` is a name \
-                         without quotation marks; an input of type `Any` accepts several types, \
-                         which its comment lists. A command can be called by its short name or \
+                         without quotation marks; an input of type `Any` accepts the types \
+                         listed in its comment. A command can be called by its short name or \
                          by its full name with the package. Where Dymola and OpenModelica have \
                          different commands of the same name, the dialect of the script decides.
 ";

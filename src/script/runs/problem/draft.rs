@@ -1,6 +1,8 @@
-//! A first problem file from a data file and a model: columns are matched with variables by their names,
-//! ranges are guessed from the model.
+//! A first problem file from a data file and a model: columns are matched with variables
+//! ([`matching`](super::matching)), ranges are guessed from the model and the data.
 
+use super::data::listed;
+use super::matching::{self, DataColumn, Meaning};
 use super::{build, file};
 use crate::Session;
 use crate::bail;
@@ -13,7 +15,6 @@ use crate::models::simulation::Translated;
 use crate::registry::BAD_OPTION;
 use crate::results;
 use crate::source::Span;
-use crate::syntax::ast::CausalityPrefix;
 use crate::units::written;
 use std::fmt::Write;
 use std::path::Path;
@@ -38,20 +39,20 @@ pub struct Draft {
     pub incomplete: Option<String>,
 }
 
-/// A column of the data by the name that a problem gives it.
-struct DataColumn {
-    name: String,
-    unit: Option<String>,
-    values: Vec<f64>,
-}
-
 /// Which columns mean what.
 struct Roles<'c> {
     /// The variable and its column.
     x: (String, &'c DataColumn),
-    outputs: Vec<(String, &'c DataColumn)>,
-    inputs: Vec<(String, &'c DataColumn)>,
+    outputs: Vec<Assigned<'c>>,
+    inputs: Vec<Assigned<'c>>,
     unused: Vec<&'c DataColumn>,
+}
+
+/// A variable, its column, and what is uncertain about the pair.
+struct Assigned<'c> {
+    variable: String,
+    column: &'c DataColumn,
+    doubt: Option<String>,
 }
 
 /// Writes a problem file.
@@ -74,7 +75,7 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
     };
     let translated = simulation::translated(session, &class)?;
     let flat = simulation::flat_model_of(session, &translated)?;
-    let roles = roles(&columns, &translated, flat).map_err(one)?;
+    let roles = roles(&columns, &translated, flat);
     let mut text = head(options, &class);
     parameters(&mut text, &translated, flat, &roles);
     experiment(&mut text, options, flat, &roles);
@@ -121,65 +122,56 @@ fn parts(name: &str, matrix: &Matrix) -> Vec<String> {
     }
 }
 
-fn roles<'c>(
-    columns: &'c [DataColumn],
-    model: &Translated,
-    flat: &FlatModel,
-) -> Result<Roles<'c>, Fault> {
-    let has_states = !model.program.sorted().states.is_empty();
-    let matched = |column: &DataColumn| {
-        let name = variable_of(&column.name, flat)?;
-        let variable = flat.variables.get(name.as_str())?;
-        let is_input =
-            variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none();
-        // A column is one number per row, not an array.
-        let is_measured = variable.variability >= crate::flatten::Variability::Discrete
-            && variable.dims.is_empty();
-        is_measured.then_some((name, is_input))
+fn roles<'c>(columns: &'c [DataColumn], model: &Translated, flat: &FlatModel) -> Roles<'c> {
+    let states: Vec<&str> = model.state_names().map(|name| &**name).collect();
+    let meanings = matching::meanings(columns, flat, &states);
+    let pairs = || columns.iter().zip(&meanings);
+    let time = pairs().find(|(column, meaning)| meaning.is_none() && column.is_time(flat));
+    let is_driver = |(_, meaning): &(&DataColumn, &Option<Meaning>)| {
+        states.is_empty() && meaning.as_ref().is_some_and(|meaning| meaning.is_input)
     };
-    let is_time = |column: &&DataColumn| {
-        let lower = column.name.to_lowercase();
-        let named = ["time", "t", "zeit", "temps", "tempo", "tiempo"].contains(&lower.as_str());
-        named && matched(column).is_none()
-    };
-    let in_seconds = |column: &&DataColumn| {
-        let unit = column.unit.as_deref().and_then(written);
-        unit.is_some_and(|unit| unit.to(crate::units::Unit::SECOND).is_some())
-            && matched(column).is_none()
-    };
-    let driver =
-        |column: &&DataColumn| !has_states && matched(column).is_some_and(|(_, input)| input);
-    let time = || columns.iter().find(is_time).or_else(|| columns.iter().find(in_seconds));
-    let x = match (time(), columns.iter().find(driver)) {
-        (Some(time), _) => ("time".to_owned(), time),
-        (None, Some(driver)) => {
-            (matched(driver).map_or_else(String::new, |(name, _)| name), driver)
-        }
-        (None, None) => match matched(&columns[0]) {
-            Some((name, _)) => (name, &columns[0]),
-            None => ("time".to_owned(), &columns[0]),
+    let first = || (&columns[0], &meanings[0]);
+    let x = match (time, pairs().find(is_driver)) {
+        (Some((time, _)), _) => ("time".to_owned(), time),
+        (None, Some((column, Some(driver)))) => (driver.variable.clone(), column),
+        (None, _) => match first() {
+            (column, Some(own)) if !(own.is_guess && column.increases()) => {
+                (own.variable.clone(), column)
+            }
+            (column, _) => ("time".to_owned(), column),
         },
     };
     let mut roles = Roles { x, outputs: Vec::new(), inputs: Vec::new(), unused: Vec::new() };
-    for column in columns.iter().filter(|column| column.name != roles.x.1.name) {
-        match matched(column) {
-            Some((name, true)) => roles.inputs.push((name, column)),
-            Some((name, false)) => roles.outputs.push((name, column)),
-            None => roles.unused.push(column),
-        }
+    for (column, meaning) in pairs().filter(|(column, _)| column.name != roles.x.1.name) {
+        let Some(Meaning { variable, is_input, is_guess }) = meaning.clone() else {
+            roles.unused.push(column);
+            continue;
+        };
+        let doubt = is_guess.then(|| "a guess by unit and name".to_owned());
+        let assigned = Assigned { variable, column, doubt };
+        if is_input { &mut roles.inputs } else { &mut roles.outputs }.push(assigned);
     }
-    Ok(roles)
+    if roles.outputs.is_empty() {
+        guess_output(&mut roles, flat, &states);
+    }
+    roles
 }
 
-/// The variable that a column means: of the same name, else the only one that differs in case alone.
-fn variable_of(column: &str, flat: &FlatModel) -> Option<String> {
-    if flat.variables.contains_key(column) {
-        return Some(column.to_owned());
+/// Where no column means an output: the output or state that begins nearest to a column.
+fn guess_output(roles: &mut Roles<'_>, flat: &FlatModel, states: &[&str]) {
+    let candidates: Vec<&DataColumn> =
+        roles.unused.iter().copied().filter(|column| !column.is_time(flat)).collect();
+    let Some((names, at)) = matching::output_by_start(&candidates, flat, states) else { return };
+    let Some(column) = candidates.get(at).copied() else { return };
+    let mut doubt = "a guess: its start value is the nearest to the first value".to_owned();
+    if let [_, others @ ..] = names.as_slice()
+        && !others.is_empty()
+    {
+        let others: Vec<&str> = others.iter().map(String::as_str).collect();
+        _ = write!(doubt, "; it may also be {}", listed(&others));
     }
-    let lower = column.to_lowercase();
-    let mut alike = flat.variables.keys().filter(|name| name.to_lowercase() == lower);
-    let found = alike.next()?;
-    alike.next().is_none().then(|| found.to_string())
+    roles.unused.retain(|unused| unused.name != column.name);
+    roles.outputs.push(Assigned { variable: names[0].clone(), column, doubt: Some(doubt) });
 }
 
 fn head(options: &DraftOptions, class: &str) -> String {
@@ -223,13 +215,14 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
     for parameter in model.program.parameters().iter().filter(|parameter| parameter.top_level) {
         let is_number = matches!(parameter.base, crate::flatten::BaseType::Real);
         let is_data =
-            roles.outputs.iter().chain(&roles.inputs).any(|(name, _)| **name == *parameter.name);
+            roles.outputs.iter().chain(&roles.inputs).any(|own| *own.variable == *parameter.name);
         if !is_number || is_data {
             continue;
         }
         count += 1;
         let computed = computed(model, flat, &parameter.name);
-        text.push_str(&parameter_line(parameter, computed));
+        let measured = measured_start(flat, roles, &parameter.name);
+        text.push_str(&parameter_line(parameter, computed, measured));
     }
     if count == 0 {
         text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
@@ -244,7 +237,11 @@ fn computed(model: &Translated, flat: &FlatModel, name: &str) -> Option<String> 
 }
 
 /// The line of a parameter, with what is known of it; a comment where there is nothing to estimate.
-fn parameter_line(parameter: &ParameterInfo, computed: Option<String>) -> String {
+fn parameter_line(
+    parameter: &ParameterInfo,
+    computed: Option<String>,
+    measured: Option<[f64; 2]>,
+) -> String {
     let mut about = Vec::new();
     if !parameter.unit.is_empty() {
         about.push(parameter.unit.to_string());
@@ -253,7 +250,12 @@ fn parameter_line(parameter: &ParameterInfo, computed: Option<String>) -> String
         about.push(parameter.description.to_string());
     }
     let name = key(&parameter.name);
-    let range = range(parameter.min, parameter.max, parameter.default);
+    let declared = |[low, high]: [f64; 2]| [low.max(parameter.min), high.min(parameter.max)];
+    let measured = measured.map(declared).filter(|[low, high]| low < high);
+    let range = match measured {
+        Some(range) => Some((range, "around the first measured value".to_owned())),
+        None => range(parameter),
+    };
     let (mark, [min, max], why) = match (computed, range) {
         (Some(binding), range) => {
             let range = range.map_or([0.1, 10.0], |(range, _)| range);
@@ -269,8 +271,27 @@ fn parameter_line(parameter: &ParameterInfo, computed: Option<String>) -> String
     format!("{mark}{name} = {{ min = {min:?}, max = {max:?} }}          # {}\n", about.join("; "))
 }
 
-/// A range and where it comes from: the model's own, else a decade to both sides of its value.
-fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
+/// The range of a parameter that is the start value of a measured variable: as far about the first value
+/// as the data reach.
+fn measured_start(flat: &FlatModel, roles: &Roles<'_>, parameter: &str) -> Option<[f64; 2]> {
+    let is_its_start = |own: &&Assigned| {
+        let start = matching::parameter_of_start(flat, &own.variable);
+        let unit = super::flat::unit_in(flat, &own.variable);
+        start.is_some_and(|start| start == parameter)
+            && own.column.unit.as_ref().is_none_or(|given| written(given) == written(&unit))
+    };
+    let (first, range) = roles.outputs.iter().find(is_its_start)?.column.extent()?;
+    let rounded = |value: f64| format!("{value:.3e}").parse::<f64>().ok();
+    Some([rounded(first - range)?, rounded(first + range)?])
+}
+
+/// A range and where it comes from: the model's own, else 20 degrees to both sides of a temperature on a
+/// scale with an offset, and a decade to both sides of any other value.
+fn range(parameter: &ParameterInfo) -> Option<([f64; 2], String)> {
+    /// Degrees to both sides.
+    const AROUND: f64 = 20.0;
+    let ParameterInfo { min, max, default: value, .. } = *parameter;
+    let has_offset = written(&parameter.unit).is_some_and(|unit| unit.offset != 0.0);
     // 1e-60 and 1e60 stand for no limit in some libraries.
     let limited = |limit: f64| limit.is_finite() && limit.abs() < 1e20;
     if limited(min) && limited(max) && min < max {
@@ -280,6 +301,7 @@ fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
         return None;
     }
     let around = match value {
+        value if has_offset => [value - AROUND, value + AROUND],
         0.0 => [-1.0, 1.0],
         value if value > 0.0 => [decimal(value / 10.0), decimal(value * 10.0)],
         value => [decimal(value * 10.0), decimal(value / 10.0)],
@@ -289,6 +311,7 @@ fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
         if max.is_finite() { around[1].min(max) } else { around[1] },
     ];
     let why = match value {
+        value if has_offset => format!("{AROUND} degrees around the model's value {value}"),
         0.0 => "a guess: the value in the model is 0".to_owned(),
         value => format!("one decade around the model's value {value}"),
     };
@@ -308,9 +331,9 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
     );
     let (x_name, x) = &roles.x;
     let entry = format!("x = {{ variable = {}, column = {} }}", quoted(x_name), quoted(&x.name));
-    line(text, &entry, (x_name, x), flat);
+    _ = writeln!(text, "{entry}          # {}{}", span(x), conversion(x, x_name, flat));
     if roles.outputs.is_empty() {
-        guessed_output(text, flat, roles);
+        text.push_str("# No column fits a variable: write which column contains which variable.\n# outputs.y = { column = \"y\" }\n");
     } else {
         text.push_str(
             "# Measured outputs. For known measurement errors, add `sigma = 0.01` in the unit of \
@@ -330,31 +353,13 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
     }
 }
 
-/// An entry, with what its column holds and how it is converted.
-fn line(text: &mut String, entry: &str, (name, column): (&str, &DataColumn), flat: &FlatModel) {
-    _ = writeln!(text, "{entry}          # {}{}", span(column), conversion(column, name, flat));
-}
-
-fn columns_of(text: &mut String, table: &str, columns: &[(String, &DataColumn)], flat: &FlatModel) {
-    for (name, column) in columns {
-        let entry = format!("{table}.{} = {{ column = {} }}", key(name), quoted(&column.name));
-        line(text, &entry, (name, column), flat);
+fn columns_of(text: &mut String, table: &str, columns: &[Assigned<'_>], flat: &FlatModel) {
+    for Assigned { variable, column, doubt } in columns {
+        let entry = format!("{table}.{} = {{ column = {} }}", key(variable), quoted(&column.name));
+        let doubt = doubt.as_ref().map_or(String::new(), |doubt| format!("{doubt}; "));
+        let about = format!("{doubt}{}{}", span(column), conversion(column, variable, flat));
+        _ = writeln!(text, "{entry}          # {about}");
     }
-}
-
-/// Where no column has the name of a variable: an output of the model and a column for it.
-fn guessed_output(text: &mut String, flat: &FlatModel, roles: &Roles<'_>) {
-    text.push_str(
-        "# No column has the name of a variable: write which column contains which variable.\n",
-    );
-    let outputs = flat.variables.values().filter(|v| v.causality == Some(CausalityPrefix::Output));
-    let output = outputs.map(|v| v.name.to_string()).next().unwrap_or_else(|| "y".to_owned());
-    let column = roles.unused.first().map_or("y", |column| column.name.as_str());
-    let entry = format!("outputs.{} = {{ column = {} }}", key(&output), quoted(column));
-    _ = match roles.unused.len() {
-        1 => writeln!(text, "{entry}          # a guess"),
-        _ => writeln!(text, "# {entry}"),
-    };
 }
 
 /// The range of a column with its unit, and how many values are missing.
@@ -384,7 +389,7 @@ fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
             format!("; converted to {unit}")
         }
         (None, unit) if !unit.is_empty() => {
-            format!("; assumed to be {unit}: the file gives no unit")
+            format!("; no unit in the file, {unit} assumed")
         }
         _ => String::new(),
     }

@@ -27,6 +27,7 @@ mod inputs;
 mod interpolation;
 mod invariants;
 mod live;
+mod matching;
 pub(crate) mod operators;
 mod own_fitness;
 pub(crate) mod own_function;

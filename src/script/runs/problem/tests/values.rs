@@ -441,8 +441,14 @@ end Oven;";
         };
         draft(&mut session, &options).unwrap_or_else(|errors| panic!("{}", errors[0].message))
     };
-    let of_matrix = drafted("meas.mat").text;
-    assert!(of_matrix.contains("column = \"meas[:,1]\""), "{of_matrix}");
+    let of_matrix = drafted("meas.mat");
+    let text = &of_matrix.text;
+    assert!(text.contains("x = { variable = \"time\", column = \"meas[:,1]\" }"), "{text}");
+    assert!(
+        text.contains("\noutputs.Tm = { column = \"meas[:,") && text.contains("a guess"),
+        "{text}"
+    );
+    assert!(of_matrix.incomplete.is_none(), "{:?}", of_matrix.incomplete);
     let of_table = drafted("T.csv");
     assert!(
         of_table.text.contains("# tau = ")
