@@ -179,12 +179,12 @@ fn elite(generation: &Generation) -> String {
         Some((_, fitness)) => format!(", {},", short(fitness)),
         None => String::new(),
     };
-    format!(
-        "The best {} (N_Elitism) {} unchanged (elitism), so the best fitness{best} never gets \
-         worse.",
-        crossed.elites,
-        if crossed.elites == 1 { "survives" } else { "survive" },
-    )
+    let count = crossed.elites;
+    let survivors = match count {
+        1 => "individual (N_Elitism = 1) survives".to_owned(),
+        _ => format!("{count} individuals (N_Elitism = {count}) survive"),
+    };
+    format!("The best {survivors} unchanged (elitism), so the best fitness{best} never gets worse.")
 }
 
 fn cross(generation: &Generation, rank: usize) -> String {

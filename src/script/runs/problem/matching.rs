@@ -60,9 +60,8 @@ const SYMBOLS: [(&str, &[&str]); 7] = [
 ];
 
 /// Words that name a column of time.
-const TIME: [&str; 12] = [
+const TIME: [&str; 11] = [
     "time",
-    "t",
     "zeit",
     "temps",
     "tempo",
@@ -96,7 +95,9 @@ impl DataColumn {
         let lower = self.name.to_lowercase();
         let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
         let unit = self.unit.as_deref().and_then(written);
-        words.any(|word| TIME.contains(&word))
+        // A first letter in front of another word is the symbol of a temperature.
+        lower == "t"
+            || words.any(|word| TIME.contains(&word))
             || unit.is_some_and(|unit| unit.to(Unit::SECOND).is_some())
     }
 
