@@ -144,13 +144,13 @@ fn block(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         }
         let Some(connector) = component.class() else { continue };
         if connector.restriction() == Restriction::Connector && has_acausal_variable(connector) {
-            errors.push(
-                fault!(CLASS_RESTRICTION, "`{}` of the block `{}` has variables that are neither input nor output",
-                    component.name(), class.name();
-                    help: "make the class a model, or declare the variables of the connector \
-                           `input` or `output`")
-                .at(component.declaration.name.span),
-            );
+            let error = fault!(CLASS_RESTRICTION, "`{}` of the block `{}` has variables that are neither input nor output",
+                component.name(), class.name();
+                help: "make the class a model, or declare the variables of the connector \
+                       `input` or `output`")
+            .at(component.declaration.name.span);
+            // Libraries call components of fluid systems blocks; nothing depends on it.
+            errors.push(if class.library.is_strict() { error } else { error.warning() });
         }
     }
 }
