@@ -1,11 +1,13 @@
 //! Functions that the interpreter carries out while a model is simulated: sizes inside them are known only
 //! when they are called (MLS §12.4.4).
 
+use super::cli::{folder, gapi};
 use super::hybrid::{attempt, simulated};
 use super::shipped;
 use gapilib::Session;
 use gapilib::internals::mat;
 use gapilib::world::MemoryWorld;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// `d` has as many columns as the square of the largest of `s`.
@@ -234,4 +236,40 @@ fn parameters_are_bound_to_calls_that_make_files() {
     let (session, errors) = run(world, SIMULATE);
     assert_eq!(errors, "");
     assert!((last(&session) - 10.0).abs() < 1e-9, "{}", last(&session));
+}
+
+/// What a function returns is a residual itself, or an entry of the Jacobian: also once the loop is
+/// machine code, after a thousand evaluations, it is that of the point at hand.
+#[test]
+fn loops_follow_their_functions_after_many_evaluations() {
+    let function = "function f input Real x; input Real t; output Real r; \
+        protected Real s = 0; algorithm while s < abs(x) and s < 1 loop s := s + 1; end while; \
+        r := x^3 + x - t; end f;";
+    let residual = format!(
+        "model M {function} Real x, z(start = 0, fixed = true); equation f(x, z) = 0; \
+         der(z) = cos(time); end M;"
+    );
+    let slope = format!(
+        "model M {function} Real x, y, u, z(start = 0, fixed = true); equation x + y = z; \
+         u^3 + u = f(x, z); u^3 + u = f(y, 0); der(z) = 1 + cos(time); end M;"
+    );
+    for model in [residual, slope] {
+        let here = folder(&[("M.mo", &model)]);
+        let options = ["--method", "rungekutta", "--intervals", "1000", "--stop-time", "2"];
+        let solved = [None, Some("--interpret")].map(|interpreted| {
+            let all = ["simulate", "M.mo", "--model", "M", "-o", "m.csv"].into_iter();
+            let all: Vec<&str> = all.chain(options).chain(interpreted).collect();
+            let (code, out, errors) = gapi(&here, &all);
+            assert_eq!(code, 0, "{out}{errors}");
+            std::fs::read_to_string(here.path().join("m.csv")).unwrap()
+        });
+        assert_eq!(solved[0], solved[1]);
+        let mut lines = solved[0].lines();
+        let names = lines.next().unwrap().split(',').map(|name| name.trim_matches('"'));
+        let values = lines.last().unwrap().split(',').map(|cell| cell.parse::<f64>().unwrap());
+        let last: BTreeMap<&str, f64> = names.zip(values).collect();
+        let cube = |name: &str| last.get(name).map_or(0.0, |v| v * v * v + v);
+        let residual = cube("x") - last["z"] - cube("y");
+        assert!(residual.abs() < 1e-8, "{last:?}: {residual}");
+    }
 }

@@ -81,8 +81,9 @@ impl MachineCode {
             return done;
         }
         self.count(tape, || {
-            let results = left_by(tape, memory.n_variables, others);
-            Function::new((tape, &results, memory.calls.functions()), Results::InRegisters)
+            let functions = memory.calls.functions();
+            let results = left_by((tape, functions), memory.n_variables, others);
+            Function::new((tape, &results, functions), Results::InRegisters)
         });
         false
     }
@@ -109,12 +110,19 @@ impl std::fmt::Debug for MachineCode {
 }
 
 /// The variables that a tape assigns, and which of `others` it computes.
-fn left_by(tape: &Tape, n_variables: usize, others: [&[Register]; 2]) -> Vec<Register> {
+fn left_by(
+    (tape, functions): (&Tape, &Functions),
+    n_variables: usize,
+    others: [&[Register]; 2],
+) -> Vec<Register> {
     let others: FxHashSet<Register> = others.into_iter().flatten().copied().collect();
     let is_left =
         |register: &Register| (*register as usize) < n_variables || others.contains(register);
-    let mut left: Vec<Register> =
-        tape.code.iter().filter_map(Instruction::result).filter(is_left).collect();
+    let rows = tape.calls.iter().map(|call| (call.d, functions.n_outputs(call.function)));
+    let rows = rows.chain(tape.solves.iter().map(|solve| (solve.d, solve.right.len())));
+    let of_rows = rows.flat_map(|(d, results)| (d..).take(results));
+    let results = tape.code.iter().filter_map(Instruction::result).chain(of_rows);
+    let mut left: Vec<Register> = results.filter(is_left).collect();
     left.sort_unstable();
     left.dedup();
     left
@@ -374,7 +382,8 @@ mod tests {
                 Function::translated(code_of, Results::InArray, longest, Effort::Quick)
             });
             let cut = cut.map(|f| f.expect("all of it can be translated"));
-            let left = left_by(&code.tape, VARIABLES, [&code.outputs, &[]]);
+            let functions = Functions::default();
+            let left = left_by((&code.tape, &functions), VARIABLES, [&code.outputs, &[]]);
             let in_place = [LONG, 20].map(|longest| {
                 let code = (&code.tape, &*left, &functions);
                 Function::translated(code, Results::InRegisters, longest, Effort::Quick)
