@@ -196,6 +196,9 @@ fn run(
     })?;
     problem::Driven::without_own_inputs(&mut simulated.table);
     session.print(&summary(class, &simulated));
+    if arguments.from.is_none() {
+        session.note_default_starts(&model);
+    }
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
         session.print(&simulated.hardest.as_ref().map(effort::table).unwrap_or_default());

@@ -200,6 +200,13 @@ impl Diagnostic {
         self
     }
 
+    /// The same with this action in place of all others.
+    #[must_use]
+    pub fn with_only_help(mut self, help: impl Into<String>) -> Diagnostic {
+        self.0.helps = vec![help.into()];
+        self
+    }
+
     /// Adds a related place.
     #[must_use]
     pub fn related(mut self, span: Span, text: impl Into<String>) -> Diagnostic {

@@ -31,6 +31,14 @@ pub fn did_you_mean<'a>(
     nearest(misspelt, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
 }
 
+/// At most a dozen names.
+pub fn listed(names: &[&str]) -> String {
+    const SHOWN: usize = 12;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
 /// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`
 /// (optimal string alignment distance).
 fn distance(a: &str, b: &str) -> usize {

@@ -122,6 +122,7 @@ fn not_constant(dae: &Dae, variable: VarId, equation: Equation) -> Diagnostic {
     fault!(NOT_DISCRETE,
         "`{}` is discrete, but its equation may change between events",
         dae.variable(variable).name;
-        help: "do not use relations inside `noEvent` or inside functions")
+        help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
+               `noEvent` or inside functions")
     .at(equation.span)
 }

@@ -95,9 +95,13 @@ impl Program {
                 "`{name}` cannot be set: it is constant, final, or a structural parameter";
                 help: "change it with a modification when translating the model"));
         }
-        let known = self.parameters.iter().map(|p| &*p.name);
+        let known: Vec<&str> = self.parameters.iter().map(|p| &*p.name).collect();
         Err(fault!(UNKNOWN_PARAMETER, "`{}` has no parameter `{name}`", self.name())
-            .help_if(suggest::did_you_mean(name, known)))
+            .help_if(suggest::did_you_mean(name, known.iter().copied()))
+            .help_if(
+                (!known.is_empty())
+                    .then(|| format!("its parameters are {}", suggest::listed(&known))),
+            ))
     }
 
     /// The expression of a variable of [`Program::variables`], aliases resolved, with its sign.

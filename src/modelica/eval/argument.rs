@@ -1,6 +1,6 @@
 //! Which argument goes to which input (MLS §12.4.1), and how: evaluated, by name, or as a function.
 
-use super::errors::WRONG_ARGUMENTS;
+use super::errors::{UNKNOWN_VARIABLE, WRONG_ARGUMENTS};
 use super::{Evaluator, Function, FunctionComponent, ValueType};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::fault;
@@ -55,7 +55,7 @@ impl Evaluator<'_> {
             ValueType::Function => self.function_argument(argument),
             _ => match self.scalar(argument) {
                 Some(scalar) => Ok(scalar.into()),
-                None => self.expression(argument),
+                None => self.expression(argument).map_err(|error| quoted(input, argument, error)),
             },
         }
     }
@@ -140,6 +140,27 @@ impl Evaluator<'_> {
         }
         self.expression(argument)
     }
+}
+
+/// The error of an argument that may be meant as Strings, the names that the input expects.
+fn quoted(input: &FunctionComponent, argument: &Expression, error: Diagnostic) -> Diagnostic {
+    let names = match &argument.kind {
+        ExpressionKind::Array(elements) => elements.as_slice(),
+        _ => std::slice::from_ref(argument),
+    };
+    let text = |name: &Expression| match &name.kind {
+        ExpressionKind::Reference(_) => Some(format!("\"{}\"", print::expression(name))),
+        ExpressionKind::String(_) => Some(print::expression(name)),
+        _ => None,
+    };
+    let texts: Option<Vec<String>> = names.iter().map(text).collect();
+    let is_meant = input.value_type == ValueType::String && error.code == UNKNOWN_VARIABLE;
+    let Some(texts) = texts.filter(|_| is_meant) else { return error };
+    let written = match argument.kind {
+        ExpressionKind::Array(_) => format!("{{{}}}", texts.join(", ")),
+        _ => texts.join(", "),
+    };
+    error.help(format!("`{}` expects Strings: write `{written}`", input.name))
 }
 
 /// Which value goes to which input.

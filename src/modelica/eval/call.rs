@@ -11,6 +11,7 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{self, ComponentReference, ExpressionKind};
 use crate::syntax::foreign;
+use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{Elements, FunctionValue, Value};
 use std::sync::Arc;
 
@@ -21,6 +22,16 @@ pub struct Arguments {
     pub positional: Vec<Value>,
     /// Named arguments.
     pub named: Vec<(Ident, Value)>,
+}
+
+/// Whether a format of C is given, and values after it.
+fn has_format(given: &[Option<Value>]) -> bool {
+    let Some((Some(Value::String(text)), rest)) = given.split_first() else { return false };
+    let letters = text.match_indices('%').map(|(at, _)| {
+        text[at + 1..].trim_start_matches(|c: char| c.is_ascii_digit() || ".+-#".contains(c))
+    });
+    let is_format = |rest: &str| rest.starts_with(['d', 'i', 'f', 'g', 'e', 's', 'G', 'E']);
+    letters.into_iter().any(is_format) && rest.iter().any(Option::is_some)
 }
 
 impl From<Vec<Value>> for Arguments {
@@ -208,6 +219,7 @@ impl Evaluator<'_> {
         fault!(UNKNOWN_FUNCTION, "there is no function `{called}`").help_if(
             subscripts
                 .or_else(|| foreign::function_help(&called))
+                .or_else(|| foreign::command_help(&called).filter(|_| self.scope.is_script()))
                 .or_else(|| suggest::did_you_mean(&called, known.iter().map(String::as_str))),
         )
     }
@@ -260,7 +272,14 @@ impl Evaluator<'_> {
             }
         }
         let is_followed = self.host.begin_command(header, &given);
-        let done = self.complete(header, given, span);
+        let formatted = has_format(&given);
+        let done = self.complete(header, given, span).map_err(|error| match formatted {
+            true if error.code == TYPE_MISMATCH => error.help(format!(
+                "`{}` has no formats: join Strings with `+`, as in `\"x = \" + String(3)`",
+                header.name
+            )),
+            _ => error,
+        });
         let done =
             done.and_then(|values| self.host.call_builtin_among(header, values, span, self.scope));
         if is_followed {

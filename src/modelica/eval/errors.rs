@@ -34,6 +34,9 @@ codes! {
     /// `end` outside of subscripts, a loop without a range, `break` outside of a loop.
     MISPLACED = "misplaced":
         "## What it means\n\n`end` is used outside of subscripts, `break` outside a loop, or a loop has no range and none can be deduced from the subscripts in its body (MLS §11.2.2.1).\n\n## Example\n\n`x := end;`\n\n## What to do\n\nMove it to a place where it is allowed; write the range of the loop.",
+    /// A loop of a script that does not end.
+    ENDLESS_LOOP = "endless-loop":
+        "## What it means\n\nThe condition of a `while` loop of a script is true, and no statement in the loop changes the variables that it reads: the loop runs until it is interrupted or fails.\n\n## Example\n\n`while Best > 0.1 loop Bset := Best/2; end while;`\n\n## What to do\n\nAssign to a variable of the condition in the loop; look for a misspelt name.",
     /// A function that is not written in Modelica.
     EXTERNAL_FUNCTION = "external-function":
         "## What it means\n\nThe function is implemented outside Modelica (`external`), and this program does not implement it.\n\n## Example\n\n`external \"C\" y = my_function(x);`\n\n## What to do\n\nWrite its algorithm in Modelica.",

@@ -188,8 +188,44 @@ impl Evaluator<'_> {
             Err(e) if e.code == REAL_OVERFLOW && self.host.overflows() => {
                 infinite(operator, &a, &b).ok_or_else(|| e.at(span))
             }
-            result => result.at(span),
+            result => result
+                .map_err(|fault| match self.is_scalar_product_beside_array(one, (&a, &b)) {
+                    true => Fault::new(fault.code, fault.message).help(
+                        "`*` of two vectors is their scalar product, a number: write `.*` to \
+                         multiply element by element",
+                    ),
+                    false => fault,
+                })
+                .at(span),
         }
+    }
+
+    /// Whether a sum or difference of an array and a number fails for a number that is the product of
+    /// two vectors.
+    fn is_scalar_product_beside_array(
+        &self,
+        one: &Operation<'_>,
+        (a, b): (&Value, &Value),
+    ) -> bool {
+        use BinaryOperator::{Add, Multiply, Subtract};
+        let ExpressionKind::Binary { left, .. } = &one.whole.kind else { return false };
+        let number = match (a.rank(), b.rank()) {
+            (0, 1..) => &**left,
+            (1.., 0) => one.right,
+            _ => return false,
+        };
+        let ExpressionKind::Binary { operator: Multiply, left, right } = &number.kind else {
+            return false;
+        };
+        let is_vector = |factor: &Expression| match &factor.kind {
+            ExpressionKind::Reference(reference) => {
+                let value = reference.as_ident().and_then(|name| self.scope.get(name));
+                value.is_some_and(|value| value.rank() == 1)
+            }
+            ExpressionKind::Array(_) => true,
+            _ => false,
+        };
+        matches!(one.operator, Add | Subtract) && (is_vector(left) || is_vector(right))
     }
 
     /// Only the chosen branch is evaluated (MLS §3.3).

@@ -12,6 +12,7 @@ mod component;
 mod declaration;
 mod deduction;
 mod depth;
+mod endless_loop;
 pub mod errors;
 mod execution;
 mod expression;

@@ -14,6 +14,7 @@ use crate::syntax::ast::{
     BinaryOperator, ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
 };
 use crate::syntax::foreign;
+use crate::value::errors::INDEX_OUT_OF_RANGE;
 use crate::value::{Elements, Index, Step, Value};
 
 impl Evaluator<'_> {
@@ -116,14 +117,24 @@ impl Evaluator<'_> {
                 return Ok(());
             }
         }
+        self.assign_part(target, value).map_err(|error| match error.code == INDEX_OUT_OF_RANGE {
+            true => error.help(format!(
+                "arrays do not grow by assignment: give `{name}` its size first, as in `{name} := \
+                 zeros(3)`, or join arrays: `{name} := cat(1, {name}, {{5}})`",
+                name = first.name
+            )),
+            false => error,
+        })
+    }
+
+    fn assign_part(&mut self, target: &ComponentReference, value: Value) -> Result<(), Diagnostic> {
         if let Some(done) = self.assign_element(target, &value)? {
             return Ok(done);
         }
-        let path = self.path(first.name, &target.parts)?;
-        let variable = self.variable_mut(first.name, target.span)?;
-        variable
-            .set_part(first.name, &path, value)
-            .map_err(|fault| named(first.name, fault).at(target.span))
+        let name = target.parts[0].name;
+        let path = self.path(name, &target.parts)?;
+        let variable = self.variable_mut(name, target.span)?;
+        variable.set_part(name, &path, value).map_err(|fault| named(name, fault).at(target.span))
     }
 
     fn is_scalar(&self, name: Ident) -> bool {

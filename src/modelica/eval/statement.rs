@@ -2,6 +2,7 @@
 
 use super::Evaluator;
 use super::deduction::Body;
+use super::endless_loop::endless;
 use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
 use super::function::Target;
 use crate::diag::{Diagnostic, Fault};
@@ -85,6 +86,10 @@ impl Domain for Evaluator<'_> {
                 return Ok(false);
             }
             evaluator.check_interrupted(condition.span)?;
+            if watched && iteration == 0 {
+                let warning = endless(condition, body.statements);
+                warning.into_iter().for_each(|warning| evaluator.host.warn(warning));
+            }
             if watched {
                 evaluator.host.loop_iteration(iteration, None);
             }
@@ -238,7 +243,7 @@ fn calls(statements: &[Statement]) -> Vec<&Expression> {
 }
 
 /// The statements that are not loops or branches, in these too.
-fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
+pub(super) fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
     let mut all = Vec::new();
     for statement in statements {
         match &statement.kind {

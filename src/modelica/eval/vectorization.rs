@@ -3,8 +3,10 @@
 use super::{Evaluator, Function, ValueType};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
+use crate::name::Ident;
 use crate::source::Span;
-use crate::value::errors::SIZE_MISMATCH;
+use crate::syntax::foreign;
+use crate::value::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
 use crate::value::{Value, construct, sizes};
 use std::sync::Arc;
 
@@ -57,7 +59,14 @@ impl Evaluator<'_> {
             }
             evaluator.run_builtin(header, given, span)
         };
-        self.call_each(header, given, (&outer, span), run)
+        let done = self.call_each(header, given, (&outer, span), run);
+        done.map_err(|error| {
+            let name = header.name.last().map_or("", Ident::as_str);
+            match foreign::array_function(name).filter(|_| error.code == TYPE_MISMATCH) {
+                Some(help) => error.with_only_help(help),
+                None => error,
+            }
+        })
     }
 
     /// Calls a function for each element of the dimensions `outer` that arguments have beyond those

@@ -235,7 +235,7 @@ fn described(definition: &ClassDefinition) -> Option<std::sync::Arc<str>> {
 }
 
 /// The `experiment` annotation of a class (MLS §18.4).
-fn experiment(definition: &ClassDefinition) -> Experiment {
+pub fn experiment(definition: &ClassDefinition) -> Experiment {
     let annotations: Vec<&Annotation> = match &definition.specifier {
         ClassSpecifier::Long(long) => long
             .sections

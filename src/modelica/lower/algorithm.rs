@@ -87,7 +87,8 @@ impl Builder<'_> {
         if !in_when && self.varies(equation.right) && self.varies_between_events(equation.right) {
             return Err(fault!(NOT_DISCRETE,
                 "`{name}` is discrete, but its value can change between events";
-                help: "do not use relations inside `noEvent` or inside functions")
+                help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
+               `noEvent` or inside functions")
             .at(equation.span));
         }
         self.dae.events.equations.push(equation);

@@ -138,7 +138,8 @@ impl Builder<'_> {
         // Relations in when-clauses before it are evaluated at their events alone.
         if self.varies(b) && self.varies_between_events(b) {
             return Err(fault!(NOT_DISCRETE, "this condition can change between events";
-                help: "do not use relations inside `noEvent` or inside functions")
+                help: "`==` and `<>` of Reals are no events: write `<=` or `>=`; do not use relations inside \
+               `noEvent` or inside functions")
             .at(span));
         }
         let name = format!("$condition[{}]", self.scalars.conditions.len() + 1);

@@ -76,7 +76,15 @@ impl Program {
             Some((words, span)) => (format!("{reason}; {words}"), span),
             None => (reason.to_owned(), self.first_span()),
         };
+        let may_escape =
+            matches!((kind, offending), (SimErrorKind::StepSize, Some(Offending::Unknown(_))));
+        let help = may_escape.then(|| {
+            "check sign and range of the equations for it: the solution may grow beyond all bounds at \
+             this time"
+                .to_owned()
+        });
         fault!(SIMULATION_FAILED, "the simulation of `{}` stopped {when}: {words}", self.name())
+            .help_if(help)
             .at(span)
     }
 

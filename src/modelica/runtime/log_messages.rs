@@ -13,6 +13,18 @@ use crate::sim::{self, SimError, SimErrorKind};
 use crate::value::format::written;
 
 impl System {
+    /// A parameter or constant that is zero and that an equation divides by.
+    fn zero_divisor(&self, origin: u32) -> Option<&str> {
+        let dae = &self.program.sorted().dae;
+        let equation = dae.equations.get(origin as usize)?;
+        let divisors = dae.pool.divisors(&[equation.left, equation.right]);
+        let names = self.program.variables().iter().enumerate();
+        let mut zeros = names.filter(|(at, known)| {
+            divisors.contains(&known.variable) && self.value(*at) == Some(0.0)
+        });
+        zeros.next().map(|(_, zero)| &*zero.name)
+    }
+
     /// From now on what the model tells is kept.
     pub fn listen(&mut self) {
         self.messages.log = Some(SimulationLog::default());
@@ -121,7 +133,13 @@ impl System {
             && said.code == DOMAIN_ERROR
         {
             let when = format!("at t = {}", error.time);
-            return said.reworded(self.program.failed_value(origin, operation, &when));
+            let said = said.reworded(self.program.failed_value(origin, operation, &when));
+            return match self.zero_divisor(origin) {
+                Some(name) => {
+                    said.help(format!("the divisor `{name}` is 0: give it another value"))
+                }
+                None => said,
+            };
         }
         let dae = &self.program.sorted().dae;
         let strings = match failure {

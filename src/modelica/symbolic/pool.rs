@@ -165,6 +165,17 @@ impl Pool {
         variables
     }
 
+    /// The variables that expressions divide by, each by itself.
+    pub(crate) fn divisors(&self, roots: &[Expr]) -> Vec<VarId> {
+        let mut divisors = Vec::new();
+        self.visit(roots, |expr| {
+            if let Node::Div(_, divisor) = self.node(expr) {
+                divisors.extend(self.as_variable(*divisor));
+            }
+        });
+        divisors
+    }
+
     /// Visits the variables that some expressions are made of, each once, in no certain order.
     pub(crate) fn visit_variables(&self, exprs: &[Expr], mut found: impl FnMut(VarId)) {
         self.visit(exprs, |expr| {

@@ -169,6 +169,26 @@ const FUNCTIONS: &[(&str, &str)] = &[
     ("numel", "size(x, 1)"),
 ];
 
+/// Functions of other languages, and the commands of scripts for them.
+const COMMANDS: &[(&str, &str)] = &[
+    ("rand", "(R, Seed) := Ram_Gen_ARENA(Seed, 3)"),
+    ("random", "(R, Seed) := Ram_Gen_ARENA(Seed, 3)"),
+];
+
+/// The help for a function of Strings that is called with an array of numbers.
+pub(crate) fn array_function(name: &str) -> Option<String> {
+    let is_length = name == "length";
+    is_length.then(|| {
+        "`length` counts the characters of a String; the number of elements is `size(x, 1)`"
+            .to_owned()
+    })
+}
+
+/// The help for a command that a script does not find.
+pub(crate) fn command_help(name: &str) -> Option<String> {
+    help_of(COMMANDS, name)
+}
+
 /// The help for a name that nothing declares.
 pub(crate) fn name_help(name: &str) -> Option<String> {
     help_of(NAMES, name)

@@ -192,6 +192,9 @@ impl FromValue for i64 {
     fn from_value(value: Value) -> Result<i64, Fault> {
         match value {
             Value::Integer(value) => Ok(value),
+            Value::Real(value) => bail!(TYPE_MISMATCH, "expected an Integer, got the Real {value}";
+                help: "`/` gives Reals also for Integers: use `div(a, b)` for the Integer quotient, or \
+                       `integer(x)` for the largest Integer not above `x`"),
             other => Err(mismatch("an Integer", &other)),
         }
     }

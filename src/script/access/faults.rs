@@ -19,7 +19,23 @@ pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
         _ => begun_small(&error.to_string()),
     };
     let fault = Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", shown(path)));
-    fault.help_if(escape_help(path))
+    fault.help_if(escape_help(path)).help_if(drive_help(path))
+}
+
+/// What a path with a letter of a drive means on other systems.
+fn drive_help(path: &Path) -> Option<String> {
+    let text = path.to_string_lossy();
+    let mut letters = text.chars();
+    let is_drive = letters.next().is_some_and(|letter| letter.is_ascii_alphabetic())
+        && letters.next() == Some(':')
+        && letters.next().is_some_and(|sign| sign == '/' || sign == '\\');
+    (is_drive && !cfg!(windows)).then(|| {
+        format!(
+            "this system has no drive `{}`; give the path as it is here, or one relative to the \
+             working directory",
+            &text[..2]
+        )
+    })
 }
 
 /// Words with a small first letter: sizes in them keep their units.

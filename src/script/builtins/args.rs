@@ -64,7 +64,8 @@ impl Args {
         position.and_then(|at| self.values.get_mut(at)?.take()).unwrap_or(Value::nothing())
     }
 
-    fn put_back(&mut self, name: &str, value: Value) {
+    /// Gives back an argument that was only looked at.
+    pub(super) fn put_back(&mut self, name: &str, value: Value) {
         if let Some(slot) = self.position(name).and_then(|at| self.values.get_mut(at)) {
             *slot = Some(value);
         }

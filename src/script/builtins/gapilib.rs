@@ -8,12 +8,13 @@ use crate::Session;
 use crate::bail;
 use crate::diag::Fault;
 use crate::errors::FOLLOW_UP;
-use crate::ga::errors::{BAD_POPULATION, SIZE_MISMATCH};
+use crate::ga::errors::{BAD_CROSS_POINT, BAD_POPULATION, SIZE_MISMATCH};
 use crate::ga::{self, Gene, Genomes};
 use crate::identify::Question;
-use crate::identify::errors::BAD_DATA;
+use crate::identify::errors::{BAD_DATA, POINTS_OUTSIDE};
 use crate::identify::fitness::sum_of_squares;
 use crate::identify::problem::Free;
+use crate::name::Ident;
 use crate::runs::identification::Request;
 use crate::runs::refinement::Refinement;
 use crate::teach::MutationCall;
@@ -182,7 +183,17 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         return Err(note.into());
     }
     let columns = request.question.x.len();
-    let (simulated, first) = session.evaluate_population(request, &genomes)?;
+    let falls = falling_time(&request.question);
+    let (simulated, first) =
+        session.evaluate_population(request, &genomes).map_err(|failure| match (failure, falls) {
+            (Failure::Here(fault), Some([before, after])) if fault.code == POINTS_OUTSIDE => {
+                Failure::Here(fault.help(format!(
+                    "times rise, but `Xexp` falls from {before} to {after}: if the columns of X and Y \
+                     are swapped in the call that reads them, swap them back"
+                )))
+            }
+            (failure, _) => failure,
+        })?;
     let messages = simulated.messages();
     session.generation_simulated()?;
     session.pause()?;
@@ -191,6 +202,13 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         ..ArrayValue::matrix(genomes.len(), columns, simulated.rows)
     };
     Ok(Value::Tuple(vec![Value::Array(rows), messages.into()]))
+}
+
+/// The first two of the measured times of which the second is less.
+fn falling_time(question: &Question) -> Option<[f64; 2]> {
+    let falls = |pair: &&[f64]| pair[1] < pair[0];
+    let pair = question.x.windows(2).find(falls).filter(|_| question.x_name == "time")?;
+    Some([pair[0], pair[1]])
 }
 
 fn take_request(args: &mut Args) -> Result<Request, Fault> {
@@ -216,6 +234,13 @@ end Fit;
 
 fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let Rows(simulated, marks) = args.take("DATASim_Int")?;
+    let given: Value = args.take("Yexp")?;
+    let is_simulated = matches!(&given, Value::Array(array) if array.marks.of(0).is_some());
+    if is_simulated && marks.of(0).is_none() {
+        bail!(BAD_DATA, "`Yexp` is the result of `Eval`, and `DATASim_Int` is not";
+            help: "the simulation comes first, then the measured data: `Fit(DATASim_Int, Yexp)`");
+    }
+    args.put_back("Yexp", given);
     let mut measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
     if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
@@ -289,6 +314,7 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         Some(WholeNumbers(points)) => ga::crossover::check_points(&points, n_genes)?,
         None => vec![n_genes / 2],
     };
+    note_idle_points(session, &points, n_genes);
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
     let pairs = (parents as usize, elites as usize);
     session.identification().recorder.evolves = true;
@@ -299,6 +325,21 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     old.rows().take(parents as usize).for_each(|genome| chosen.push(genome));
     let children = ga::crossover::cross_adjacent(&chosen, &points);
     Ok(genomes_value(ga::survival::elites_first(&old, elites as usize, &children)))
+}
+
+/// Says once that children are copies of their parents.
+fn note_idle_points(session: &mut Session, points: &[usize], n_genes: usize) {
+    let is_idle = |point: &usize| *point == 0 || *point == n_genes;
+    let is_new = n_genes > 1 && points.iter().all(is_idle) && !points.is_empty();
+    if is_new && session.models.is_new_note(Ident::new("crossing points")) {
+        let points = points.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let text = format!(
+            "with the crossing point {points} of {n_genes} genes all children are copies of their \
+             parents: choose crossing points from 1 to {}",
+            n_genes - 1
+        );
+        session.note(BAD_CROSS_POINT, text);
+    }
 }
 
 const MUTATION: &str = r#"
@@ -321,8 +362,7 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let maxima: Option<Vec<f64>> = args.optional("Param_Max")?;
     let elites: i64 = args.take("Elitism")?;
     ga::mutation::check_factor(factor)?;
-    let expected = genomes.len() * genomes.n_genes();
-    check_size("RamMut", numbers.elements.len(), expected, "the genes of `Nparameters` number")?;
+    check_sizes_of_mutation(&genomes, numbers.elements.len(), [&minima, &maxima])?;
     let Some(elites) = usize::try_from(elites).ok().filter(|&count| count <= genomes.len()) else {
         let rows = genomes.len();
         bail!(BAD_POPULATION, "`Elitism` is {elites}, but `Nparameters` has {rows} rows");
@@ -346,6 +386,33 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     session.traced(|tracer, place| tracer.mutated(place, &call))?;
     ga::mutation::mutate_uniform(&mut genomes, elites, &genes, factor, &numbers.elements);
     Ok(genomes_value(genomes))
+}
+
+/// Refuses numbers that do not fit the genes, all in one message.
+fn check_sizes_of_mutation(
+    genomes: &Genomes,
+    numbers: usize,
+    [minima, maxima]: [&Option<Vec<f64>>; 2],
+) -> Result<(), Fault> {
+    let (rows, n_genes) = (genomes.len(), genomes.n_genes());
+    let mut wrong = Vec::new();
+    if numbers != rows * n_genes {
+        wrong.push(format!(
+            "`RamMut` has {numbers} numbers, but {rows} individuals of {n_genes} genes need {}",
+            rows * n_genes
+        ));
+    }
+    for (name, bounds) in [("Param_Min", minima), ("Param_Max", maxima)] {
+        if let Some(count) = bounds.as_ref().map(Vec::len).filter(|count| *count != n_genes) {
+            wrong.push(format!("the length of `{name}` is {count}, the number of genes {n_genes}"));
+        }
+    }
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    bail!(SIZE_MISMATCH, "{}", wrong.join("; ");
+        help: "give a random number for every gene of every individual that `Cross` returned, \
+               (N_Elitism + N_Parents)*N_Parameters, and bounds for every parameter")
 }
 
 /// The extreme of every gene over the population.

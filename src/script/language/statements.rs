@@ -3,14 +3,15 @@
 use crate::access::policy::Access;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
+use crate::eval::errors::WRONG_OUTPUTS;
 use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
-    ComponentReference, Expression, Import, ImportKind, InteractiveKind, InteractiveStatement,
-    Statement, StatementKind,
+    ComponentReference, Expression, ExpressionKind, Import, ImportKind, InteractiveKind,
+    InteractiveStatement, Statement, StatementKind,
 };
 use crate::value::Value;
 use crate::{Session, builtins};
@@ -61,7 +62,8 @@ impl Session {
                 }
                 Ok(())
             }
-            StatementKind::MultiAssign { targets, .. } => {
+            StatementKind::MultiAssign { targets, value } => {
+                self.warn_of_other_outputs(targets, value);
                 let names = targets.iter().flatten().filter_map(ComponentReference::as_ident);
                 let new: Vec<Ident> =
                     names.filter(|name| !self.workspace.variables.contains(*name)).collect();
@@ -79,6 +81,29 @@ impl Session {
                 done
             }
         }
+    }
+
+    /// Warns where a variable has the name of an output of the command, and takes another one.
+    fn warn_of_other_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        value: &Expression,
+    ) {
+        let ExpressionKind::Call { function, .. } = &value.kind else { return };
+        let Some(command) = builtins::find(&function.name(), self.dialect()) else { return };
+        let outputs =
+            command.function().outputs.iter().map(|output| output.name).collect::<Vec<_>>();
+        let other = targets.iter().zip(&outputs).find_map(|(target, taken)| {
+            let target = target.as_ref()?;
+            let name = target.as_ident().filter(|name| name != taken)?;
+            outputs.contains(&name).then_some((name, taken, target.span))
+        });
+        let Some((name, taken, place)) = other else { return };
+        let all = outputs.iter().map(|output| output.as_str()).collect::<Vec<_>>().join(", ");
+        let fault = fault!(WRONG_OUTPUTS, "`{name}` takes the output `{taken}` of `{}`", function.name();
+            help: "outputs are assigned in their order; write `({all}) := ...`, and leave out what is \
+                   not needed: `(, b) := ...`");
+        self.report(fault.at(place).warning());
     }
 
     /// The value of an expression among the script's variables.
@@ -211,7 +236,11 @@ impl Session {
             self.may(Access::Read, &absolute)?;
         }
         let changed = self.world.set_current_dir(&path);
-        changed.map_err(|error| crate::access::faults::cannot("change to", &path, &error))
+        changed.map_err(|error| {
+            let here = self.world.current_dir();
+            crate::access::faults::cannot("change to", &path, &error)
+                .help(format!("the working directory is still `{}`", here.display()))
+        })
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.

@@ -12,7 +12,7 @@ use crate::flatten::{Library, RecordedInput};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -222,7 +222,10 @@ impl Classes {
 
     /// The diagnostic of an unknown class, with what the file of its name defines instead.
     pub(crate) fn with_misnamed_file(&self, diagnostic: Diagnostic, name: &Name) -> Diagnostic {
-        match self.misnamed_note(name).filter(|_| diagnostic.code == UNKNOWN_CLASS) {
+        if diagnostic.code != UNKNOWN_CLASS {
+            return diagnostic;
+        }
+        match self.misnamed_note(name).or_else(|| self.loaded_note(name)) {
             Some(note) => diagnostic.help(note),
             None => diagnostic,
         }
@@ -242,6 +245,24 @@ impl Classes {
                 names.join(", ")
             )),
         }
+    }
+
+    /// What the files that were loaded by hand define, where a class in none of them is wanted.
+    fn loaded_note(&self, name: &Name) -> Option<String> {
+        const MOST: usize = 3;
+        let wanted = name.first()?;
+        let files: BTreeSet<&PathBuf> = self.files.values().collect();
+        if self.files.keys().any(|own| own.first() == Some(wanted)) || files.len() > MOST {
+            return None;
+        }
+        let defined = files.iter().map(|path| {
+            let own = self.files.iter().filter(|(_, file)| file == path);
+            let names: Vec<String> = own.map(|(own, _)| format!("`{own}`")).collect();
+            let file = path.file_name().unwrap_or_default().to_string_lossy();
+            format!("`{file}` defines {}", names.join(", "))
+        });
+        let defined = defined.collect::<Vec<_>>().join("; ");
+        (!defined.is_empty()).then_some(defined)
     }
 
     /// The fault of a class that is not loaded and cannot be found.

@@ -453,12 +453,17 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
         Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is not a parameter";
             help: "the equations determine its value; set the parameters that it depends on"),
         None => {
-            let names = model.program.parameters().iter().map(|parameter| &*parameter.name);
+            let parameters = model.program.parameters().iter();
+            let names: Vec<&str> = parameters.map(|parameter| &*parameter.name).collect();
             let own = name.strip_prefix(problem.as_str()).and_then(|rest| rest.strip_prefix('.'));
             let own = own.filter(|own| model.program.find_parameter(own).is_ok());
             fault!(UNKNOWN_PARAMETER, "`{problem}` has no parameter `{name}`")
                 .help_if(own.map(|own| format!("write `{own}`, without the name of the model")))
-                .help_if(suggest::did_you_mean(name, names))
+                .help_if(suggest::did_you_mean(name, names.iter().copied()))
+                .help_if(
+                    (!names.is_empty())
+                        .then(|| format!("its parameters are {}", suggest::listed(&names))),
+                )
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::external::c::{CCompiler, Request};
 use crate::external::{Entry, Provide, Resources};
 use crate::name::{Ident, Name};
 use crate::world::{FileReader, normalized};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -55,6 +55,8 @@ impl Session {
         let mut folders = vec![self.world.current_dir()];
         folders.extend(self.execution.folders().map(Path::to_path_buf));
         folders.extend(folder.map(Path::to_path_buf));
+        let mut seen = BTreeSet::new();
+        folders.retain(|folder| seen.insert(folder.clone()));
         let packages = self.classes.packages();
         let files: Arc<dyn FileReader> =
             Arc::new(Watched::new(self.world.reader(), self.classes.reads.clone()));

@@ -3,7 +3,7 @@
 use super::final_state::FinalState;
 use super::translated::Translated;
 use crate::Session;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Diagnostic, Fault, suggest};
 use crate::errors::{BAD_ARGUMENT, START_VALUES_MISSING};
 use crate::fault;
 use crate::flatten::Variability;
@@ -50,6 +50,24 @@ impl Session {
             self.note(START_VALUES_MISSING, text);
         }
         Ok(())
+    }
+
+    /// Says which states of the model itself begin at 0 because nothing says where they begin.
+    pub fn note_default_starts(&mut self, model: &Translated) {
+        let silent = model.states_without_start();
+        if silent.is_empty() {
+            return;
+        }
+        let (states, begin) = match silent.len() {
+            1 => ("the state", "it begins"),
+            _ => ("the states", "they begin"),
+        };
+        let text = format!(
+            "{states} {} without start value: {begin} at 0; declare another value as in \
+             `Real x(start = 1, fixed = true)`",
+            suggest::listed(&silent)
+        );
+        self.note(START_VALUES_MISSING, text);
     }
 
     /// Gives the parameters these values. One that follows from others by its binding is not set:

@@ -43,8 +43,8 @@ pub struct Declaration {
     pub is_final: bool,
     /// Whether its value is used when the model is translated.
     pub is_evaluated: bool,
-    /// Whether its binding depends on other variables.
-    pub is_computed: bool,
+    /// The other variables on which its binding depends.
+    pub computed_from: Vec<String>,
     /// Whether it stands directly in the class.
     pub top_level: bool,
     /// Whether it has the attribute `fixed`.
@@ -88,6 +88,23 @@ impl Translated {
     }
 }
 
+impl Translated {
+    /// The states that are declared in the model itself, and of which neither a start value nor any
+    /// initial equation says where they begin.
+    pub(super) fn states_without_start(&self) -> Vec<&str> {
+        let sorted = self.program.sorted();
+        if !sorted.dae.initial_equations.is_empty() || sorted.dae.events.initial.is_some() {
+            return Vec::new();
+        }
+        let states = sorted.states.iter().map(|state| sorted.dae.variable(*state));
+        let silent = states.filter(|state| {
+            let declared = self.declarations.get(&*state.name);
+            state.start.is_none() && declared.is_some_and(|own| own.top_level && !own.says_fixed)
+        });
+        silent.map(|state| &*state.name).collect()
+    }
+}
+
 /// What the variables of a flat model are declared as.
 pub(super) fn declarations(flat: &FlatModel) -> Declarations {
     let declared = |(name, variable): (&Arc<str>, &flatten::Variable)| {
@@ -105,7 +122,7 @@ impl Declaration {
             causality: variable.causality,
             is_final: variable.is_final,
             is_evaluated: variable.structural || variable.evaluate,
-            is_computed: variable.binding.as_ref().is_some_and(has_references),
+            computed_from: variable.binding.as_ref().map(references).unwrap_or_default(),
             top_level: variable.top_level,
             says_fixed: variable.attributes.contains_key("fixed"),
             final_start: variable.attributes.get("start").map(|start| start.is_final),
@@ -113,12 +130,15 @@ impl Declaration {
     }
 }
 
-/// Whether a binding depends on other variables.
-fn has_references(binding: &Expression) -> bool {
-    struct References(bool);
+/// The variables on which a binding depends, each once.
+fn references(binding: &Expression) -> Vec<String> {
+    struct References(Vec<String>);
     impl Visit for References {
-        fn reference(&mut self, _: &ComponentReference) {
-            self.0 = true;
+        fn reference(&mut self, reference: &ComponentReference) {
+            let name = reference.name().to_string();
+            if !self.0.contains(&name) {
+                self.0.push(name);
+            }
         }
 
         fn expression(&mut self, e: &Expression) {
@@ -132,7 +152,7 @@ fn has_references(binding: &Expression) -> bool {
             }
         }
     }
-    let mut search = References(false);
+    let mut search = References(Vec::new());
     search.expression(binding);
     search.0
 }

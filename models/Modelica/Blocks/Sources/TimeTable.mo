@@ -26,6 +26,8 @@ protected
     b := 0;
     end_ := Modelica.Constants.inf;
     for k in 1:n - 1 loop
+      assert(table[k + 1, 1] >= table[k, 1], "the times of the table decrease: " + String(table[k + 1, 1])
+        + " in row " + String(k + 1) + " follows " + String(table[k, 1]));
       if k == 1 or x >= table[k, 1] - tolerance*abs(x) then
         if table[k + 1, 1] > table[k, 1] then
           b := (table[k + 1, 2] - table[k, 2])/(table[k + 1, 1] - table[k, 1]);

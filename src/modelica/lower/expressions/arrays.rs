@@ -134,6 +134,7 @@ impl<T: Target> Lowering<'_, T> {
                 Some(_) if self.target.chooses() && !keeps => return Ok(Choice::Computed(*value)),
                 Some(known) => {
                     return Err(fault!(ARRAY_MISMATCH, "subscript {known} is outside 1:{size}")
+                        .help_if((known < 1.0).then(|| "the first subscript is 1".to_owned()))
                         .at(index.span));
                 }
                 None if !keeps => return Ok(Choice::Computed(*value)),

@@ -89,14 +89,6 @@ impl Notes {
     }
 }
 
-/// At most a dozen names.
-pub(super) fn listed(names: &[&str]) -> String {
-    const SHOWN: usize = 12;
-    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
-    let more = if names.len() > SHOWN { ", …" } else { "" };
-    format!("{}{more}", shown.join(", "))
-}
-
 /// The column of an entry as the file has it, `default` being its name unless the entry has one. What
 /// is missing is not noted, because points are left out in sight, inputs are not.
 ///

@@ -231,7 +231,8 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
 
 /// What the model computes a parameter from; `None` where it depends on no other one.
 fn computed(model: &Translated, flat: &FlatModel, name: &str) -> Option<String> {
-    let declared = model.declarations.get(name).filter(|declared| declared.is_computed);
+    let declared =
+        model.declarations.get(name).filter(|declared| !declared.computed_from.is_empty());
     let binding = declared.and_then(|_| flat.variables.get(name)?.binding.as_ref());
     binding.map(crate::syntax::print::expression)
 }

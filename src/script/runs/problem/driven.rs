@@ -8,7 +8,7 @@ use super::file::{Column, ColumnEntry, ExperimentEntry};
 use super::inputs::{self, Times};
 use super::time_axis::{self, Origin};
 use crate::Session;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::mat::MatFile;
@@ -130,13 +130,13 @@ fn times(table: &MatFile, notes: &mut Notes) -> Result<(Vec<f64>, Option<Origin>
 
 fn no_column(class: &str, names: &[String], table: &MatFile) -> Fault {
     let columns: Vec<&str> = table.arrays.keys().map(String::as_str).collect();
-    let shown = data::listed(&columns);
+    let shown = suggest::listed(&columns);
     let file = &table.file_name;
     if names.is_empty() {
         return fault!(BAD_OPTION, "`{class}` has no inputs that could follow `{file}`");
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let inputs = data::listed(&names);
+    let inputs = suggest::listed(&names);
     fault!(BAD_OPTION, "`{file}` has no column with the name of an input of `{class}`")
         .help(format!("the inputs are {inputs}; the columns are {shown}"))
 }

@@ -11,7 +11,7 @@ use super::{dynamics, enclosing_class, parameters, time_axis};
 use crate::Session;
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
-use crate::flatten::FlatModel;
+use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
@@ -178,7 +178,11 @@ impl Source<'_> {
         let has_states = !program.sorted().states.is_empty();
         if has_states {
             note_start(&comparison, notes);
-            note_stop(&comparison, &abscissa, program.experiment().stop_time, notes);
+            let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
+            let annotated = session.classes.library.definition(&base.class);
+            let annotated = annotated.and_then(|class| flatten::experiment(&class).stop_time);
+            note_stop(&comparison, &abscissa, annotated, notes);
+            note_unused_stop(&comparison, notes);
         }
         let (observations, series) =
             comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
@@ -396,6 +400,20 @@ fn note_stop(
         notes.warn(format!(
             "{}: the data end at {last} s, the experiment of the model at {stop} s; if the times \
              are in {words}, write the unit after the name of the column: `{name} [{unit}]`",
+            comparison.experiment
+        ));
+    }
+}
+
+/// Says that the simulation goes on to the last row where the experiment has it end before.
+fn note_unused_stop(comparison: &Comparison<'_>, notes: &mut Notes) {
+    let finite = comparison.x.iter().copied().filter(|x| x.is_finite());
+    let last = finite.fold(f64::NEG_INFINITY, f64::max);
+    let stop = comparison.entry.stop_time.filter(|stop| *stop < last);
+    if let Some(stop) = stop.filter(|_| comparison.x_name == "time") {
+        notes.warn(format!(
+            "{}: `stop_time = {stop}` has no effect: the simulation ends with the last row, at {last} s; \
+             to compare less, take the rows after {stop} s out of the file",
             comparison.experiment
         ));
     }

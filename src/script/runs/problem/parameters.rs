@@ -1,7 +1,7 @@
 //! What the parameters of a problem are in one of its experiments: modifications of the model, and
 //! the free ones, which the search sets before each simulation.
 
-use super::data::{Notes, listed};
+use super::data::Notes;
 use super::dynamics;
 use super::enclosing_class::{self, EnclosingClass, QuotedNames, own_name};
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, ValueEntry};
@@ -244,10 +244,14 @@ fn value_of(model: &Translated, name: &str) -> Option<f64> {
 /// Says which free parameters the model computes from others: they no longer depend on these.
 pub(super) fn note_computed(names: &[(usize, String)], model: &Translated, notes: &mut Notes) {
     for (_, name) in names {
-        if model.declarations.get(name.as_str()).is_some_and(|declared| declared.is_computed) {
-            notes.add(format!(
-                "`{name}` is estimated, although the model computes it from other parameters: it \
-                 no longer follows them"
+        let declared = model.declarations.get(name.as_str());
+        let from = declared.map_or(&[][..], |declared| &declared.computed_from);
+        if !from.is_empty() {
+            let from: Vec<&str> = from.iter().map(String::as_str).collect();
+            notes.warn(format!(
+                "`{name}` is estimated, although the model computes it from {from}: it no longer \
+                 follows them; estimate {from} instead",
+                from = suggest::listed(&from)
             ));
         }
     }
@@ -278,7 +282,7 @@ fn not_free(name: &str, base: Option<&BaseType>, model: &Translated) -> Fault {
             .help_if(suggest::did_you_mean(name, names.iter().copied()))
             .help(match names.is_empty() {
                 true => "declare it in the model, or remove it".to_owned(),
-                false => format!("its parameters are {}", listed(&names)),
+                false => format!("its parameters are {}", suggest::listed(&names)),
             });
     };
     if declared.variability > Variability::Parameter {
@@ -341,7 +345,7 @@ pub(super) fn check_initial(
         true => fault.help("the model has no states; remove the initial value"),
         false => fault.help(format!(
             "its initial value follows from those of the states: give {} an initial value instead",
-            listed(&shown)
+            suggest::listed(&shown)
         )),
     }
     .at(*place)])
@@ -381,5 +385,5 @@ pub(super) fn check_variables(
         (None, "t" | "Time" | "TIME") => fault.help("did you mean `time`?"),
         _ => fault.help_if(suggest::did_you_mean(name, known.iter().copied())),
     };
-    Err(fault.help(format!("its variables are {}", listed(&known))).at(*place))
+    Err(fault.help(format!("its variables are {}", suggest::listed(&known))).at(*place))
 }

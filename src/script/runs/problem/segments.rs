@@ -1,10 +1,10 @@
 //! Parts of an experiment: its rows cut at gaps, where time starts again, or at given times. Each part
 //! is simulated from its first row on, and its initial values are parameters of their own.
 
-use super::data::{Notes, listed};
+use super::data::Notes;
 use super::file::{ExperimentEntry, ParameterEntry, ProblemFile, Role, SegmentsEntry};
 use super::time_axis::{self, Origin};
-use crate::diag::{At as _, Diagnostic, Fault};
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::mat::{Column, MatFile};
 use crate::models::translated::Translated;
 use crate::registry::BAD_OPTION;
@@ -100,7 +100,7 @@ impl Segment {
         let fault = fault!(
             BAD_OPTION,
             "{name} begins in the middle of the experiment, where the values of {} are unknown",
-            listed(&unknown);
+            suggest::listed(&unknown);
             help: "estimate them: add a line such as `{} = {{ min = …, max = …, initial = true }}` \
                    for each to `[parameters]`; every part has its own value", unknown[0]
         );
