@@ -177,12 +177,7 @@ impl Source<'_> {
         comparison.start = settings.start;
         let has_states = !program.sorted().states.is_empty();
         if has_states {
-            note_start(&comparison, notes);
-            let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
-            let annotated = session.classes.library.definition(&base.class);
-            let annotated = annotated.and_then(|class| flatten::experiment(&class).stop_time);
-            note_stop(&comparison, &abscissa, annotated, notes);
-            note_unused_stop(&comparison, notes);
+            self.note_times(session, &comparison, &abscissa, notes)?;
         }
         let (observations, series) =
             comparison.outputs(&class.observed, notes).map_err(|e| vec![e])?;
@@ -201,6 +196,23 @@ impl Source<'_> {
         let undecided = class.undecided;
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };
         Ok(Built { experiment, series, error, program, undecided })
+    }
+
+    /// Says where the times of the data and of the simulation do not agree.
+    fn note_times(
+        &self,
+        session: &Session,
+        comparison: &Comparison<'_>,
+        abscissa: &Abscissa,
+        notes: &mut Notes,
+    ) -> Result<(), Vec<Diagnostic>> {
+        note_start(comparison, notes);
+        let base = Base::of(&self.file.model, self.file.places.model).map_err(|e| vec![e])?;
+        let annotated = session.classes.library.definition(&base.class);
+        let annotated = annotated.and_then(|class| flatten::experiment(&class).stop_time);
+        note_stop(comparison, abscissa, annotated, notes);
+        note_unused_stop(comparison, notes);
+        Ok(())
     }
 
     /// Refuses names that the model does not have, and values that it cannot be given.
