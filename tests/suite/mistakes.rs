@@ -228,7 +228,7 @@ fn script(text: &str) -> (i32, String) {
                equation\n  v = V0*exp(-time/tau);\n  annotation(experiment(StopTime = 8));\nend Cap;\n";
     let data = "t,u\n0,10\n2,6\n4,3.7\n6,2.2\n8,1.35\n";
     let here = folder(&[("Cap.mo", cap), ("d.csv", data), ("s.mos", text)]);
-    let (code, out, errors) = gapi(&here, &["run", "s.mos", "--no-report", "--time-limit", "5"]);
+    let (code, out, errors) = gapi(&here, &["run", "s.mos", "--time-limit", "5"]);
     (code, (errors + &out).split_whitespace().collect::<Vec<_>>().join(" "))
 }
 

@@ -1,7 +1,6 @@
 //! Loops of scripts that change nothing of what their condition reads.
 
 use super::errors::ENDLESS_LOOP;
-use super::statement::{simple_statements, targets};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::name::Ident;
@@ -12,13 +11,16 @@ use crate::syntax::visit::{Visit, walk_expression};
 
 /// A warning for a loop of a script whose condition is true: where it depends on variables only, and no
 /// statement in the loop assigns to one of them, leaves the loop or calls what could change them.
-pub(super) fn endless(condition: &Expression, body: &[Statement]) -> Option<Diagnostic> {
+pub(super) fn endless(
+    condition: &Expression,
+    body: &[&Statement],
+    assigned: &[&ComponentReference],
+) -> Option<Diagnostic> {
     let mut read = ReadNames { names: Vec::new(), only_variables: true };
     read.expression(condition);
-    let assigned = targets(body);
     let changes = |name: &Ident| assigned.iter().any(|target| target.parts[0].name == *name);
     let is_known = read.only_variables && !read.names.is_empty() && !read.names.iter().any(changes);
-    if !is_known || !simple_statements(body).into_iter().all(only_assigns) {
+    if !is_known || !body.iter().all(|statement| only_assigns(statement)) {
         return None;
     }
     let names = read.names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");

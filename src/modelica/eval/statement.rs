@@ -87,7 +87,8 @@ impl Domain for Evaluator<'_> {
             }
             evaluator.check_interrupted(condition.span)?;
             if watched && iteration == 0 {
-                let warning = endless(condition, body.statements);
+                let simple = simple_statements(body.statements);
+                let warning = endless(condition, &simple, &targets(body.statements));
                 warning.into_iter().for_each(|warning| evaluator.host.warn(warning));
             }
             if watched {
@@ -243,7 +244,7 @@ fn calls(statements: &[Statement]) -> Vec<&Expression> {
 }
 
 /// The statements that are not loops or branches, in these too.
-pub(super) fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
+fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
     let mut all = Vec::new();
     for statement in statements {
         match &statement.kind {

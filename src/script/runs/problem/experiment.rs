@@ -417,7 +417,7 @@ fn note_stop(
     }
 }
 
-/// Says that the simulation goes on to the last row where the experiment has it end before.
+/// Says that the simulation continues to the last row where the experiment has it end before.
 fn note_unused_stop(comparison: &Comparison<'_>, notes: &mut Notes) {
     let finite = comparison.x.iter().copied().filter(|x| x.is_finite());
     let last = finite.fold(f64::NEG_INFINITY, f64::max);
