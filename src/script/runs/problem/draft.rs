@@ -1,12 +1,12 @@
 //! A first problem file from a data file and a model: columns are matched with variables
 //! ([`matching`](super::matching)), ranges are guessed from the model and the data.
 
-use super::data::listed;
 use super::matching::{self, DataColumn, Meaning};
 use super::{build, file};
 use crate::Session;
 use crate::bail;
 use crate::codegen::ParameterInfo;
+use crate::diag::suggest::listed;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::FlatModel;
 use crate::mat::{self, MatFile, Matrix, MatrixKind};
