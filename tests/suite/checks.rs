@@ -55,8 +55,9 @@ fn specialized_classes_contain_what_they_may() {
     refused("connector C outer Real x; end C; model M C c; end M;", code);
     refused("model A end A; record R A a; end R; model M R r; end M;", code);
     refused("package P Real x = 1; end P; model M Real y = P.x; end M;", code);
-    refused(
-        "connector C Real e; flow Real f; end C; block B C c; end B; model M B b; end M;",
+    refused_if_strict(
+        "connector C Real e; flow Real f; end C; block B C c; equation c.e = 1; end B; \
+        model M B b; end M;",
         code,
     );
     warned(

@@ -153,12 +153,12 @@ fn quoted(input: &FunctionComponent, argument: &Expression, error: Diagnostic) -
         ExpressionKind::String(_) => Some(print::expression(name)),
         _ => None,
     };
-    let texts: Option<Vec<String>> = names.iter().map(text).collect();
+    let strings: Option<Vec<String>> = names.iter().map(text).collect();
     let is_meant = input.value_type == ValueType::String && error.code == UNKNOWN_VARIABLE;
-    let Some(texts) = texts.filter(|_| is_meant) else { return error };
+    let Some(strings) = strings.filter(|_| is_meant) else { return error };
     let written = match argument.kind {
-        ExpressionKind::Array(_) => format!("{{{}}}", texts.join(", ")),
-        _ => texts.join(", "),
+        ExpressionKind::Array(_) => format!("{{{}}}", strings.join(", ")),
+        _ => strings.join(", "),
     };
     error.help(format!("`{}` expects Strings: write `{written}`", input.name))
 }
