@@ -233,7 +233,7 @@ impl Classes {
 
     /// What a file defines instead of the class that it is named after.
     pub(crate) fn misnamed_note(&self, name: &Name) -> Option<String> {
-        let wanted = name.first()?;
+        let requested = name.first()?;
         let path = self.misnamed.get(&wanted)?;
         let own = self.files.iter().filter(|(_, file)| *file == path);
         let names: Vec<String> = own.map(|(own, _)| format!("`{own}`")).collect();
@@ -247,12 +247,12 @@ impl Classes {
         }
     }
 
-    /// What the files that were loaded by hand define, where a class in none of them is wanted.
+    /// What the files that were loaded by hand define, where a class in none of them is requested.
     fn loaded_note(&self, name: &Name) -> Option<String> {
         const MOST: usize = 3;
-        let wanted = name.first()?;
+        let requested = name.first()?;
         let files: BTreeSet<&PathBuf> = self.files.values().collect();
-        if self.files.keys().any(|own| own.first() == Some(wanted)) || files.len() > MOST {
+        if self.files.keys().any(|own| own.first() == Some(requested)) || files.len() > MOST {
             return None;
         }
         let defined = files.iter().map(|path| {
