@@ -234,14 +234,14 @@ impl Classes {
     /// What a file defines instead of the class that it is named after.
     pub(crate) fn misnamed_note(&self, name: &Name) -> Option<String> {
         let requested = name.first()?;
-        let path = self.misnamed.get(&wanted)?;
+        let path = self.misnamed.get(&requested)?;
         let own = self.files.iter().filter(|(_, file)| *file == path);
         let names: Vec<String> = own.map(|(own, _)| format!("`{own}`")).collect();
         let file = path.file_name()?.to_string_lossy();
         match names.is_empty() {
-            true => Some(format!("`{file}` does not define `{wanted}`")),
+            true => Some(format!("`{file}` does not define `{requested}`")),
             false => Some(format!(
-                "`{file}` does not define `{wanted}`; it defines {}",
+                "`{file}` does not define `{requested}`; it defines {}",
                 names.join(", ")
             )),
         }
