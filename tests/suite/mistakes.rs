@@ -247,10 +247,6 @@ fn scripts_that_stop_say_what_is_meant() {
         ("x = {1, 2};\ny := length(x);\n".to_owned(), ["characters of a String", "`size(x, 1)`"]),
         ("cd(\"C:/work\");\n".to_owned(), ["no drive `C:`", "working directory is still"]),
         (
-            format!("{READ}F := Fit(Yexp, {EVAL});\n"),
-            ["`Yexp` is the result of `Eval`", "`Fit(DATASim_Int, Yexp)`"],
-        ),
-        (
             format!("{READ}D := {};\n", EVAL.replace("{\"V0\", \"tau\"}", "{V0, tau}")),
             ["`Parameter_Names` expects Strings", "write `{\"V0\", \"tau\"}`"],
         ),
@@ -280,6 +276,17 @@ fn what_runs_otherwise_than_meant_is_noted_once() {
         assert_eq!(output.matches("copies of their parents").count(), 1, "{output}");
     }
     assert!(!cross(1).contains("copies"));
+    // Invented data are compared with what is simulated, or with what the script makes of that.
+    let rated = |simulated: &str| {
+        let call = format!("{READ}D := {EVAL};\nF := Fit({simulated}, {EVAL});\n");
+        let (code, output) = script(&(call.clone() + &call));
+        assert_eq!(code, 0, "{output}");
+        output.matches("`Yexp` is the result of `Eval`").count()
+    };
+    assert_eq!(
+        [rated("Yexp"), rated("1.1*D"), rated("D"), rated("{D[1,j] for j in 1:size(D, 2)}")],
+        [1, 1, 0, 0]
+    );
     let (_, output) = script("(Xexp, Yexp) := Exp_Adq_SISO(\"d.csv\", \"t\", \"u\");\n");
     assert!(output.contains("`Xexp` takes the output `State_Exp_Adq`"), "{output}");
     let (code, output) = script(READ);

@@ -10,7 +10,7 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::instruction::{Instruction, Register};
+use super::instruction::Register;
 use super::memory::Memory;
 use super::pieces::{Piece, pieces};
 use super::routines::without_routines;
@@ -118,11 +118,8 @@ fn left_by(
     let others: FxHashSet<Register> = others.into_iter().flatten().copied().collect();
     let is_left =
         |register: &Register| (*register as usize) < n_variables || others.contains(register);
-    let rows = tape.calls.iter().map(|call| (call.d, functions.n_outputs(call.function)));
-    let rows = rows.chain(tape.solves.iter().map(|solve| (solve.d, solve.right.len())));
-    let of_rows = rows.flat_map(|(d, results)| (d..).take(results));
-    let results = tape.code.iter().filter_map(Instruction::result).chain(of_rows);
-    let mut left: Vec<Register> = results.filter(is_left).collect();
+    let written = tape.written(functions).flat_map(|(d, results)| (d..).take(results));
+    let mut left: Vec<Register> = written.filter(is_left).collect();
     left.sort_unstable();
     left.dedup();
     left

@@ -7,6 +7,7 @@
 
 use super::instruction::LinearSolve;
 use super::memory::Memory;
+use crate::bytecode::Functions;
 use crate::codegen::instruction::{Call, Instruction, Register};
 use crate::elementary;
 
@@ -24,6 +25,14 @@ pub(crate) struct Tape {
 }
 
 impl Tape {
+    /// The registers that are written, in rows: the results of instructions, calls and linear systems.
+    pub(super) fn written(&self, functions: &Functions) -> impl Iterator<Item = (Register, usize)> {
+        let calls = self.calls.iter().map(|call| (call.d, functions.n_outputs(call.function)));
+        let solves = self.solves.iter().map(|solve| (solve.d, solve.right.len()));
+        let results = self.code.iter().filter_map(Instruction::result).map(|d| (d, 1));
+        results.chain(calls).chain(solves)
+    }
+
     /// The function whose output is all that the tape computes, where the run failed because the
     /// function gives that output no value.
     pub(crate) fn lacking(&self, failed: u32) -> Option<u32> {

@@ -72,7 +72,7 @@ impl Tape {
             && self.solves.iter().all(|solve| limits.can_solve(solve))
             && self.code.iter().all(|instruction| self.can_run(instruction, limits))
             && self.comes_to_an_end()
-            && self.keeps_links()
+            && self.keeps_links(limits.functions)
     }
 
     fn can_run(&self, instruction: &Instruction, limits: &Limits<'_>) -> bool {
@@ -131,16 +131,14 @@ impl Tape {
     }
 
     /// Whether nothing but routines writes the registers of the ways back.
-    fn keeps_links(&self) -> bool {
+    fn keeps_links(&self, functions: &Functions) -> bool {
         let mut links: Vec<Register> = self.routines.iter().map(|(_, link)| *link).collect();
         links.sort_unstable();
         let is_free = |first: Register, n: usize| {
             let at = links.partition_point(|link| *link < first);
             links.get(at).is_none_or(|link| (*link - first) as usize >= n)
         };
-        links.is_empty()
-            || self.code.iter().filter_map(Instruction::result).all(|d| is_free(d, 1))
-                && self.solves.iter().all(|solve| is_free(solve.d, solve.right.len()))
+        links.is_empty() || self.written(functions).all(|(d, results)| is_free(d, results))
     }
 }
 

@@ -236,10 +236,6 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let Rows(simulated, marks) = args.take("DATASim_Int")?;
     let given: Value = args.take("Yexp")?;
     let is_simulated = matches!(&given, Value::Array(array) if array.marks.of(0).is_some());
-    if is_simulated && marks.of(0).is_none() {
-        bail!(BAD_DATA, "`Yexp` is the result of `Eval`, and `DATASim_Int` is not";
-            help: "the simulation comes first, then the measured data: `Fit(DATASim_Int, Yexp)`");
-    }
     args.put_back("Yexp", given);
     let mut measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
@@ -255,6 +251,9 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         None => recorder.copied(simulated.row(row)),
     });
     let individuals: Vec<u64> = individuals.collect();
+    if is_simulated && individuals.is_empty() {
+        note_simulated_data(session);
+    }
     if let Some(converted) = session.fitted(&individuals, &measured) {
         measured = converted;
     }
@@ -264,6 +263,16 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())
+}
+
+/// Says once that data come from `Eval` and what is compared with them does not: scripts that invent
+/// measurements mean that, others have swapped the arguments.
+fn note_simulated_data(session: &mut Session) {
+    if session.models.is_new_note(Ident::new("simulated data")) {
+        let text = "`Yexp` is the result of `Eval`, and `DATASim_Int` is not: if they are swapped, write \
+                    `Fit(DATASim_Int, Yexp)`, the simulation first";
+        session.note(BAD_DATA, text.to_owned());
+    }
 }
 
 const FIT_ORDER: &str = r#"
