@@ -122,6 +122,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "diag",
         ],
     ),
+    ("fmi", &[]),
     ("teach", &["ga", "page", "plot", "diag"]),
     (
         "identify",

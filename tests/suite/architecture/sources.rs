@@ -13,8 +13,12 @@ pub(super) type Names = Vec<String>;
 
 /// Crates whose root is a module of their name, each with the modules in it that are not parts of
 /// that one. The other crates are nothing but their modules.
-const ROOTS: &[(&str, &[&str])] =
-    &[("identify", &[]), ("script", &["lessons", "packages", "teach"]), ("cli", &["lsp"])];
+const ROOTS: &[(&str, &[&str])] = &[
+    ("fmi", &[]),
+    ("identify", &[]),
+    ("script", &["lessons", "packages", "teach"]),
+    ("cli", &["lsp"]),
+];
 
 /// A source file.
 pub(super) struct Source {

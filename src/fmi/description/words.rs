@@ -1,0 +1,167 @@
+//! Words of the standard: causality, variability, types.
+
+/// Makes an enumeration with its words in the standard.
+macro_rules! words {
+    ($(#[$doc:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+        pub enum $name {
+            $($(#[$of])* $variant,)*
+        }
+
+        impl $name {
+            /// All of them.
+            pub const ALL: &[$name] = &[$($name::$variant),*];
+
+            /// The word of the standard.
+            pub fn word(self) -> &'static str {
+                match self {
+                    $($name::$variant => $word,)*
+                }
+            }
+
+            /// The one of this word.
+            pub fn of_word(word: &str) -> Option<$name> {
+                $name::ALL.iter().copied().find(|one| one.word() == word)
+            }
+        }
+    };
+}
+
+words! {
+    /// The part of a variable.
+    Causality {
+        /// Set before initialization (or later, if tunable), constant otherwise.
+        Parameter = "parameter",
+        /// Follows from parameters.
+        CalculatedParameter = "calculatedParameter",
+        /// Sets sizes of arrays (FMI 3.0).
+        StructuralParameter = "structuralParameter",
+        /// Set from outside.
+        Input = "input",
+        /// For outside.
+        Output = "output",
+        /// Visible, for information.
+        #[default]
+        Local = "local",
+        /// Time.
+        Independent = "independent",
+        /// A dependent parameter of a clock or partition (FMI 3.0).
+        Dependent = "dependent",
+    }
+}
+
+words! {
+    /// When a variable may change.
+    Variability {
+        /// Never.
+        Constant = "constant",
+        /// Not after initialization.
+        Fixed = "fixed",
+        /// At events, from outside.
+        Tunable = "tunable",
+        /// At events.
+        Discrete = "discrete",
+        /// Always.
+        #[default]
+        Continuous = "continuous",
+    }
+}
+
+words! {
+    /// Where the first value of a variable comes from.
+    Initial {
+        /// From its start value.
+        #[default]
+        Exact = "exact",
+        /// From an iteration that begins at its start value.
+        Approx = "approx",
+        /// From other variables.
+        Calculated = "calculated",
+    }
+}
+
+words! {
+    /// How a variable depends on another one.
+    DependencyKind {
+        /// In any way.
+        #[default]
+        Dependent = "dependent",
+        /// Linearly, with a constant factor.
+        Constant = "constant",
+        /// Linearly, with a factor that parameters may change.
+        Fixed = "fixed",
+        /// Linearly, with a factor that changes from outside.
+        Tunable = "tunable",
+        /// Linearly, with a factor that changes at events.
+        Discrete = "discrete",
+    }
+}
+
+words! {
+    /// A predefined type; FMI 2.0 calls `Float64` `Real` and `Int32` `Integer`.
+    Kind {
+        /// 32 bits.
+        Float32 = "Float32",
+        /// 64 bits.
+        #[default]
+        Float64 = "Float64",
+        /// 8 bits with sign.
+        Int8 = "Int8",
+        /// 8 bits.
+        UInt8 = "UInt8",
+        /// 16 bits with sign.
+        Int16 = "Int16",
+        /// 16 bits.
+        UInt16 = "UInt16",
+        /// 32 bits with sign.
+        Int32 = "Int32",
+        /// 32 bits.
+        UInt32 = "UInt32",
+        /// 64 bits with sign.
+        Int64 = "Int64",
+        /// 64 bits.
+        UInt64 = "UInt64",
+        /// True or false.
+        Boolean = "Boolean",
+        /// Text.
+        String = "String",
+        /// Bytes.
+        Binary = "Binary",
+        /// Literals by their numbers.
+        Enumeration = "Enumeration",
+        /// Ticks.
+        Clock = "Clock",
+    }
+}
+
+impl Kind {
+    /// Whether its values are real numbers.
+    pub fn is_float(self) -> bool {
+        matches!(self, Kind::Float32 | Kind::Float64)
+    }
+
+    /// The type of this name in FMI 2.0.
+    pub fn of_word_2(word: &str) -> Option<Kind> {
+        Some(match word {
+            "Real" => Kind::Float64,
+            "Integer" => Kind::Int32,
+            "Boolean" => Kind::Boolean,
+            "String" => Kind::String,
+            "Enumeration" => Kind::Enumeration,
+            _ => return None,
+        })
+    }
+
+    /// Its name in FMI 2.0; `None` for types which that has not.
+    pub fn word_2(self) -> Option<&'static str> {
+        Some(match self {
+            Kind::Float64 => "Real",
+            Kind::Int32 => "Integer",
+            Kind::Boolean => "Boolean",
+            Kind::String => "String",
+            Kind::Enumeration => "Enumeration",
+            _ => return None,
+        })
+    }
+}

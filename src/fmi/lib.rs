@@ -1,0 +1,20 @@
+//! Functional mock-up units (FMI 2.0.5 and 3.0.2): what their `modelDescription.xml` says, and the
+//! archive in which they come.
+//!
+//! ```text
+//! x.fmu ──archive──▶ files        modelDescription.xml ──description::read──▶ Description
+//!                                                      ◀──description::write──
+//! ```
+//!
+//! Both versions of the standard have one [`Description`]: what refers to variables by their place in
+//! FMI 2.0 and by their value reference in FMI 3.0 refers to them by their place here.
+
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
+
+pub mod archive;
+pub mod description;
+mod errors;
+
+pub use archive::Archive;
+pub use description::Description;
+pub use errors::FmuError;
