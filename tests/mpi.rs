@@ -6,7 +6,7 @@
 #![allow(clippy::disallowed_methods, reason = "expectations of tests")]
 
 #[allow(dead_code, reason = "the table of the guide uses the rest")]
-#[path = "suite/cluster.rs"]
+#[path = "suite/support/cluster.rs"]
 mod cluster;
 
 use cluster::Cluster;

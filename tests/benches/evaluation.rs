@@ -6,7 +6,7 @@ use gapilib::internals::codegen::Program;
 use gapilib::internals::sim::Residual;
 use std::hint::black_box;
 
-#[path = "../suite/flat_class.rs"]
+#[path = "../suite/support/flat_class.rs"]
 mod flat_class;
 
 const MODEL: &str = "model P parameter Real Eoc = 1.2; parameter Real R = 0.73;

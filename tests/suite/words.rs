@@ -1,7 +1,7 @@
 //! Words that messages, help, README and guide do not use, each with the term of the field that
 //! takes its place; and those that must disappear from identifiers and comments as well.
 
-use crate::shipped::project;
+use crate::support::shipped::project;
 use proc_macro2::{TokenStream, TokenTree};
 use std::cmp::Ordering;
 use std::fs;

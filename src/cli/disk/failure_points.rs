@@ -2,8 +2,8 @@
 //! file, each write into it, its sync, the renaming, appending to a journal, making folders and
 //! removing. Afterwards the results are complete, or a resume completes them to the same bytes.
 //!
-//! The world in memory of `tests/suite/faults.rs` fails whole operations; here each falls apart into
-//! its calls, on a real folder.
+//! The world in memory of `tests/suite/tools/faults.rs` fails whole operations; here each falls apart
+//! into its calls, on a real folder.
 //!
 //! Reference: the way SQLite is tested (I/O error and crash tests).
 

@@ -5,7 +5,7 @@
 //!
 //! The scaling is nalgebra's, by 2-norms ([James et al. 2014](gapilib_base::bibliography#james-2014)). On
 //! D R D⁻¹ with D from 10⁻⁶ to 10⁶ it brings the relative error of eigenvalues from 1e-1 to 3e-15
-//! (`tests/suite/lapack_accuracy.rs`).
+//! (`tests/suite/language/lapack_accuracy.rs`).
 
 use super::matrices::power_of_two;
 use nalgebra::DMatrix;

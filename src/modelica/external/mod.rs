@@ -16,7 +16,8 @@
 //! nalgebra, which is built without SIMD kernels and threads, with elementary functions in Rust: the
 //! same bits on every machine. faer is not used: it chooses its kernels by the features of the
 //! processor while the program runs. What nalgebra does not have, or has less accurately, is
-//! written here; each module says why. `tests/suite/lapack_accuracy.rs` compares all with LAPACK.
+//! written here; each module says why. `tests/suite/language/lapack_accuracy.rs` compares all with
+//! LAPACK.
 
 #[cfg(test)]
 mod any_arguments;

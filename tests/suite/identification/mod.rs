@@ -1,0 +1,21 @@
+//! Problems, populations, statistics and reports; runs that are interrupted, watched and divided.
+
+mod claims;
+mod digits;
+mod fuel_cell_benchmark;
+mod gapilib;
+mod identification_sets;
+mod identified_models;
+mod identify;
+mod laboratory;
+mod measured_time;
+mod nist_problems;
+mod operators;
+mod ranks;
+mod report_page;
+mod resume;
+mod scale;
+mod searches;
+mod shards;
+mod watching;
+mod whole_runs;

@@ -1,0 +1,86 @@
+//! Sizes of arrays in functions that run as bytecode (MLS §12.4.4, §12.4.5).
+
+use super::functions::{compiled, failure, library, of_model};
+use crate::simulation::hybrid::{compiled as model_of, simulated};
+use gapilib::Session;
+use gapilib::world::MemoryWorld;
+
+#[test]
+fn sizes_in_records_are_whole_numbers_of_the_record() {
+    // Σ i u, i = 1 … 3, and twice 2 u.
+    let functions = "record S parameter Integer m = 2; Real x[m]; end S; \
+        function made input Real u; input Integer m; output S s(m = m); algorithm \
+        for i in 1:m loop s.x[i] := i*u; end for; end made; \
+        function f {h} protected S s(m = 3) = made(u, 3); S r; Integer k = 0; algorithm \
+        while k < 1 loop k := k + 1; r.x := {u, u}; end while; \
+        y := sum(s.x) + sum(r.x)*r.m; end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    let (value, slope) = of_model(&mut program.system(), 0.5, 0).expect("a value");
+    assert_eq!((value, slope), (5.0, 10.0));
+}
+
+#[test]
+fn functions_take_arrays_of_strings() {
+    let functions = "function f {h} algorithm y := u; check({\"one\", \"two\"}, u); end f; \
+        function check input String names[:]; input Real u; protected Integer k = 0; algorithm \
+        while k < 2 loop k := k + 1; assert(u < 0, \"bad \" + names[k]); end while; end check;";
+    assert_eq!(failure(functions), "assertion-failed: bad … (at t = 0)");
+}
+
+/// An array that grows while its function runs is known only where its arguments are.
+#[test]
+fn arrays_that_grow_are_run_for_known_arguments() {
+    let model = "model Grows
+      function positive
+        input Real x[:];
+        output Real y[:];
+      algorithm
+        for i in 1:size(x, 1) loop
+          if x[i] > 0 then
+            y := cat(1, y, x[i:i]);
+          end if;
+        end for;
+      end positive;
+      parameter Real a[:] = {-2, 1, 0, -1, 2} annotation(Evaluate = true);
+      parameter Real x[:] = positive(a);
+    equation
+      assert(size(x, 1) == 2 and x[2] == 2, \"not the positive ones\");
+    end Grows;";
+    let world = MemoryWorld::new().with_file("M.mo", model);
+    let streams = world.streams();
+    let script = "openModel(\"M.mo\"); simulateModel(\"Grows\");";
+    let status = Session::new(Box::new(world)).run_text("s.mos", script);
+    assert_eq!((status.code, streams.errors().as_str()), (0, ""));
+}
+
+#[test]
+fn sizes_that_vary_at_run_time_are_those_of_the_instant() {
+    let functions = "function squares input Integer n; output Real y[n]; algorithm \
+        for i in 1:n loop y[i] := i^2; end for; end squares; \
+        function total input Integer n; input Real w; output Real s; protected Real c[n]; \
+        algorithm c := squares(n); s := w*sum(c); end total;";
+    let model = |n: &str| {
+        format!("model M {functions} Integer n = {n}; Real y = total(n, 1 + time); end M;")
+    };
+    let run = simulated(&model("if time < 0.5 then 2 elseif time < 0.75 then 0 else 4"), 1.0);
+    for (time, sum) in [(0.2, 5.0), (0.6, 0.0), (0.8, 30.0)] {
+        let (value, expected) = (run.at("y", time), (1.0 + time) * sum);
+        assert!((value - expected).abs() < 1e-12, "{value} instead of {expected} at {time}");
+    }
+    // For more than 32 it is not compiled but interpreted.
+    let run = simulated(&model("if time < 0.5 then 2 else 40"), 1.0);
+    assert!((run.at("y", 0.8) - 1.8 * 22_140.0).abs() < 1e-8);
+}
+
+#[test]
+fn sizes_of_results_must_not_vary_at_run_time() {
+    let text = "model M function f input Integer n; output Real y[n]; algorithm \
+        for i in 1:n loop y[i] := i; end for; end f; \
+        Integer n = if time < 0.5 then 2 else 3; Real y[2] = f(n); end M;";
+    let error = model_of(text).map(|_| ()).expect_err("sizes that vary");
+    assert!(
+        error.message.contains("depend") || error.message.contains("known"),
+        "{}",
+        error.message
+    );
+}

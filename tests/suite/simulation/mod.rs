@@ -1,0 +1,36 @@
+//! Models that are simulated: values over time, events, results, whole libraries.
+
+mod chattering;
+mod compliance;
+mod displacement;
+mod events_of_time;
+mod exact_solutions;
+mod exact_steps;
+mod fuel_cells;
+pub(crate) mod hybrid;
+mod hybrid_limits;
+mod ibpsa;
+mod index_reduction;
+mod initialization;
+mod linear_loops;
+mod model_files;
+mod modelica;
+mod modelica_models;
+mod models;
+mod moving_surfaces;
+mod msl;
+mod multiple_roots;
+mod notices;
+mod oracles;
+mod recorded_inputs;
+mod reference_problems;
+mod results;
+mod scalable;
+mod sensitivities;
+mod singular_derivatives;
+mod starting;
+mod translations;
+mod transport;
+mod undetermined;
+mod unread_variables;
+mod upcalls;

@@ -1,0 +1,50 @@
+//! Machine code that asks for the solution of a large linear system and calls functions: a
+//! simulation gives the same bytes as with the interpreter.
+
+use crate::tools::cli::{command, folder};
+use std::fs;
+
+const MODEL: &str = "
+model Upcalls
+  function root
+    input Real x;
+    output Real y;
+  algorithm
+    y := 1 + x*x;
+    while abs(y*y - 2 - x*x) > 1e-10*(2 + x*x) loop
+      y := 0.5*(y + (2 + x*x)/y);
+    end while;
+  end root;
+  parameter Integer n = 12;
+  Real x(start = 1, fixed = true);
+  Real w(start = 0, fixed = true);
+  Real v[n];
+equation
+  for i in 1:n loop
+    (n + i)*v[i] + sum(sin(i*j + x)*v[j] for j in 1:n) = i*w;
+  end for;
+  der(x) = w;
+  der(w) = if x > 0.9 then -root(w)*x else -root(x)*x + 0.01*v[3];
+  annotation(experiment(StopTime = 40, Tolerance = 1e-9));
+end Upcalls;
+";
+
+#[test]
+fn systems_and_functions_give_the_same_bytes_as_the_interpreter() {
+    let here = folder(&[]);
+    fs::write(here.path().join("Upcalls.mo"), MODEL).unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let arguments = ["simulate", "Upcalls.mo", "-o", name];
+        let done = command(here.path(), &arguments).args(more).output().unwrap();
+        let text = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(done.status.success(), "{text}");
+        let said = format!("{text}{}", String::from_utf8_lossy(&done.stdout));
+        let evaluations = said.split(", ").find_map(|part| part.strip_suffix(" right-hand sides"));
+        // Machine code is made after a thousand.
+        let evaluations: u32 = evaluations.and_then(|n| n.parse().ok()).expect("a count");
+        assert!(evaluations > 3000, "{said}");
+        fs::read(here.path().join(name)).unwrap()
+    };
+    let (translated, interpreted) = (run("a.csv", &[]), run("b.csv", &["--interpret"]));
+    assert!(translated.len() > 10_000 && translated == interpreted);
+}

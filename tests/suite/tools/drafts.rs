@@ -1,0 +1,121 @@
+//! `gapi new` on exports of instruments and loggers: which column means which variable, and that the draft runs.
+
+use crate::tools::cli::{folder, gapi};
+
+/// Drafts a problem for a table and a model `M`, which must name these pairs of entries, and runs it.
+fn drafted(table: &str, model: &str, entries: &[&str]) -> String {
+    let here = folder(&[("d.csv", table), ("M.mo", model)]);
+    let (code, out, errors) = gapi(&here, &["new", "d.csv", "--model", "M.mo"]);
+    let text = std::fs::read_to_string(here.path().join("d.toml")).unwrap_or_default();
+    assert!(code == 0 && out.contains("gapi identify d.toml"), "{out}{errors}\n{text}");
+    for entry in entries {
+        assert!(text.contains(entry), "`{entry}` is not in: {text}");
+    }
+    let (code, out, errors) =
+        gapi(&here, &["identify", "d.toml", "--evaluations", "30", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}\n{text}");
+    text
+}
+
+/// Rows of a table, `k` from 0.
+fn rows(count: u32, row: impl Fn(f64) -> String) -> String {
+    (0..count).map(|k| row(f64::from(k)) + "\n").collect()
+}
+
+#[test]
+fn a_battery_cycler_names_voltage_and_current() {
+    let model = "model M\n  parameter Real R0(unit = \"Ohm\") = 2e-3;\n  parameter Real R1(unit = \"Ohm\") = 1e-3;\n\
+                 parameter Real C1(unit = \"F\") = 1e4;\n  input Real I(unit = \"A\");\n  output Real V(unit = \"V\");\n\
+                 Real v1(unit = \"V\", start = 0, fixed = true);\nequation\n  C1*der(v1) = I - v1/R1;\n\
+                 V = 3.7 + R0*I + v1;\nend M;\n";
+    let head = "Data_Point,Test_Time(s),Step_Index,Current(A),Voltage(V),Aux_Temperature(C)_1\n";
+    let table = rows(30, |k| {
+        format!("{},{k},7,{},{},25", k + 1.0, 10.0 * (k % 2.0), 3.7 + 0.02 * (k % 2.0))
+    });
+    let entries = [
+        "column = \"Test_Time\"",
+        "outputs.V = { column = \"Voltage\"",
+        "inputs.I = { column = \"Current\"",
+    ];
+    let text = drafted(&(head.to_owned() + &table), model, &entries);
+    assert!(text.contains("# not used: column \"Step_Index\""), "{text}");
+}
+
+#[test]
+fn a_building_has_dates_decimal_commas_and_two_temperatures() {
+    let model = "model M\n  parameter Real C(unit = \"J/K\") = 1e6;\n  parameter Real R(unit = \"K/W\") = 0.01;\n\
+                 parameter Real Ti0(unit = \"degC\") = 20;\n  input Real Ta(unit = \"degC\");\n  input Real P(unit = \"W\");\n\
+                 output Real Ti(unit = \"degC\", start = Ti0, fixed = true);\nequation\n\
+                 C*der(Ti) = (Ta - Ti)/R + P;\nend M;\n";
+    let head = "Zeitstempel;T_aussen [°C];T_innen [°C];P_heiz [W]\n";
+    let table = rows(20, |k| {
+        let (hours, minutes) = ((k / 4.0).floor(), 15.0 * (k % 4.0));
+        format!("01.01.2023 0{hours}:{minutes:02};-1,{k};18,{};{}", 10.0 + k, 100.0 * (k % 3.0))
+    });
+    let entries = [
+        "outputs.Ti = { column = \"T_innen\"",
+        "inputs.Ta = { column = \"T_aussen\"",
+        "inputs.P = { column = \"P_heiz\"",
+        "column = \"Zeitstempel\"",
+    ];
+    let text = drafted(&(head.to_owned() + &table), model, &entries);
+    let initial = text.lines().find(|line| line.starts_with("Ti0")).unwrap();
+    assert!(initial.contains("around the first measured value"), "{initial}");
+}
+
+#[test]
+fn a_unit_or_the_beginning_of_a_name_decides() {
+    let tank = "model M\n  parameter Real k(min = 0.001, max = 1) = 0.1;\n\
+                output Real h(unit = \"m\", start = 1, fixed = true);\nequation\n  der(h) = -k*h;\nend M;\n";
+    let text = drafted(
+        &("t [min];Füllstand [cm]\n".to_owned() + &rows(8, |k| format!("{k};{}", 100.0 - 5.0 * k))),
+        tank,
+        &["outputs.h = { column = \"Füllstand\"", "converted to m"],
+    );
+    assert!(text.contains("k = { min = 0.001, max = 1.0 }"), "{text}");
+    let reactor = "model M\n  parameter Real k = 0.1;\n  parameter Real T(unit = \"degC\") = 60;\n\
+                   output Real c(start = 2, fixed = true);\nequation\n  der(c) = -k*c*T/60;\nend M;\n";
+    let text = drafted(
+        &("time_s,conc\n".to_owned() + &rows(8, |k| format!("{k},{}", 2.0 - 0.2 * k))),
+        reactor,
+        &["outputs.c = { column = \"conc\"", "column = \"time_s\""],
+    );
+    assert!(text.contains("T = { min = 40.0, max = 80.0 }"), "{text}");
+}
+
+#[test]
+fn a_curve_is_matched_by_its_units() {
+    let cell = "model M\n  parameter Real V0 = 1;\n  parameter Real R = 0.1;\n  input Real i(unit = \"A\");\n\
+                output Real V(unit = \"V\");\nequation\n  V = V0 - R*i;\nend M;\n";
+    drafted(
+        &("I [A];U [mV]\n".to_owned() + &rows(8, |k| format!("{k};{}", 900.0 - 25.0 * k))),
+        cell,
+        &["x = { variable = \"i\", column = \"I\" }", "outputs.V = { column = \"U\""],
+    );
+}
+
+#[test]
+fn without_names_and_units_the_start_value_decides() {
+    let block = "model M\n  parameter Real G(unit = \"W/K\") = 2;\n  Real T(unit = \"K\", start = 293, fixed = true);\n\
+                 Real x(start = 0, fixed = true);\nequation\n  der(T) = -G*(T - 290)/100;\n  der(x) = T - 293;\nend M;\n";
+    let text = drafted(
+        &("c1,c2,c3\n".to_owned()
+            + &rows(8, |k| format!("{k},{},{}", 5.0 * k + 40.0, 293.0 - 0.1 * k))),
+        block,
+        &["outputs.T = { column = \"c3\"", "x = { variable = \"time\", column = \"c1\" }"],
+    );
+    assert!(text.contains("it may also be `x`"), "{text}");
+}
+
+#[test]
+fn a_unit_of_another_quantity_is_no_match() {
+    let model = "model M\n  parameter Real k = 0.1;\n  output Real v(unit = \"V\", start = 5, fixed = true);\n\
+                 equation\n  der(v) = -k*v;\nend M;\n";
+    let text = drafted(
+        &("time,v_wind [m/s],Spannung\n".to_owned()
+            + &rows(8, |k| format!("{k},3,{}", 5.0 - 0.3 * k))),
+        model,
+        &["outputs.v = { column = \"Spannung\""],
+    );
+    assert!(text.contains("# not used: column \"v_wind\""), "{text}");
+}
