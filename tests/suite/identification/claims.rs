@@ -2,9 +2,9 @@
 //! `tests/claims` has its files and what is true, which `make.py` beside them has computed without the
 //! program. `gapi identify` has to say it.
 
+use crate::support::guide::blocks;
+use crate::support::program::{folder, gapi};
 use crate::support::shipped::files;
-use crate::tools::cli::{folder, gapi};
-use crate::tools::guide::blocks;
 use regex::Regex;
 use serde::Deserialize;
 use serde_json::Value;

@@ -1,8 +1,8 @@
 //! The same digits on every machine: identifications run in processes of their own, as another
 //! processor would run them, and their results are compared byte for byte.
 
+use crate::support::program::{command, folder};
 use crate::support::shipped::project;
-use crate::tools::cli::{command, folder};
 use std::fs;
 use std::path::Path;
 

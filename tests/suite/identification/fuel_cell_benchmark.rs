@@ -1,8 +1,8 @@
 //! The table of the guide's chapter on the fuel-cell benchmark: what `gapi identify` says of the shipped
 //! stacks, written between two comments of the chapter.
 
+use crate::support::program::gapi;
 use crate::support::shipped::project;
-use crate::tools::cli::gapi;
 use regex::Regex;
 use serde_json::Value;
 use std::fs;

@@ -2,7 +2,7 @@
 //! `tests/identifications/*/` is run in a world in memory; what it prints lies in the intervals of
 //! `expected.txt`, which `make.py` beside them has computed without the program.
 
-use crate::language::transcripts::world_of;
+use crate::support::transcript::world_of;
 use gapilib::{Options, Session, Transcript};
 use std::fs;
 use std::path::{Path, PathBuf};

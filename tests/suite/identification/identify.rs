@@ -642,12 +642,12 @@ fn an_unknown_output_is_refused_with_the_names_of_the_model() {
         equation der(level) = -k*level; end Tank;";
     let problem = "model = \"Tank\"\nfiles = [\"Tank.mo\"]\n[parameters]\nk = { min = 0.1, max = 1 }\n\
         [[experiment]]\ndata = \"d.csv\"\nx = \"time\"\noutputs = { q = \"q\" }\n";
-    let here = crate::tools::cli::folder(&[
+    let here = crate::support::program::folder(&[
         ("Tank.mo", model),
         ("p.toml", problem),
         ("d.csv", "time,q\n1,2\n2,1\n"),
     ]);
-    let (code, _, errors) = crate::tools::cli::gapi(&here, &["identify", "p.toml"]);
+    let (code, _, errors) = crate::support::program::gapi(&here, &["identify", "p.toml"]);
     assert_eq!(code, 1, "{errors}");
     assert!(errors.contains("has no variable `q`"), "{errors}");
     assert!(errors.contains("its variables are `time`, `level`"), "{errors}");

@@ -1,8 +1,8 @@
 //! The operators of the genetic algorithm that users choose: every entry of the tables in a
 //! problem, functions in Modelica in the place of any, and both in scripts.
 
+use crate::support::program::{folder, gapi};
 use crate::support::shipped::{self, project};
-use crate::tools::cli::{folder, gapi};
 use gapilib::Value;
 use gapilib::internals::ga::operators::KINDS;
 use std::fs;

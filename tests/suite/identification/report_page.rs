@@ -2,9 +2,9 @@
 //! a phone, light and dark. The browser is found as in `page.rs`; `GAPILIB_AXE` names the file
 //! `axe.min.js` of axe-core, whose findings then count too. What is missing is said, and passes.
 
+use crate::support::browser::{chromium, reports};
+use crate::support::program::{folder, gapi};
 use crate::support::shipped::project;
-use crate::tools::cli::{folder, gapi};
-use crate::tools::page::{chromium, reports};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

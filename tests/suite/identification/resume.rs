@@ -1,7 +1,7 @@
 //! A run that ended before its time goes on as the run that it was, or says why it cannot.
 #![cfg(unix)]
 
-use crate::tools::cli::{command, folder, gapi};
+use crate::support::program::{command, folder, gapi};
 use std::fs;
 use std::io::Read;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Several searches with different seeds: the best one is the result, as if it had been the only one.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! A study in shards: the merged files are those of one process, and what does not belong together is
 //! refused.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -146,7 +146,7 @@ fn without_mpi_a_job_is_refused() {
     let here = here();
     let run = |variables: &[(&str, &str)]| {
         let mut command =
-            crate::tools::cli::command(here.path(), &["identify", "p.toml", "--quiet"]);
+            crate::support::program::command(here.path(), &["identify", "p.toml", "--quiet"]);
         let output = command.envs(variables.iter().copied()).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };

@@ -1,7 +1,7 @@
 //! Functions in C that a library brings along (MLS §12.9), as a user meets them: the library
 //! `tests/external/Foreign`. Without a C compiler the tests that need one say so and pass.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;

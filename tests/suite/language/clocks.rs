@@ -1,7 +1,7 @@
 //! Clocks and clocked equations (MLS chapter 16) against values that the specification gives or
 //! that follow by hand.
 
-use crate::simulation::hybrid::{Run, attempt, compiled, simulated};
+use crate::support::simulated::{Run, attempt, compiled, simulated};
 use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Trajectory};
 
 #[track_caller]

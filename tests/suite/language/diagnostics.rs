@@ -1,7 +1,7 @@
 //! Each code has a script `tests/diagnostics/<slug>.mos` that makes it happen; what the user sees
 //! is the snapshot beside it.
 
-use crate::language::transcripts::world_of;
+use crate::support::transcript::world_of;
 use gapilib::internals::script::codes;
 use gapilib::{Session, Transcript};
 use std::collections::BTreeSet;

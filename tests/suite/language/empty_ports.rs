@@ -1,7 +1,7 @@
 //! Parts of an array of components without elements, in equations: no size beyond the first is
 //! known of them, and no scalar equation comes of them.
 
-use crate::tools::cli::{command, folder};
+use crate::support::program::{command, folder};
 use std::fs;
 
 const MODEL: &str = "

@@ -1,6 +1,6 @@
 //! Inverses that functions declare (MLS §12.8).
 
-use crate::simulation::hybrid::simulated;
+use crate::support::simulated::simulated;
 
 #[test]
 fn an_inverse_that_is_none_is_not_used() {
@@ -13,7 +13,7 @@ fn an_inverse_that_is_none_is_not_used() {
         parameter Real k = 2; Real x; Real y; \
         equation 3*rate(x, k) + 1 = 13; drop(y, k) = 2; end Main;";
     let run = simulated(model, 1.0);
-    assert!((run.column("x")[0] - 1.0).abs() < 1e-12 && (run.column("y")[0] - 12.0).abs() < 1e-12);
+    assert!((run.values("x")[0] - 1.0).abs() < 1e-12 && (run.values("y")[0] - 12.0).abs() < 1e-12);
 }
 
 #[test]
@@ -29,8 +29,8 @@ fn an_inverse_of_a_part_of_the_range_solves_an_equation_that_stands_alone() {
         Real x; Real y; Real z; \
         equation rate(x) = 0.06; rate(y) = 0.075 - z; z = 0.1*y; end Main;";
     let run = simulated(model, 1.0);
-    assert!((run.column("x")[0] - 0.01).abs() < 1e-15);
-    assert!((run.column("y")[0] - 0.025 / 0.6).abs() < 1e-9);
+    assert!((run.values("x")[0] - 0.01).abs() < 1e-15);
+    assert!((run.values("y")[0] - 0.025 / 0.6).abs() < 1e-9);
 }
 
 #[test]
@@ -43,5 +43,5 @@ fn a_declared_inverse_solves_its_equation() {
         function drop input Real y; input Real k; output Real u; \
         algorithm u := y/k*abs(y/k); end drop; \
         parameter Real k = 2; Real x; equation 3*rate(x, k) + 1 = 13; end Main;";
-    assert_eq!(simulated(model, 1.0).column("x")[0], 4.0);
+    assert_eq!(simulated(model, 1.0).values("x")[0], 4.0);
 }

@@ -1,7 +1,7 @@
 //! Sizes of arrays in functions that run as bytecode (MLS §12.4.4, §12.4.5).
 
 use super::functions::{compiled, failure, library, of_model};
-use crate::simulation::hybrid::{compiled as model_of, simulated};
+use crate::support::simulated::{compiled as model_of, simulated};
 use gapilib::Session;
 use gapilib::world::MemoryWorld;
 

@@ -1,7 +1,7 @@
 //! Functions that run as bytecode in models: their values are those of the interpreter, their
 //! derivatives those of its differences.
 
-use crate::simulation::hybrid::simulated;
+use crate::support::simulated::simulated;
 use gapilib::Diagnostic;
 use gapilib::Session;
 use gapilib::Value;
@@ -427,7 +427,7 @@ fn the_second_derivative_function_is_used() {
         Real x(start = 0.3, fixed = true); Real y; Real w; Real a; \
         equation der(x) = cos(time) + x; y = f(x, 2); w = der(y); a = der(w); end Main;";
     let run = simulated(model, 1.0);
-    let column = |name: &str| run.column(name)[0];
+    let column = |name: &str| run.values(name)[0];
     let (speed, bent) = (1.0 + 0.3, 1.0 + 0.3);
     let (sin, cos) = 0.6f64.sin_cos();
     assert!((column("w") - 14.0 * cos * speed).abs() < 1e-12);
@@ -521,7 +521,7 @@ fn parameters_without_value_are_faults_of_who_reads_them() {
     let run = simulated(&text("time + chosen(r, false)"), 1.0);
     assert_eq!(run.at("y", 1.0), 2.0);
     for reading in ["chosen(r, true)", "time + r.b", "chosen(r, time > 0.5)"] {
-        let (program, _, _, ended) = crate::simulation::hybrid::attempt(&text(reading), 1.0);
+        let (program, _, _, ended) = crate::support::simulated::attempt(&text(reading), 1.0);
         let message = program.explain(&ended.expect_err(reading)).message.clone();
         assert!(message.contains("a variable has no value in the function `M.part`"), "{message}");
         let warnings: Vec<&str> = program.warnings().iter().map(|w| w.message.as_str()).collect();
@@ -619,7 +619,7 @@ fn partial_derivatives_are_functions() {
     }
     let negative = text.replace("fx(time, 3)", "fx(-time - 1, 3)");
     let error =
-        crate::simulation::hybrid::attempt(&negative, 1.0).3.expect_err("the assertion of f");
+        crate::support::simulated::attempt(&negative, 1.0).3.expect_err("the assertion of f");
     assert!(format!("{error:?}").contains("Assert"), "{error:?}");
 }
 
@@ -631,7 +631,7 @@ fn partial_derivatives_need_scalar_real_inputs() {
              function g = der(f, {by}); Real a = g(1); end M;"
         );
         let error =
-            crate::simulation::hybrid::compiled(&text).map(|_| ()).expect_err("no derivative");
+            crate::support::simulated::compiled(&text).map(|_| ()).expect_err("no derivative");
         assert!(error.message.contains("is not a scalar Real input of `M.f`"), "{}", error.message);
     }
 }

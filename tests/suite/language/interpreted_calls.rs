@@ -1,9 +1,9 @@
 //! Functions that the interpreter carries out while a model is simulated: sizes inside them are known only
 //! when they are called (MLS §12.4.4).
 
-use crate::simulation::hybrid::{attempt, simulated};
+use crate::support::program::{folder, gapi};
 use crate::support::shipped;
-use crate::tools::cli::{folder, gapi};
+use crate::support::simulated::{attempt, simulated};
 use gapilib::Session;
 use gapilib::internals::mat;
 use gapilib::world::MemoryWorld;

@@ -1,7 +1,7 @@
 //! Libraries on a disk: each script of `tests/libraries/*/` runs in a world in memory that holds
 //! the files of its folder; the transcript is compared with the snapshot beside the script.
 
-use crate::language::transcripts::{transcript_of, world_of};
+use crate::support::transcript::{transcript_of, world_of};
 use gapilib::internals::name::Name;
 use gapilib::internals::script::models::simulation;
 use gapilib::internals::source::SourceId;

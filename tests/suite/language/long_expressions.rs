@@ -1,7 +1,7 @@
 //! Lists of 100,000 operands (MLS §A.2.7), which generated models and scripts have: they are no
 //! deeper than one operand, and threads of tests have 2 MiB of stack.
 
-use crate::simulation::hybrid::simulated;
+use crate::support::simulated::simulated;
 use gapilib::Session;
 use gapilib::internals::source::SourceId;
 use gapilib::internals::syntax::ast::Expression;

@@ -1,7 +1,7 @@
 //! Mistakes of a first hour: what is written or called as in other programs, and the remedy that the
 //! message names.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 
 const DECAY: &str = "model Decay\n  parameter Real k = 1;\n  Real x(start = 1, fixed = true);\n\
                      equation\n  der(x) = -k*x;\nend Decay;\n";

@@ -36,5 +36,5 @@ mod state_machines;
 mod structural_parameters;
 mod structure;
 mod syntax_properties;
-pub(crate) mod transcripts;
+mod transcripts;
 mod unassigned_variables;

@@ -1,6 +1,6 @@
 //! Functions and models of the shipped libraries, called from scripts that stand alone.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 use std::fs;
 
 #[test]

@@ -1,7 +1,7 @@
 //! State machines (MLS chapter 17) against values that the specification gives or that follow by
 //! hand.
 
-use crate::simulation::hybrid::{Run, attempt, compiled, simulated};
+use crate::support::simulated::{Run, attempt, compiled, simulated};
 
 /// The values at the ticks 0, 1, 2, … of a clock with this interval.
 #[track_caller]

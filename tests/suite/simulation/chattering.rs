@@ -1,6 +1,6 @@
 //! Chattering, sliding and accumulating events, against exact solutions; work is counted.
 
-use super::hybrid::{compiled, file, near};
+use crate::support::simulated::{compiled, file, near};
 use gapilib::internals::codegen::{Access, Program};
 use gapilib::internals::runtime::{System, Treated};
 use gapilib::internals::sim::{

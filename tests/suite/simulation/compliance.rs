@@ -5,7 +5,7 @@
 use crate::support::conformance::{
     Corpus, Ended, Failure, File, Ledger, Stage, folder, is_asked_for, judge_all, run, say,
 };
-use crate::tools::cli;
+use crate::support::program;
 use gapilib::Diagnostic;
 use gapilib::internals::external::errors::EXTERNAL_OUTSIDE;
 use gapilib::internals::flatten::errors::NOT_SUPPORTED as UNSUPPORTED_LANGUAGE;
@@ -112,10 +112,10 @@ fn wrong_with_c(root: &Path, case: &Case) -> Option<String> {
     let (class, library) = (class.to_string(), root.parent()?.display().to_string());
     let file = root.join(case.name.replace('.', "/")).with_extension("mo");
     let file = file.display().to_string();
-    let here = cli::folder(&[]);
+    let here = program::folder(&[]);
     let arguments = ["simulate", &file, "--library", &library, "--model", &class];
     let more = ["--allow-external", "--output", "r.csv"];
-    let (code, _, errors) = cli::gapi(&here, &[&arguments[..], &more].concat());
+    let (code, _, errors) = program::gapi(&here, &[&arguments[..], &more].concat());
     let slug = errors.split_once("error[").and_then(|(_, rest)| rest.split_once(']'));
     let slug = slug.map_or("failed", |(slug, _)| slug);
     let is_missing = [NOT_SUPPORTED.slug, UNSUPPORTED_LANGUAGE.slug].contains(&slug);

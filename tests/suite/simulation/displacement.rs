@@ -1,7 +1,7 @@
 //! Events during a slide or a rest that displace the states, the surface, or the fields.
 
 use super::chattering::{METHODS, run};
-use super::hybrid::near;
+use crate::support::simulated::near;
 use gapilib::internals::sim::Treatment;
 
 const TOLERANCES: [f64; 3] = [1e-4, 1e-6, 1e-8];

@@ -1,7 +1,7 @@
 //! Relations on time: at the start itself and right after it (MLS §8.5, §8.6), and those that come and
 //! go between two output points.
 
-use super::hybrid::{near, simulated, simulated_with};
+use crate::support::simulated::{near, simulated, simulated_with};
 use gapilib::internals::sim::{OutputGrid, Settings};
 
 /// der(x) = (if condition then 3 else 1) - x/2, steady at the start.

@@ -340,7 +340,7 @@ fn functions_are_differentiated() {
 
 #[test]
 fn the_name_of_an_enumeration_variable_is_compared_by_number() {
-    let run = super::hybrid::simulated(
+    let run = crate::support::simulated::simulated(
         "model M type E = enumeration(low, high); E e = if time > 0.5 then E.high else E.low;
          Boolean b = String(e) == \"high\"; end M;",
         1.0,

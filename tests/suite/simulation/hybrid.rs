@@ -1,144 +1,7 @@
 //! Models with events, from text to trajectory, against exact solutions.
 
-use gapilib::Diagnostic;
-use gapilib::internals::causalize::causalize;
-use gapilib::internals::codegen::{Access, Program};
-use gapilib::internals::flatten::{FlatModel, Library, flatten};
-use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{Events, OutputGrid, Settings, SimError, Simulator, Trajectory};
-use gapilib::internals::source::SourceMap;
-use gapilib::internals::syntax::parse_stored_definition;
-use std::sync::Arc;
-
-/// A finished simulation.
-pub(crate) struct Run {
-    program: Arc<Program>,
-    system: System,
-    rows: Trajectory,
-}
-
-/// The flat model of the first class of a text.
-fn flat(text: &str) -> Result<FlatModel, Diagnostic> {
-    let source = SourceMap::default().add("model.mo", text);
-    let file = parse_stored_definition(source, text).expect("the text parses");
-    let mut library = Library::new();
-    let names = library.load(&file).expect("the classes can be loaded");
-    let flattened = flatten(&library, &names[0], &[]);
-    flattened.map(|f| f.model).map_err(|mut errors| errors.swap_remove(0))
-}
-
-pub(crate) fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
-    flat(text).and_then(|flat| causalize(&flat)).and_then(Program::compile)
-}
-
-pub(crate) fn attempt(
-    text: &str,
-    stop: f64,
-) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
-    let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
-    let mut system = program.system();
-    let output = OutputGrid::Intervals(50);
-    let settings = Settings { stop, tolerance: 1e-9, output, ..Settings::default() };
-    let mut rows = Trajectory::default();
-    let ended = Simulator::new().run(&mut system, &settings, &mut rows).map(|_| ());
-    (program, system, rows, ended)
-}
-
-pub(crate) fn simulated(text: &str, stop: f64) -> Run {
-    let (program, system, rows, ended) = attempt(text, stop);
-    finished(program, system, rows, ended)
-}
-
-/// The same with other settings.
-pub(crate) fn simulated_with(text: &str, settings: &Settings) -> Run {
-    let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
-    let mut system = program.system();
-    let mut rows = Trajectory::default();
-    let ended = Simulator::new().run(&mut system, settings, &mut rows).map(|_| ());
-    finished(program, system, rows, ended)
-}
-
-fn finished(
-    program: Arc<Program>,
-    system: System,
-    rows: Trajectory,
-    ended: Result<(), SimError>,
-) -> Run {
-    if let Err(error) = ended {
-        panic!("{}", program.explain(&error).message);
-    }
-    Run { program, system, rows }
-}
-
-/// The model of this name in `tests/simulation`.
-pub(crate) fn file(name: &str) -> String {
-    let root = env!("CARGO_MANIFEST_DIR");
-    std::fs::read_to_string(format!("{root}/tests/simulation/{name}.mo")).expect("a model")
-}
-
-impl Run {
-    /// All values of a variable.
-    pub(crate) fn column(&self, name: &str) -> Vec<f64> {
-        let at = self.program.find_variable(name).expect("the variable exists");
-        match self.program.variables()[at].access {
-            Access::Observed { column, negated } => {
-                let sign = if negated { -1.0 } else { 1.0 };
-                self.rows.column(column).iter().map(|value| sign * value).collect()
-            }
-            Access::Time => self.rows.time().to_vec(),
-            _ => vec![self.system.value(at).expect("a parameter has a value"); self.rows.len()],
-        }
-    }
-
-    /// The value at the start, before the events of that time.
-    pub(crate) fn first(&self, name: &str) -> f64 {
-        self.column(name)[0]
-    }
-
-    pub(crate) fn last(&self, name: &str) -> f64 {
-        *self.column(name).last().expect("a row")
-    }
-
-    /// The value behind all events at a time of the output grid or of an event.
-    pub(crate) fn at(&self, name: &str, time: f64) -> f64 {
-        let rows = self.rows.time().iter().zip(self.column(name));
-        let near = rows.filter(|(t, _)| (**t - time).abs() <= 1e-9);
-        near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
-    }
-
-    /// The value of the last row up to a time: that of what varies at events only.
-    pub(crate) fn held(&self, name: &str, time: f64) -> f64 {
-        let rows = self.rows.time().iter().zip(self.column(name));
-        rows.take_while(|(t, _)| **t <= time).last().expect("a row before this time").1
-    }
-
-    /// Times of events.
-    pub(crate) fn events(&self) -> Vec<f64> {
-        let pairs = self.rows.time().windows(2).filter(|t| t[0] == t[1]);
-        let mut times: Vec<f64> = pairs.map(|t| t[0]).collect();
-        times.dedup();
-        times
-    }
-
-    /// Times at which a variable jumps.
-    pub(crate) fn jumps(&self, name: &str) -> Vec<f64> {
-        let (values, times) = (self.column(name), self.rows.time());
-        let pairs = values.windows(2).zip(times.windows(2));
-        pairs.filter(|(v, t)| v[0] != v[1] && t[0] == t[1]).map(|(_, t)| t[1]).collect()
-    }
-}
-
-#[track_caller]
-pub(crate) fn near(value: f64, expected: f64, tolerance: f64) {
-    let error = (value - expected).abs() / expected.abs().max(1.0);
-    assert!(error <= tolerance, "{value} instead of {expected}");
-}
-
-#[track_caller]
-pub(crate) fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(values.len(), expected.len(), "{values:?} instead of {expected:?}");
-    values.iter().zip(expected).for_each(|(value, expected)| near(*value, *expected, tolerance));
-}
+use crate::support::simulated::{all_near, attempt, compiled, file, near, refused, simulated};
+use gapilib::internals::sim::{Events, OutputGrid, Settings, Simulator, Trajectory};
 
 #[test]
 fn a_ball_bounces_twenty_times_at_the_exact_times() {
@@ -535,14 +398,6 @@ fn initial_algorithms_set_parameters_and_states() {
     near(run.last("x"), 30.0, 1e-7);
 }
 
-/// The fault of a model that cannot be sorted or compiled: code, message, helps.
-pub(crate) fn refused(text: &str) -> String {
-    match compiled(text) {
-        Ok(_) => panic!("the model is accepted"),
-        Err(d) => format!("{}: {}; {}", d.code.slug, d.message, d.helps.join("; ")),
-    }
-}
-
 #[test]
 fn an_initial_system_that_does_not_fit_is_reported_by_name() {
     let (program, _, _, ended) = attempt(
@@ -612,7 +467,7 @@ fn a_sample_that_is_shown_is_true_at_its_instants_only() {
     let text = "model S Boolean b = sample(0.5, 0.5); Integer n(start = 0); Integer off(start = 0);
         equation when b then n = pre(n) + 1; end when; when not b then off = pre(off) + 1; end when; end S;";
     let run = simulated(text, 2.1);
-    let rows = run.rows.time().iter().zip(run.column("b"));
+    let rows = run.trajectory.time().iter().zip(run.values("b"));
     let on: Vec<f64> = rows.filter(|(_, b)| *b != 0.0).map(|(t, _)| *t).collect();
     assert_eq!(on, [0.5, 1.0, 1.5, 2.0]);
     assert_eq!((run.last("b"), run.last("n"), run.last("off")), (0.0, 4.0, 4.0));
@@ -674,7 +529,7 @@ fn loops_without_states_are_solved_at_every_point() {
         equation p = 100*sin(6.283185307179586*time)^2/(1 + 1e-3*(T - 300)); q = 50*(T - 300);
         p = q; end H;";
     let run = simulated(text, 1.0);
-    for (time, p) in run.rows.time().iter().zip(run.column("q")) {
+    for (time, p) in run.trajectory.time().iter().zip(run.values("q")) {
         let power = 100.0 * (std::f64::consts::TAU * time).sin().powi(2);
         // d (1 + d/1000) = power/50 for the difference d.
         let d = 500.0 * ((1.0 + 4e-3 * power / 50.0).sqrt() - 1.0);

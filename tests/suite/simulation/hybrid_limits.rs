@@ -1,8 +1,7 @@
 //! Models at the limits of their events: what rounding decides, what steps do not see, what
 //! statements choose at run time.
 
-use super::hybrid::{all_near, near, simulated};
-use super::index_reduction::{Run, compiled};
+use crate::support::simulated::{all_near, near, program, simulated, simulated_with};
 use gapilib::internals::sim::Settings;
 
 #[test]
@@ -121,7 +120,7 @@ fn a_function_without_outputs_checks_its_arguments() {
         )
     };
     simulated(&text(1.0), 1.0);
-    let (program, _, _, ended) = super::hybrid::attempt(&text(3.0), 1.0);
+    let (program, _, _, ended) = crate::support::simulated::attempt(&text(3.0), 1.0);
     let message = program.explain(&ended.unwrap_err()).message.clone();
     assert!(message.contains("not ascending"), "{message}");
 }
@@ -285,7 +284,7 @@ fn a_dip_within_one_step_is_seen() {
     for (method, tolerance) in [("dassl", 1e-6), ("dassl", 1e-9), ("radau", 1e-6)] {
         let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings = Settings { method, tolerance, stop: 2.0, ..Settings::default() };
-        let run = Run::with(text, settings);
+        let run = simulated_with(text, &settings);
         assert_eq!(run.values("n").last(), Some(&1.0), "{tolerance}");
         assert_eq!(run.values("never").last(), Some(&0.0), "{tolerance}");
         run.follows("x", 1e-4, |t| (t - 1.0) * (t - 1.0));
@@ -299,7 +298,7 @@ fn an_assertion_fails_at_the_time_when_it_begins_to() {
     for method in ["dassl", "radau", "rodas4", "dopri5", "euler"] {
         let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings = Settings { method, ..Settings::default() };
-        let error = gapilib::internals::sim::simulate(&mut compiled(text).system(), &settings);
+        let error = gapilib::internals::sim::simulate(&mut program(text).system(), &settings);
         let error = error.expect_err("the assertion fails");
         assert!((error.time - 0.5).abs() < 1e-6, "{}: {}", method.name, error.time);
     }
@@ -316,7 +315,7 @@ fn a_branch_that_begins_behind_an_instant_is_not_evaluated_at_it() {
         z = if time <= 0 then 5 else y/time;
       end Mean;";
     let run = simulated(mean, 1.0);
-    assert_eq!(run.column("z")[0], 5.0);
+    assert_eq!(run.values("z")[0], 5.0);
     near(run.last("z"), 2.0, 1e-9);
     let later = "model Later
         Real y(start = 0, fixed = true);

@@ -1,80 +1,8 @@
 //! Systems of higher index, from Modelica text, against exact solutions.
 
+use crate::support::simulated::{Run, flat, program};
 use gapilib::internals::causalize::causalize;
-use gapilib::internals::codegen::{Access, Program};
-use gapilib::internals::flatten::{FlatModel, Library, flatten};
-use gapilib::internals::runtime::System;
-use gapilib::internals::sim::{Settings, SimErrorKind, Trajectory, simulate};
-use gapilib::internals::source::SourceMap;
-use gapilib::internals::syntax::parse_stored_definition;
-use std::sync::Arc;
-
-/// The flat model of the last class of a text.
-pub(crate) fn flat(text: &str) -> FlatModel {
-    let sources = SourceMap::default();
-    let source = sources.add("test.mo", text);
-    let file = parse_stored_definition(source, text).expect("Modelica");
-    let mut library = Library::new();
-    let names = library.load(&file).expect("a loadable file");
-    let class = names.last().expect("a class");
-    flatten(&library, class, &[]).expect("a model").model
-}
-
-pub(crate) fn compiled(text: &str) -> Arc<Program> {
-    let sorted = causalize(&flat(text)).unwrap_or_else(|error| panic!("{error}"));
-    Program::compile(sorted).expect("it compiles")
-}
-
-/// A simulation with the names of its variables.
-pub(crate) struct Run {
-    pub(crate) program: Arc<Program>,
-    pub(crate) system: System,
-    pub(crate) trajectory: Trajectory,
-}
-
-impl Run {
-    pub(crate) fn of(text: &str, stop: f64) -> Run {
-        Run::with(text, Settings { stop, tolerance: 1e-9, ..Settings::default() })
-    }
-
-    pub(crate) fn with(text: &str, settings: Settings) -> Run {
-        let program = compiled(text);
-        let mut system = program.system();
-        match simulate(&mut system, &settings) {
-            Ok((trajectory, _)) => Run { program, system, trajectory },
-            Err(error) => panic!("{}", program.explain(&error)),
-        }
-    }
-
-    /// All values of a variable.
-    pub(crate) fn values(&self, name: &str) -> Vec<f64> {
-        let at = self.program.find_variable(name).expect("the variable exists");
-        let n = self.trajectory.len();
-        match self.program.variables()[at].access {
-            Access::Observed { column, negated } => {
-                let sign = if negated { -1.0 } else { 1.0 };
-                self.trajectory.column(column).iter().map(|v| sign * v).collect()
-            }
-            Access::Time => self.trajectory.time().to_vec(),
-            _ => vec![self.system.value(at).expect("a parameter has a value"); n],
-        }
-    }
-
-    /// Compares a variable with a function of time at every output point.
-    #[track_caller]
-    pub(crate) fn follows(&self, name: &str, tolerance: f64, exact: impl Fn(f64) -> f64) {
-        for (t, value) in self.trajectory.time().iter().zip(self.values(name)) {
-            let expected = exact(*t);
-            let error = (value - expected).abs() / expected.abs().max(1.0);
-            assert!(error <= tolerance, "{name}({t}) = {value} instead of {expected}");
-        }
-    }
-
-    pub(crate) fn states(&self) -> Vec<&str> {
-        let sorted = self.program.sorted();
-        sorted.states.iter().map(|v| &*sorted.dae.variable(*v).name).collect()
-    }
-}
+use gapilib::internals::sim::{Settings, SimErrorKind, simulate};
 
 #[test]
 fn a_given_position_determines_speed_and_force() {
@@ -170,7 +98,7 @@ fn branches_that_are_never_taken_do_not_count() {
     let decided = text
         .replace("height = 0;", "height = h;")
         .replace("Real s;", "Real s; parameter Real h = 0;");
-    assert_eq!(compiled(&decided).sorted().states.len(), 1);
+    assert_eq!(program(&decided).sorted().states.len(), 1);
 }
 
 #[test]
@@ -283,11 +211,11 @@ fn redundant_initial_values_must_agree() {
         )
     };
     Run::of(&text(0.5), 1.0).follows("x", 1e-6, |t| (-4.0 / 3.0 * t).exp());
-    let program = compiled(&text(0.7));
+    let program = program(&text(0.7));
     let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
     assert!(matches!(error.kind, SimErrorKind::Initialization(_)), "{error:?}");
     assert_eq!(program.explain(&error).code.slug, "initialization-failed");
-    let alias = compiled(
+    let alias = crate::support::simulated::program(
         "model A Real x(start = 1, fixed = true); Real y(start = 2, fixed = true);
          equation der(x) = -x; y = x; end A;",
     );
@@ -298,7 +226,7 @@ fn redundant_initial_values_must_agree() {
 fn no_number_of_differentiations_makes_a_singular_system_regular() {
     let text =
         "model M Real x; Real y; Real z; equation der(x) = 1; x = time; z = y + time; end M;";
-    let error = causalize(&flat(text)).expect_err("it is singular");
+    let error = causalize(&flat(text).expect("a model")).expect_err("it is singular");
     assert_eq!(error.code.slug, "singular-system", "{error}");
 }
 

@@ -1,6 +1,6 @@
 //! Initial systems that are hard to solve, and loops inside the evaluation, from Modelica text.
 
-use super::index_reduction::{Run, compiled};
+use crate::support::simulated::{Run, program, simulated_with};
 use gapilib::internals::sim::{Settings, find_integrator, simulate};
 
 /// Its only root is 0; from 3 every step leads away from it.
@@ -54,7 +54,7 @@ fn guesses_of_zero_are_not_divided_by() {
 fn a_loop_without_a_solution_is_named() {
     let text = "model S Real x(start = 3); Real y(start = 1); parameter Real k = 1;
         equation x + y = 2 + k*time; x*exp(0*time) + k*y = 3 + time; end S;";
-    let program = compiled(text);
+    let program = program(text);
     let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
     let diagnostic = program.explain(&error);
     assert!(
@@ -101,7 +101,7 @@ fn fixed_start_values_of_one_alias_set_must_agree() {
         )
     };
     Run::of(&text(-1.0), 1.0).follows("y", 1e-9, |t| -1.0 - t);
-    let program = compiled(&text(1.0));
+    let program = program(&text(1.0));
     let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
     let message = program.explain(&error).message.clone();
     assert!(message.contains("initial"), "{message}");
@@ -126,7 +126,7 @@ fn explicit_methods_solve_loops_in_every_evaluation() {
             method: find_integrator(method).unwrap(),
             ..Settings::default()
         };
-        let run = Run::with(text, settings);
+        let run = simulated_with(text, &settings);
         let tolerance = if method == "euler" { 1e-3 } else { 1e-8 };
         run.follows("x", tolerance, |t| (-t).exp());
         run.follows("z", tolerance, |t| (-t).exp() / (1.0 + (-t).exp()));

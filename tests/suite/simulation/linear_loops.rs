@@ -1,6 +1,6 @@
 //! Linear algebraic loops, from Modelica text, against exact solutions.
 
-use super::index_reduction::{Run, compiled};
+use crate::support::simulated::{Run, flat, program, simulated_with};
 use gapilib::internals::causalize::{Block, causalize};
 use gapilib::internals::codegen::Program;
 use gapilib::internals::sim::{Settings, simulate};
@@ -57,7 +57,8 @@ fn the_slopes_of_a_loop_reach_the_integrator() {
         end Slopes;";
     for method in ["dassl", "rodas4", "dopri5"] {
         let method = gapilib::internals::sim::find_integrator(method).unwrap();
-        let run = Run::with(text, Settings { method, tolerance: 1e-9, ..Settings::default() });
+        let run =
+            simulated_with(text, &Settings { method, tolerance: 1e-9, ..Settings::default() });
         assert_eq!(loops(&run.program), (vec![3], vec![]));
         run.follows("x", 1e-7, |t| (-t).exp());
         run.follows("a[2]", 1e-9, |_| 1.0);
@@ -80,7 +81,7 @@ fn a_singular_loop_with_solutions_has_the_smallest() {
 fn contradicting_equations_are_an_error() {
     let text = "model Contradiction Real f[2]; parameter Real k = 1;
         equation f[1] + f[2] = 6; k*sin(time + 1)*(f[1] + f[2]) = 7; end Contradiction;";
-    let program = compiled(text);
+    let program = program(text);
     let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
     let diagnostic = program.explain(&error);
     assert!(diagnostic.message.contains("`f["), "{diagnostic}");
@@ -108,7 +109,7 @@ fn parameters_that_are_zero_are_not_divided_by() {
 
 #[test]
 fn what_cannot_be_set_becomes_a_number() {
-    let sorted = causalize(&super::index_reduction::flat(AXIS)).unwrap();
+    let sorted = causalize(&flat(AXIS).expect("a model")).unwrap();
     let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
     assert_eq!(kind("e[2]"), gapilib::internals::lower::VariableKind::Constant(1.0));
     assert_eq!(kind("r[3]"), gapilib::internals::lower::VariableKind::Parameter { tunable: true });
@@ -225,7 +226,7 @@ fn a_program_grows_with_the_entries_of_a_loop_not_with_their_square() {
               z[{n}]^2 + z[{n} - 1]^2 = 2;
             end Squares;"
         );
-        let program = compiled(&text);
+        let program = program(&text);
         assert_eq!(loops(&program), (vec![], vec![n]));
         program.to_bytes().expect("a program without external functions").len()
     };

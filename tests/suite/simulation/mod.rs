@@ -7,7 +7,7 @@ mod events_of_time;
 mod exact_solutions;
 mod exact_steps;
 mod fuel_cells;
-pub(crate) mod hybrid;
+mod hybrid;
 mod hybrid_limits;
 mod ibpsa;
 mod index_reduction;

@@ -1,7 +1,7 @@
 //! Slides along surfaces that move or are curved: they cost steps as smooth solutions do.
 
 use super::chattering::{METHODS, run};
-use super::hybrid::near;
+use crate::support::simulated::near;
 
 /// Simulates for 10 s and compares with values there.
 fn slides(text: &str, expected: &[(&str, f64)]) {

@@ -1,6 +1,6 @@
 //! Loops at solutions where the Jacobian is singular and that are isolated all the same.
 
-use super::hybrid::{near, simulated};
+use crate::support::simulated::{near, simulated};
 
 /// A fan whose head is given: its speed is that of r |r| = p.
 fn fan(head: &str, pressure: &str) -> String {

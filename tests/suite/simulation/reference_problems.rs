@@ -3,7 +3,7 @@
 //! correct digits, the least of all components, and evaluations of the right-hand side at three
 //! tolerances. `cargo test reference_problems -- --nocapture` prints them.
 
-use super::index_reduction::{Run, compiled};
+use crate::support::simulated::{program, simulated_with};
 use gapilib::internals::codegen::{Access, Program};
 use gapilib::internals::sim::{OutputGrid, Settings, Statistics, find_integrator, simulate};
 use std::sync::Arc;
@@ -155,7 +155,7 @@ impl Problem {
     fn program(&self) -> Arc<Program> {
         let root = env!("CARGO_MANIFEST_DIR");
         let file = format!("{root}/tests/simulation/test_set/{}.mo", self.name);
-        compiled(&std::fs::read_to_string(file).expect("a model"))
+        program(&std::fs::read_to_string(file).expect("a model"))
     }
 
     /// Significant correct digits at the end, and what they cost.
@@ -299,7 +299,7 @@ fn charge_pump() {
 
 /// The largest error at the end, relative to max(|reference|, 1).
 fn error_at_end(text: &str, names: &[&str], reference: &[f64], settings: Settings) -> f64 {
-    let run = Run::with(text, settings);
+    let run = simulated_with(text, &settings);
     let end = |name: &str| *run.values(name).last().expect("a row");
     let pairs = names.iter().zip(reference);
     pairs.map(|(name, e)| (end(name) - e).abs() / e.abs().max(1.0)).fold(0.0, f64::max)

@@ -1,7 +1,7 @@
 //! Equations that have values where their symbolic derivatives have none: `sqrt(y)` at 0, and norms
 //! at 0, whose derivatives are 0/0. Answers are closed forms.
 
-use super::index_reduction::Run;
+use crate::support::simulated::{Run, simulated_with};
 
 #[test]
 fn a_loop_through_a_square_root_starts_at_zero() {
@@ -32,7 +32,7 @@ fn states_move_away_from_where_a_loop_has_no_derivative() {
         let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings =
             gapilib::internals::sim::Settings { method, tolerance: 1e-8, ..Default::default() };
-        let run = Run::with(text, settings);
+        let run = simulated_with(text, &settings);
         run.follows("x", 1e-7, |t| t);
         run.follows("s", 1e-6, |t| ((1.0 + 4.0 * t).sqrt() - 1.0) / 2.0);
     }
@@ -40,7 +40,7 @@ fn states_move_away_from_where_a_loop_has_no_derivative() {
 
 #[test]
 fn a_domain_error_of_the_residual_is_still_one() {
-    let compiled = super::index_reduction::compiled(
+    let compiled = crate::support::simulated::program(
         "model M Real x(start = 1, fixed = true); Real y; equation der(x) = -1; y = sqrt(x); end M;",
     );
     let settings = gapilib::internals::sim::Settings { stop: 2.0, ..Default::default() };
@@ -76,7 +76,7 @@ fn the_derivative_of_a_norm_changes_sign_at_zero() {
 /// What is no sum of squares has no derivative at zero.
 #[test]
 fn the_derivative_of_another_root_at_zero_is_refused() {
-    let compiled = super::index_reduction::compiled(
+    let compiled = crate::support::simulated::program(
         "model M Real u(start = 0, fixed = true), v(start = 0, fixed = true); Real s, d;
          equation der(u) = 2; der(v) = 1; s = sqrt(u^2 - v^2); d = der(s); end M;",
     );

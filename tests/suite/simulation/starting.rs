@@ -1,8 +1,7 @@
 //! What keeps correct models from starting or going on, against exact solutions: divisions by unknowns that
 //! begin at zero, overflows on the way to a limit, constraints hidden by numbers, preferred states.
 
-use super::hybrid::simulated;
-use super::index_reduction::{Run, compiled};
+use crate::support::simulated::{Run, program, simulated, simulated_with};
 use gapilib::internals::sim::{Settings, simulate};
 
 #[test]
@@ -14,7 +13,7 @@ fn an_unknown_below_a_fraction_is_not_divided_by_where_it_begins() {
     let run = Run::of(text, 0.1);
     run.follows("g", 1e-12, |t| 2.0 / (2.0 * (-t).exp() - 3.0));
     // No g fulfils it: an error, not a number.
-    let program = compiled("model Z Real g; equation time = 1/g; end Z;");
+    let program = program("model Z Real g; equation time = 1/g; end Z;");
     let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
     assert_eq!(program.explain(&error).code.slug, "domain-error");
 }
@@ -38,7 +37,7 @@ fn an_overflow_that_a_variable_takes_is_an_error() {
     for equations in
         ["x = exp(1e3*time)", "der(x) = cosh(1e3*time)", "x + 0 = 2*sinh(1e3*time) - 1"]
     {
-        let program = compiled(&format!("model O Real x; equation {equations}; end O;"));
+        let program = program(&format!("model O Real x; equation {equations}; end O;"));
         let settings = Settings { stop: 1.0, ..Settings::default() };
         let error = simulate(&mut program.system(), &settings).unwrap_err();
         let diagnostic = program.explain(&error);
@@ -88,7 +87,7 @@ fn a_relation_without_effect_ends_no_simulation() {
     // While q holds, nothing depends on the relation, which changes with every error of x.
     let text = "model Q Real x(start = 0, fixed = true); Real y; Boolean q(start = true, fixed = true);
         equation der(x) = 1e4*(sin(314*time) - x); y = x + 1e-7*sin(1e7*x); q = y <= x or pre(q); end Q;";
-    let run = Run::with(text, Settings { stop: 0.1, ..Settings::default() });
+    let run = simulated_with(text, &Settings { stop: 0.1, ..Settings::default() });
     run.follows("q", 0.0, |_| 1.0);
 }
 
@@ -100,7 +99,7 @@ fn a_followed_relation_acts_when_it_matters() {
         equation der(x) = 1e4*(sin(314*time) - x) + (if time > 0.07 then 1e8 else 0);
           y = x + 1e-7*sin(1e7*x);
           q = (if time > 0.05 then y <= x - 5 or x < 2 else y <= x or pre(q)); end A;";
-    let run = Run::with(text, Settings { stop: 0.1, ..Settings::default() });
+    let run = simulated_with(text, &Settings { stop: 0.1, ..Settings::default() });
     for (t, q) in run.trajectory.time().iter().zip(run.values("q")) {
         let expected = if *t < 0.07 { 1.0 } else { 0.0 };
         let is_clear = (t - 0.07).abs() > 1e-6;

@@ -1,8 +1,8 @@
 //! Translated models that are kept from one process to the next: the same results as translated
 //! anew, and never those of what has changed since.
 
+use crate::support::program::{command, folder};
 use crate::support::shipped;
-use crate::tools::cli::{command, folder};
 use gapilib::Session;
 use gapilib::internals::codegen::Program;
 use gapilib::internals::script::models::simulation::{self, SimulationOptions};

@@ -1,6 +1,6 @@
 //! Variable `delay` and `spatialDistribution` against exact solutions of transport.
 
-use super::hybrid::{all_near, attempt, near, refused, simulated};
+use crate::support::simulated::{all_near, attempt, near, refused, simulated};
 
 fn failure(text: &str, stop: f64) -> String {
     let (program, _, _, ended) = attempt(text, stop);

@@ -1,7 +1,7 @@
 //! Systems that are structurally regular and yet singular: one of many solutions is not taken
 //! without a word, and contradictions are errors.
 
-use super::hybrid::{compiled, near};
+use crate::support::simulated::{compiled, near};
 use gapilib::Session;
 use gapilib::internals::codegen::Access;
 use gapilib::internals::sim::{Settings, simulate};

@@ -1,7 +1,7 @@
 //! Variables that results show and nothing reads: where they have no value, a simulation that somebody
 //! listens to goes on and says so; what anything depends on must have a value.
 
-use super::hybrid::{compiled, near};
+use crate::support::simulated::{compiled, near};
 use gapilib::internals::codegen::Access;
 use gapilib::internals::sim::{Settings, Simulator, Trajectory};
 

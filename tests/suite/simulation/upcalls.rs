@@ -1,7 +1,7 @@
 //! Machine code that asks for the solution of a large linear system and calls functions: a
 //! simulation gives the same bytes as with the interpreter.
 
-use crate::tools::cli::{command, folder};
+use crate::support::program::{command, folder};
 use std::fs;
 
 const MODEL: &str = "

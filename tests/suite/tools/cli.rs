@@ -1,10 +1,9 @@
 //! The program as a user starts it: arguments in; output, files and exit code out.
 
+use crate::support::program::{LINE, command, folder, gapi};
 use crate::support::shipped::project;
 use std::fs;
-use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
-use tempfile::TempDir;
+use std::process::{Child, Command, Stdio};
 
 const DECAY: &str = "\
 model Decay
@@ -15,30 +14,6 @@ equation
   annotation(experiment(StopTime = 1));
 end Decay;
 ";
-
-/// A working directory with these files.
-pub(crate) fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
-    }
-    folder
-}
-
-pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
-    command.args(arguments).current_dir(folder).env_remove("NO_COLOR").env_remove("MODELICAPATH");
-    command
-}
-
-/// What a run left: exit code, standard output, standard error.
-pub(crate) fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let Output { status, stdout, stderr } = command(folder.path(), arguments).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (status.code().expect("ended by itself"), text(stdout), text(stderr))
-}
 
 #[test]
 fn version_and_help() {
@@ -728,7 +703,7 @@ fn a_script_that_fails_says_so_first() {
                   F := Fit(Eval(\"Line.mo\", \"Line\", Xexp, P, {\"a\", \"b\"}, \"x\", \"y\"), Yexp);\n\
                   RunScript(\"sub.mos\");\n";
     let here = folder(&[
-        ("Line.mo", crate::tools::script_tests::LINE),
+        ("Line.mo", LINE),
         ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
         ("sub.mos", "y = 1;\nx = zeros(2)[3];\n"),
         ("fit.mos", script),
@@ -771,7 +746,7 @@ fn journals_are_described() {
                    x = { variable = \"x\", column = \"t\" }\noutputs = { y = \"y\" }\n\
                    [stop]\nevaluations = 200\n";
     let here = folder(&[
-        ("Line.mo", crate::tools::script_tests::LINE),
+        ("Line.mo", LINE),
         ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
         ("p.toml", problem),
         ("trace.mos", "Cross(1, 1, {{1, 2}, {3, 4}}, {1})\n"),

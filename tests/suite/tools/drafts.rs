@@ -1,6 +1,6 @@
 //! `gapi new` on exports of instruments and loggers: which column means which variable, and that the draft runs.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 
 /// Drafts a problem for a table and a model `M`, which must name these pairs of entries, and runs it.
 fn drafted(table: &str, model: &str, entries: &[&str]) -> String {

@@ -1,7 +1,7 @@
 //! `gapi fmt`: layouts, what is never changed, and files.
 
+use crate::support::program::{command, folder, gapi};
 use crate::support::shipped::project;
-use crate::tools::cli::{command, folder, gapi};
 use gapilib::internals::diag::render::render;
 use gapilib::internals::format::{Failure, Language, format};
 use gapilib::internals::source::{SourceId, SourceMap};

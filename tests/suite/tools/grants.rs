@@ -5,8 +5,8 @@
 //! here.
 #![cfg(unix)]
 
+use crate::support::program::{command, folder};
 use crate::support::shipped::project;
-use crate::tools::cli::{command, folder};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::symlink;

@@ -1,28 +1,13 @@
 //! The guide in `docs/`: every file that it tells to save and every command that it shows is tried,
 //! chapter by chapter, and says what the guide says.
 
+use crate::support::guide::blocks;
+use crate::support::program::{folder, gapi};
 use crate::support::shipped::project;
-use crate::tools::cli::{folder, gapi};
 use tempfile::TempDir;
 
 /// Where the chapters are that the program writes itself.
 const REFERENCE: &str = "reference";
-
-/// The fenced blocks of a chapter: what stands behind the fence, and the lines.
-pub(crate) fn blocks(chapter: &str) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    let mut open: Option<(String, String)> = None;
-    for line in chapter.lines() {
-        match (line.strip_prefix("```"), &mut open) {
-            (Some(kind), None) => open = Some((kind.to_owned(), String::new())),
-            (Some(_), Some(_)) => found.extend(open.take()),
-            (None, Some((_, text))) => text.push_str(&format!("{line}\n")),
-            (None, None) => {}
-        }
-    }
-    assert!(open.is_none(), "a block is not closed");
-    found
-}
 
 /// The words of a command; what stands in quotation marks is one.
 fn words(command: &str) -> Vec<&str> {

@@ -2,7 +2,7 @@
 //! opens a screen or waits for a key is started on a pseudo-terminal whose other side is closed then.
 #![cfg(target_os = "linux")]
 
-use crate::tools::cli::{command, folder};
+use crate::support::program::{command, folder};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use std::fs::File;
 use std::io::Read as _;
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 const FILES: &[(&str, &str)] = &[
-    ("Line.mo", crate::tools::script_tests::LINE),
+    ("Line.mo", crate::support::program::LINE),
     ("d.csv", "t,y\n0,1\n1,3.1\n2,4.9\n3,7\n"),
     ("short.mos", SHORT),
     ("long.mos", LONG),

@@ -1,8 +1,8 @@
 //! The lessons of `gapi lesson`: unsolved, each fails with a message that guides; solved, it passes;
 //! a wrong answer fails for the reason that it says.
 
+use crate::support::program::{command, folder, gapi};
 use crate::support::shipped::project;
-use crate::tools::cli::{command, folder, gapi};
 use gapilib::Value;
 use gapilib::internals::lessons::{self, Lesson, Verdict};
 use gapilib::world::MemoryWorld;

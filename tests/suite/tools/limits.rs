@@ -1,6 +1,6 @@
 //! Limits of time and memory end every command, in whatever loop it is.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 use std::time::{Duration, Instant};
 
 /// A model that takes long to be compiled, and more memory than is allowed here.

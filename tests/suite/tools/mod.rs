@@ -1,20 +1,20 @@
 //! The program as its users meet it: commands, sessions, files, prompts, pages and editors.
 
 mod bad_input;
-pub(crate) mod cli;
+mod cli;
 mod compat;
 mod drafts;
 mod faults;
 mod formatting;
 mod fuzzing;
 mod grants;
-pub(crate) mod guide;
+mod guide;
 mod hangup;
 mod lessons;
 mod limits;
 mod lsp;
 mod mat;
-pub(crate) mod page;
+mod page;
 mod permissions;
 mod plot;
 mod repl;

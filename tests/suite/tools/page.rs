@@ -1,25 +1,11 @@
 //! The page of `gapi teach --html` in a real browser: every control is used, on a desktop and on a
-//! phone. `GAPILIB_CHROMIUM` names the browser; else `chromium`, `chromium-browser` or
-//! `google-chrome` on the path is taken if it tells its version: some systems have a script there that
-//! asks to install one. Where there is none, the test says so and passes.
+//! phone. Where there is no browser, the test says so and passes.
 
+use crate::support::browser::{chromium, reports};
+use crate::support::program::{folder, gapi};
 use crate::support::shipped::project;
-use crate::tools::cli::{folder, gapi};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-pub(crate) fn chromium() -> Option<PathBuf> {
-    if let Some(named) = std::env::var_os("GAPILIB_CHROMIUM") {
-        return Some(PathBuf::from(named));
-    }
-    let folders: Vec<PathBuf> =
-        std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).collect();
-    let names = ["chromium", "chromium-browser", "google-chrome"];
-    let mut all = names.iter().flat_map(|name| folders.iter().map(move |f| f.join(name)));
-    all.find(|path| {
-        Command::new(path).arg("--version").output().is_ok_and(|out| out.status.success())
-    })
-}
 
 /// The page after all that its scripts do, as the browser has it then.
 fn shown(chromium: &Path, here: &Path, page: &str) -> String {
@@ -31,12 +17,6 @@ fn shown(chromium: &Path, here: &Path, page: &str) -> String {
         .output()
         .expect("the browser starts");
     String::from_utf8_lossy(&out.stdout).into_owned()
-}
-
-/// What the script of the test has reported: one line for each check.
-pub(crate) fn reports(dom: &str) -> Vec<String> {
-    let inner = dom.split_once("[[").and_then(|(_, rest)| Some(rest.split_once("]]")?.0));
-    inner.unwrap_or_else(|| panic!("no report in\n{dom}")).lines().map(str::to_owned).collect()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What scripts and models may do to the disk and to the terminal: the ways around it that were
 //! found stay closed.
 
-use crate::tools::cli::{command, folder, gapi};
+use crate::support::program::{command, folder, gapi};
 use std::fs;
 use std::path::Path;
 

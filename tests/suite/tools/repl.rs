@@ -1,6 +1,6 @@
 //! The prompt, as a user meets it who types line by line.
 
-use crate::tools::cli::{command, folder};
+use crate::support::program::{command, folder};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
@@ -159,7 +159,7 @@ fn a_session_is_saved_as_a_script_that_does_the_same() {
     let expected = "openModel(\"Plant.mo\");\nx = 2;\n// failed:\n// y = nowhere\nans := 3*x;\n\
                     z = ans + 1;\nz;\n";
     assert_eq!(script, expected);
-    let (code, out, errors) = crate::tools::cli::gapi(&here, &["run", "s.mos"]);
+    let (code, out, errors) = crate::support::program::gapi(&here, &["run", "s.mos"]);
     assert_eq!((code, out.as_str()), (0, " = 7\n"), "{errors}");
     let said = saved("1\n:save s.mos\n");
     assert!(said.contains("`s.mos` exists already"), "{said}");

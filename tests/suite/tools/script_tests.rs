@@ -1,11 +1,7 @@
 //! `gapi test`, `gapi help`, permissions and limits, as a user meets them.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{LINE, folder, gapi};
 use std::fs;
-
-/// A straight line.
-pub(crate) const LINE: &str = "model Line input Real x; parameter Real a = 1; parameter Real b = 1; \
-                               output Real y; equation y = a + b*x; end Line;\n";
 
 #[test]
 fn a_transcript_is_accepted_then_agrees_then_differs() {

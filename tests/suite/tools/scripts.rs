@@ -1,7 +1,7 @@
 //! The shipped scripts.
 
+use crate::support::program::{folder, gapi};
 use crate::support::shipped;
-use crate::tools::cli::{folder, gapi};
 use gapilib::internals::source::SourceMap;
 use gapilib::internals::{mat, syntax};
 use std::path::Path;

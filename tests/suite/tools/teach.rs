@@ -1,6 +1,6 @@
 //! `gapi teach` and `gapi run --trace` as a user starts them.
 
-use crate::tools::cli::{folder, gapi};
+use crate::support::program::{folder, gapi};
 
 /// Two searches of thirty generations with twelve individuals, without an elite and with one.
 pub(crate) const SEARCH: &str = include_str!("../../teach/search.mos");

@@ -1,6 +1,6 @@
 //! The prompt, as a user meets it at a terminal: what is pasted and typed ahead, Ctrl-C and Ctrl-D.
 
-use crate::tools::cli::{command, folder};
+use crate::support::program::{command, folder};
 use rexpect::session::{PtySession, spawn_command};
 use tempfile::TempDir;
 
@@ -219,7 +219,7 @@ fn files_carry_no_commands_to_the_terminal() {
         ("s.mos", "x = 1\n"),
         ("s.mos.snap", &snap),
         (&format!("{EVIL}.mos"), "x = 1\n"),
-        ("Line.mo", crate::tools::script_tests::LINE),
+        ("Line.mo", crate::support::program::LINE),
         ("d.csv", &data),
         (
             "read.mos",

@@ -1,6 +1,6 @@
 //! A client of `gapi lsp`: what an editor sends, over standard input and output.
 
-use crate::tools::cli::command;
+use crate::support::program::command;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};

@@ -1,7 +1,7 @@
 //! The server ends with its client, whatever it is about to do.
 
 use super::client::{Client, uri};
-use crate::tools::cli::folder;
+use crate::support::program::folder;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What an editor asks about open documents.
 
 use super::client::{Client, uri};
-use crate::tools::cli::folder;
+use crate::support::program::folder;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Classes of libraries: what they leave to those who use them is not reported, mistakes are.
 
 use super::client::{Client, uri};
-use crate::tools::cli::folder;
+use crate::support::program::folder;
 use serde_json::json;
 use std::fs;
 use std::path::Path;

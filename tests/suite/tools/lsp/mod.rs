@@ -6,7 +6,7 @@ mod ending;
 mod features;
 mod libraries;
 
-use crate::tools::cli::folder;
+use crate::support::program::folder;
 use client::{Client, uri};
 use serde_json::{Value, json};
 use std::fs;
