@@ -406,7 +406,7 @@ impl<'a> Builder<'a> {
         lowering.loops = loops.to_vec();
         lowering.live = live;
         let name = function.name();
-        let outputs = match super::expressions::Target::function(lowering.target, &name) {
+        let outputs = match super::expressions::FunctionCalls::function(lowering.target, &name) {
             Some(user) => lowering.outputs_for(targets, &user, arguments, right.span)?,
             None => lowering.builtin_outputs(&name.to_string(), function, arguments, right.span)?,
         };

@@ -12,7 +12,10 @@ use super::equation::{Assertion, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::execution::Loops;
 use super::expressions::message_parts;
-use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
+use super::expressions::{
+    Array, Binary, Branch, Choice, ConditionalValues, FunctionCalls, Lowered, Lowering, Operations,
+    StringOperations, TimeOperators, Unary, VariableReferences,
+};
 use super::function::{component_type, local_value};
 use super::shape::UNKNOWN_TEXT;
 use crate::diag::{Diagnostic, Fault};
@@ -21,7 +24,8 @@ use crate::execute::{
     Branches, Decision, Domain, Done, Executed, Flow, Iteration, Targets, execute, statements,
 };
 use crate::fault;
-use crate::name::{Ident, Name};
+use crate::flatten::FlatModel;
+use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator};
@@ -430,7 +434,7 @@ impl Domain for Call<'_, '_> {
     }
 }
 
-impl Target for Call<'_, '_> {
+impl Operations for Call<'_, '_> {
     type Scalar = Expr;
 
     fn constant(&mut self, value: f64) -> Expr {
@@ -465,16 +469,22 @@ impl Target for Call<'_, '_> {
         self.builder.apply(function, arguments, true, span)
     }
 
+    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(subscript_unknown(span))
+    }
+}
+
+impl ConditionalValues for Call<'_, '_> {
+    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
+        self.builder.connective(is_and, a, b)
+    }
+
     fn enter(&mut self, condition: Expr, holds: bool) {
         self.builder.enter(condition, holds);
     }
 
     fn leave(&mut self) {
         self.builder.leave();
-    }
-
-    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
-        self.builder.connective(is_and, a, b)
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
@@ -488,11 +498,9 @@ impl Target for Call<'_, '_> {
     fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
         self.builder.end_if(branch, values)
     }
+}
 
-    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        Err(subscript_unknown(span))
-    }
-
+impl VariableReferences for Call<'_, '_> {
     fn reference(
         &mut self,
         path: &str,
@@ -505,12 +513,14 @@ impl Target for Call<'_, '_> {
         self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    fn function(&self, name: &Name) -> Option<Arc<Function>> {
-        self.builder.function(name)
-    }
-
     fn value_type(&self, path: &str) -> Option<ValueType> {
         component_type(&self.function, path)
+    }
+}
+
+impl FunctionCalls for Call<'_, '_> {
+    fn flat(&self) -> &FlatModel {
+        self.builder.flat
     }
 
     fn call(
@@ -522,31 +532,23 @@ impl Target for Call<'_, '_> {
         super::function::call(self.builder, function, arguments, span)
     }
 
-    fn runs_once(&self) -> bool {
-        self.builder.runs_once()
-    }
-
-    fn is_strict(&self) -> bool {
-        self.builder.is_strict()
-    }
-
-    fn warn(&mut self, warnings: Vec<Diagnostic>) {
-        self.builder.warn(warnings);
+    fn interpreted(&self) -> &Cell<u64> {
+        self.builder.interpreted()
     }
 
     fn gives_up(&self) -> bool {
         self.builder.calls.inlined == 0
     }
 
-    fn interpreted(&self) -> &Cell<u64> {
-        self.builder.interpreted()
+    fn runs_once(&self) -> bool {
+        self.builder.runs_once()
     }
 
-    fn functions(&self) -> Vec<Arc<Function>> {
-        self.builder.flat.functions.values().cloned().collect()
-    }
-
-    fn resources(&self) -> crate::external::Resources {
-        self.builder.flat.resources.clone()
+    fn warn(&mut self, warnings: Vec<Diagnostic>) {
+        self.builder.warn(warnings);
     }
 }
+
+impl StringOperations for Call<'_, '_> {}
+
+impl TimeOperators for Call<'_, '_> {}

@@ -4,7 +4,7 @@ use super::builder::Builder;
 use super::equation::{Assertion, Level};
 use super::errors::NOT_SUPPORTED;
 use super::events::Termination;
-use super::expressions::{Lowered, Lowering, StringPart, Target};
+use super::expressions::{FunctionCalls, Lowered, Lowering, StringPart};
 use super::expressions::{message_parts, message_text, nth};
 use super::function::{confirms, fails, prints};
 use super::loops::LoopVariable;
@@ -35,7 +35,7 @@ impl Builder<'_> {
         loops: &[LoopVariable<Expr>],
     ) -> Result<Option<Level>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
-        let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
+        let Some(user) = FunctionCalls::function(self, &function.name()) else { return Ok(None) };
         let level = match (prints(&user), fails(&user)) {
             (true, _) => Level::Message,
             (_, true) => Level::Error,
@@ -94,7 +94,7 @@ impl Builder<'_> {
         loops: &[LoopVariable<Expr>],
     ) -> Result<Option<Expr>, Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &value.kind else { return Ok(None) };
-        let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
+        let Some(user) = FunctionCalls::function(self, &function.name()) else { return Ok(None) };
         if !confirms(&user) {
             return Ok(None);
         }
@@ -117,7 +117,7 @@ impl Builder<'_> {
             return Ok(());
         }
         let name = function.name();
-        let Some(user) = Target::function(self, &name) else {
+        let Some(user) = FunctionCalls::function(self, &name) else {
             return Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span));
         };
         if acts && prints(&user) && self.has_numbers(nth(arguments, 0, "string"), loops) {

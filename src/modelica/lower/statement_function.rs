@@ -5,7 +5,7 @@
 use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::execution::Loops;
-use super::expressions::{Array, Lowered, Lowering, Target};
+use super::expressions::{Array, Lowered, Lowering, VariableReferences};
 use super::function::call_of_any_size;
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
@@ -60,7 +60,7 @@ impl Builder<'_> {
         for (Read { path, is_previous }, name) in &known {
             let value_type = self.value_type(path).unwrap_or(ValueType::Real);
             let reference = reference_to(Ident::new(path), s.span);
-            let mut value = Target::reference(self, path, &reference)?;
+            let mut value = VariableReferences::reference(self, path, &reference)?;
             if *is_previous {
                 value = self.previous_values(path, &reference)?;
             }
@@ -100,7 +100,7 @@ impl Builder<'_> {
         reference: &ComponentReference,
     ) -> Result<Lowered<Expr>, Diagnostic> {
         self.execution.raw += 1;
-        let own = Target::reference(self, path, reference);
+        let own = VariableReferences::reference(self, path, reference);
         self.execution.raw -= 1;
         match own? {
             Lowered::Array(Array { dims, elements }) => {

@@ -7,14 +7,16 @@ use super::dae::{Homotopy, Relation, VariableKind};
 use super::equation::{Assertion, Level};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{
-    Array, Binary, Branch, ClockedCall, Lowered, Lowering, StringPart, Target, Unary,
+    Array, Binary, Branch, ClockedCall, ConditionalValues, FunctionCalls, Lowered, Lowering,
+    Operations, StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
 };
 use super::shape::UNKNOWN_TEXT;
 use super::string_array::StringArray;
 use crate::diag::Diagnostic;
+
 use crate::eval::{Function, ValueType};
 use crate::fault;
-use crate::flatten::{BaseType, Variability};
+use crate::flatten::{BaseType, FlatModel, Variability};
 use crate::functions::{Builtin, Clocked, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -25,7 +27,7 @@ use indexmap::IndexSet;
 use std::cell::Cell;
 use std::sync::Arc;
 
-impl Target for Builder<'_> {
+impl Operations for Builder<'_> {
     type Scalar = Expr;
 
     fn constant(&mut self, value: f64) -> Expr {
@@ -109,16 +111,47 @@ impl Target for Builder<'_> {
         }
     }
 
+    fn element(
+        &mut self,
+        elements: &[Expr],
+        position: Expr,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        if self.varies(position) || elements.is_empty() {
+            return Err(fault!(NO_CONSTANT_VALUE,
+                "this subscript must be known at translation, or be discrete";
+                help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
+            .at(span));
+        }
+        self.subscript_assertion(elements.len(), position, span);
+        Ok(self.chosen(elements, 0, position))
+    }
+
+    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
+        if actual == simplified {
+            return actual;
+        }
+        let Homotopy { active, lambda } = self.homotopy_variables();
+        let pool = &mut self.dae.pool;
+        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
+        let difference = pool.sub(actual, simplified);
+        let part = pool.mul(lambda, difference);
+        let between = pool.add(simplified, part);
+        pool.if_then_else(active, between, actual)
+    }
+}
+
+impl ConditionalValues for Builder<'_> {
+    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
+        Builder::connective(self, is_and, a, b)
+    }
+
     fn enter(&mut self, condition: Expr, holds: bool) {
         self.enter_branch(condition, holds);
     }
 
     fn leave(&mut self) {
         self.leave_branch();
-    }
-
-    fn connective(&mut self, is_and: bool, a: Expr, b: Expr) -> Expr {
-        Builder::connective(self, is_and, a, b)
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
@@ -140,27 +173,9 @@ impl Target for Builder<'_> {
         let pairs = branch.values.iter().zip(values);
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
+}
 
-    fn structural_value(&mut self, condition: Expr) -> Option<f64> {
-        self.evaluate_structural(condition).ok().flatten()
-    }
-
-    fn element(
-        &mut self,
-        elements: &[Expr],
-        position: Expr,
-        span: Span,
-    ) -> Result<Expr, Diagnostic> {
-        if self.varies(position) || elements.is_empty() {
-            return Err(fault!(NO_CONSTANT_VALUE,
-                "this subscript must be known at translation, or be discrete";
-                help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
-            .at(span));
-        }
-        self.subscript_assertion(elements.len(), position, span);
-        Ok(self.chosen(elements, 0, position))
-    }
-
+impl VariableReferences for Builder<'_> {
     fn reference(
         &mut self,
         path: &str,
@@ -195,10 +210,6 @@ impl Target for Builder<'_> {
         Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
     }
 
-    fn interpreted(&self) -> &Cell<u64> {
-        &self.calls.functions.interpreted
-    }
-
     fn sizes(&self, path: &str) -> Option<Vec<usize>> {
         let (position, _, variable) = self.flat.variables.get_full(path)?;
         let is_number = variable.base != BaseType::String || self.is_varying_text(position);
@@ -215,17 +226,6 @@ impl Target for Builder<'_> {
         Ok(Some(self.scalar_now(self.scalars.first[number].0 + position as u32)))
     }
 
-    fn constructor_of(&self, object: Expr) -> Option<Expression> {
-        let variable = self.dae.pool.as_variable(object)?;
-        let at = self.flat_position(variable)?;
-        self.flat.variables.get_index(at)?.1.binding.clone()
-    }
-
-    fn function(&self, name: &Name) -> Option<Arc<Function>> {
-        let bare = Name { global: false, parts: name.parts.clone() };
-        self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
-    }
-
     fn value_type(&self, path: &str) -> Option<ValueType> {
         Some(match &self.flat.variables.get(path)?.base {
             BaseType::Real => ValueType::Real,
@@ -236,6 +236,22 @@ impl Target for Builder<'_> {
             BaseType::ExternalObject(class) => ValueType::ExternalObject(class.clone()),
             BaseType::Clock => ValueType::Any,
         })
+    }
+
+    fn constructor_of(&self, object: Expr) -> Option<Expression> {
+        let variable = self.dae.pool.as_variable(object)?;
+        let at = self.flat_position(variable)?;
+        self.flat.variables.get_index(at)?.1.binding.clone()
+    }
+
+    fn structural_value(&mut self, condition: Expr) -> Option<f64> {
+        self.evaluate_structural(condition).ok().flatten()
+    }
+}
+
+impl FunctionCalls for Builder<'_> {
+    fn flat(&self) -> &FlatModel {
+        self.flat
     }
 
     fn call(
@@ -256,28 +272,35 @@ impl Target for Builder<'_> {
         super::function::interpreted_call(self, function, arguments, span)
     }
 
-    fn runs_once(&self) -> bool {
-        self.place.initial || self.place.at_start
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.calls.functions.interpreted
     }
 
-    fn is_strict(&self) -> bool {
-        self.flat.strict
+    fn runs_once(&self) -> bool {
+        self.place.initial || self.place.at_start
     }
 
     fn warn(&mut self, warnings: Vec<Diagnostic>) {
         self.dae.warnings.extend(warnings);
     }
+}
 
-    fn is_clock(&self, e: &Expression) -> bool {
-        super::clocks::is_clock(self.flat, e)
-    }
-
+impl StringOperations for Builder<'_> {
     fn string_number(&mut self, text: &Arc<str>) -> Option<Expr> {
         Some(self.number_of(text))
     }
 
     fn composes(&self) -> bool {
         true
+    }
+
+    fn compose(&mut self, parts: &[StringPart<Expr>], _: Span) -> Result<Expr, Diagnostic> {
+        let (code, arguments) = self.calls.functions.composer(parts);
+        Ok(self.dae.pool.call(code, 0, &arguments))
+    }
+
+    fn needs_string_outputs(&mut self, needed: bool) {
+        self.calls.functions.needs_string_outputs = needed;
     }
 
     fn string_binding(&self, path: &str) -> Option<Expression> {
@@ -289,16 +312,9 @@ impl Target for Builder<'_> {
     fn evaluates_string_parameters(&mut self) -> Option<&mut bool> {
         Some(&mut self.calls.evaluates_string_parameters)
     }
+}
 
-    fn needs_string_outputs(&mut self, needed: bool) {
-        self.calls.functions.needs_string_outputs = needed;
-    }
-
-    fn compose(&mut self, parts: &[StringPart<Expr>], _: Span) -> Result<Expr, Diagnostic> {
-        let (code, arguments) = self.calls.functions.composer(parts);
-        Ok(self.dae.pool.call(code, 0, &arguments))
-    }
-
+impl TimeOperators for Builder<'_> {
     fn begin_temporal(
         &mut self,
         entry: &Builtin,
@@ -325,25 +341,15 @@ impl Target for Builder<'_> {
         }
     }
 
-    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
-        if actual == simplified {
-            return actual;
-        }
-        let Homotopy { active, lambda } = self.homotopy_variables();
-        let pool = &mut self.dae.pool;
-        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
-        let difference = pool.sub(actual, simplified);
-        let part = pool.mul(lambda, difference);
-        let between = pool.add(simplified, part);
-        pool.if_then_else(active, between, actual)
-    }
-
-    fn functions(&self) -> Vec<Arc<Function>> {
-        self.flat.functions.values().cloned().collect()
-    }
-
-    fn resources(&self) -> crate::external::Resources {
-        self.flat.resources.clone()
+    fn temporal(
+        &mut self,
+        entry: &Builtin,
+        operator: Temporal,
+        arguments: Vec<Array<Expr>>,
+        _: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        self.temporal_operator(entry, operator, arguments, span)
     }
 
     fn clocked(
@@ -356,23 +362,16 @@ impl Target for Builder<'_> {
         self.clocked_operator(entry, operator, call, span)
     }
 
-    fn temporal(
-        &mut self,
-        entry: &Builtin,
-        operator: Temporal,
-        arguments: Vec<Array<Expr>>,
-        _: bool,
-        span: Span,
-    ) -> Result<Array<Expr>, Diagnostic> {
-        self.temporal_operator(entry, operator, arguments, span)
-    }
-
     fn spatial_distribution(
         &mut self,
         arguments: &[Array<Expr>],
         span: Span,
     ) -> Result<[Expr; 2], Diagnostic> {
         Builder::spatial_distribution(self, arguments, span)
+    }
+
+    fn is_clock(&self, e: &Expression) -> bool {
+        super::clocks::is_clock(self.flat, e)
     }
 }
 

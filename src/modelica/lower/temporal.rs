@@ -6,7 +6,7 @@ use super::dae::VariableKind;
 use super::equation::{Assertion, Equation, Level};
 use super::errors::{ARRAY_MISMATCH, NOT_DISCRETE, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
-use super::expressions::{Array, StringPart, Target, size_fault};
+use super::expressions::{Array, Operations, StringPart, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};

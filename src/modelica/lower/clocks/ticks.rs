@@ -9,7 +9,7 @@ use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
 use crate::lower::dae::VariableKind;
 use crate::lower::equation::Equation;
-use crate::lower::expressions::Target;
+use crate::lower::expressions::Operations;
 use crate::source::Span;
 use crate::symbolic::{Expr, RelationOperator, VarId};
 

@@ -1,7 +1,7 @@
 //! Subscripts and matrix construction (MLS §10.4, §10.5).
 
 use super::builtins::mismatch;
-use super::{Array, Binary, Lowered, Lowering, Target};
+use super::{Array, Binary, Choice, Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
@@ -9,16 +9,6 @@ use crate::functions;
 use crate::lower::errors::ARRAY_MISMATCH;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Expression, Subscript};
-
-/// The positions that a subscript chooses from one dimension.
-pub(crate) enum Choice<S> {
-    /// Known positions from 0; `keeps` if the dimension stays.
-    Known { positions: Vec<usize>, keeps: bool },
-    /// One position (from 1) that is computed.
-    Computed(S),
-    /// Positions (from 1) of which some are computed; the dimension stays.
-    ComputedVector(Vec<S>),
-}
 
 impl<T: Target> Lowering<'_, T> {
     /// `a[i, :]`

@@ -1,7 +1,7 @@
 //! Strings that are made when what is translated runs: of Strings, and of numbers as `String` writes them
 //! (MLS §3.7.1).
 
-use super::varying_strings::computed;
+use super::target::computed_string;
 use super::{Array, Choice, Lowered, Lowering, StringPart, Target};
 use crate::diag::{At, Diagnostic};
 use crate::eval::ValueType;
@@ -47,7 +47,7 @@ impl<T: Target> Lowering<'_, T> {
             parts.push(match side {
                 Lowered::Text(text) if !text.contains(UNKNOWN_TEXT) => StringPart::Text(text),
                 Lowered::Numbered(number) => StringPart::Numbered(number),
-                _ => return Err(computed(span)),
+                _ => return Err(computed_string(span)),
             });
         }
         self.target.compose(&parts, span).map(Lowered::Numbered)

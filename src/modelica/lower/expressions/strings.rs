@@ -64,7 +64,7 @@ impl<T: Target> Lowering<'_, T> {
         if let ([Value::String(name)], true) =
             (values.as_slice(), FIND_FILES.contains(&function.name.to_string().as_str()))
         {
-            let path = self.target.resources().path(name).map_err(|fault| fault.at(span))?;
+            let path = self.target.flat().resources.path(name).map_err(|fault| fault.at(span))?;
             return Ok(Some(vec![Lowered::Text(path.into())]));
         }
         match self.interpreted(function, values, span) {
@@ -358,7 +358,7 @@ struct Compiling<'a, T> {
 
 impl<'a, T: Target> Compiling<'a, T> {
     fn new(target: &'a T) -> Compiling<'a, T> {
-        let resources = target.resources();
+        let resources = target.flat().resources.clone();
         let outside = AtTranslation::new(resources.clone());
         let before = target.interpreted().get();
         Compiling { target, outside, resources, warnings: Vec::new(), before, compiler: None }
@@ -393,11 +393,11 @@ impl<T: Target> Host for Compiling<'_, T> {
     }
 
     fn c_companions(&mut self, _: &Function) -> Vec<Arc<Function>> {
-        self.target.functions()
+        self.target.flat().functions.values().cloned().collect()
     }
 
     fn takes_default(&mut self, warning: Diagnostic) -> bool {
-        if self.target.is_strict() {
+        if self.target.flat().strict {
             return false;
         }
         if !self.warnings.iter().any(|known| known.message == warning.message) {
@@ -416,7 +416,7 @@ impl<T: Target> Host for Compiling<'_, T> {
 
     fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
         let statements = self.target.interpreted().get() - self.before;
-        let library = || library_of(self.target.functions(), &self.resources, true);
+        let library = || library_of(self.target.flat(), true);
         OnDemand::of_long_call(&mut self.compiler, statements, library)
     }
 }

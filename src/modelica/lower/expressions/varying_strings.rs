@@ -1,5 +1,6 @@
 //! Strings that change at events, as the numbers of a table: two are the same if their numbers are.
 
+use super::target::computed_string;
 use super::{Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -20,7 +21,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Numbered(number) => Ok(number),
             Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
                 self.target.misses_text();
-                Err(computed(span))
+                Err(computed_string(span))
             }
             Lowered::Text(text) => self.target.string_number(&text).ok_or_else(|| {
                 self.target.misses_text();
@@ -133,13 +134,6 @@ impl<T: Target> Lowering<'_, T> {
         };
         Ok(Lowered::scalar(self.target.relation(relation, a, b, self.live, span)))
     }
-}
-
-/// A String that would have to be made at run time.
-pub(super) fn computed(span: Span) -> Diagnostic {
-    fault!(NOT_SUPPORTED, "a String that is computed during the simulation";
-        help: "select among Strings that are known at translation")
-    .at(span)
 }
 
 /// In a function whose Strings have no numbers: it is compiled again for the known values of its

@@ -5,7 +5,7 @@ use super::statements::Body;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::lower::errors::UNRESOLVED_REFERENCE;
-use crate::lower::expressions::{Lowered, Target};
+use crate::lower::expressions::{FunctionCalls, Lowered};
 use crate::lower::loops::LoopVariable;
 use crate::lower::shape::Shape;
 use crate::name::Ident;

@@ -1,7 +1,6 @@
 //! What is known of functions without their statements.
 
 use crate::eval::{Function, FunctionBody};
-use crate::external::Resources;
 use crate::flatten::FlatModel;
 use crate::name::Ident;
 use crate::syntax::ast::ComponentReference;
@@ -9,14 +8,10 @@ use crate::syntax::visit::Visit;
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 
-/// A model with nothing but functions.
-pub(in crate::lower) fn library_of(
-    functions: Vec<Arc<Function>>,
-    resources: &Resources,
-    strict: bool,
-) -> Arc<FlatModel> {
-    let functions = functions.into_iter().map(|f| (f.name.clone(), f)).collect();
-    Arc::new(FlatModel { functions, resources: resources.clone(), strict, ..FlatModel::default() })
+/// The functions of a model alone.
+pub(in crate::lower) fn library_of(flat: &FlatModel, strict: bool) -> Arc<FlatModel> {
+    let (functions, resources) = (flat.functions.clone(), flat.resources.clone());
+    Arc::new(FlatModel { functions, resources, strict, ..FlatModel::default() })
 }
 
 /// The function without its statements, whose outputs have the declared sizes: what declares them must

@@ -313,11 +313,7 @@ impl Instances {
 
     /// The functions of a model alone, once for all that are interpreted.
     pub(super) fn library(&mut self, flat: &FlatModel) -> Arc<FlatModel> {
-        let made = || {
-            let functions = flat.functions.values().cloned().collect();
-            library_of(functions, &flat.resources, flat.strict)
-        };
-        self.library.get_or_insert_with(made).clone()
+        self.library.get_or_insert_with(|| library_of(flat, flat.strict)).clone()
     }
 
     /// A function that the interpreter carries out whenever it is called.

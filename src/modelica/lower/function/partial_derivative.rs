@@ -8,7 +8,7 @@ use crate::lower::build::scalar_of_nothing;
 use crate::lower::builder::Builder;
 use crate::lower::dae::{Dae, VariableKind};
 use crate::lower::errors::{ARRAY_MISMATCH, UNRESOLVED_REFERENCE};
-use crate::lower::expressions::{Array, Lowered, Target};
+use crate::lower::expressions::{Array, FunctionCalls, Lowered};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId, derivative, substitute};
@@ -22,7 +22,7 @@ pub(super) fn call(
     mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-    let Some(target) = Target::function(builder, of) else {
+    let Some(target) = FunctionCalls::function(builder, of) else {
         return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{of}`").at(span));
     };
     // What the inputs are, and the variables that stand for them while they vary.
@@ -41,7 +41,7 @@ pub(super) fn call(
         *value = builder.dae.pool.variable(variable);
     }
     let asserted = builder.dae.assertions.len();
-    let results = Target::call(builder, &target, arguments, span)?;
+    let results = FunctionCalls::call(builder, &target, arguments, span)?;
     let actual = |v: VarId| given.iter().find(|(_, own, _)| *own == v).map(|(.., value)| *value);
     let Dae { assertions, pool, .. } = &mut builder.dae;
     for assertion in &mut assertions[asserted..] {

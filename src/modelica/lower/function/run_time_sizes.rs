@@ -12,7 +12,7 @@ use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::execute::execute;
 use crate::lower::errors::NO_CONSTANT_VALUE;
-use crate::lower::expressions::{Lowered, Target as _};
+use crate::lower::expressions::{Lowered, Operations as _};
 use crate::name::Ident;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{

@@ -6,10 +6,12 @@ use crate::bytecode::{Elementary, Instruction};
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
+use crate::flatten::FlatModel;
 use crate::lower::expressions::{
-    Array, Binary, Branch, Choice, Lowered, StringPart, Target, Unary,
+    Array, Binary, Branch, Choice, ConditionalValues, FunctionCalls, Lowered, Operations,
+    StringOperations, StringPart, TimeOperators, Unary, VariableReferences,
 };
-use crate::name::{Ident, Name};
+use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
@@ -26,7 +28,7 @@ impl Body<'_, '_> {
     }
 }
 
-impl Target for Body<'_, '_> {
+impl Operations for Body<'_, '_> {
     type Scalar = Operand;
 
     fn constant(&mut self, value: f64) -> Operand {
@@ -113,36 +115,6 @@ impl Target for Body<'_, '_> {
         })
     }
 
-    fn begin_if(&mut self, condition: Operand) -> Branch<Operand> {
-        let skip = self.emitter.jump_unless(condition);
-        self.branches.push(skip);
-        Branch { condition, values: Vec::new() }
-    }
-
-    fn begin_else(&mut self, branch: &mut Branch<Operand>, values: &[Operand]) {
-        let d = self.emitter.copies(values);
-        branch.values = (d..).take(values.len()).map(Operand::Register).collect();
-        let end = self.emitter.jump();
-        if let Some(skip) = self.branches.last_mut() {
-            let skip = std::mem::replace(skip, end);
-            self.emitter.land(skip);
-        }
-    }
-
-    fn end_if(&mut self, branch: Branch<Operand>, values: &[Operand]) -> Vec<Operand> {
-        if let Some(Operand::Register(d)) = branch.values.first().copied() {
-            self.emitter.copy(d, values);
-        }
-        if let Some(end) = self.branches.pop() {
-            self.emitter.land(end);
-        }
-        branch.values
-    }
-
-    fn short_circuits(&self) -> bool {
-        true
-    }
-
     fn element(
         &mut self,
         elements: &[Operand],
@@ -180,7 +152,41 @@ impl Target for Body<'_, '_> {
         };
         Ok(Array { dims: chosen.dims, elements })
     }
+}
 
+impl ConditionalValues for Body<'_, '_> {
+    fn short_circuits(&self) -> bool {
+        true
+    }
+
+    fn begin_if(&mut self, condition: Operand) -> Branch<Operand> {
+        let skip = self.emitter.jump_unless(condition);
+        self.branches.push(skip);
+        Branch { condition, values: Vec::new() }
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Operand>, values: &[Operand]) {
+        let d = self.emitter.copies(values);
+        branch.values = (d..).take(values.len()).map(Operand::Register).collect();
+        let end = self.emitter.jump();
+        if let Some(skip) = self.branches.last_mut() {
+            let skip = std::mem::replace(skip, end);
+            self.emitter.land(skip);
+        }
+    }
+
+    fn end_if(&mut self, branch: Branch<Operand>, values: &[Operand]) -> Vec<Operand> {
+        if let Some(Operand::Register(d)) = branch.values.first().copied() {
+            self.emitter.copy(d, values);
+        }
+        if let Some(end) = self.branches.pop() {
+            self.emitter.land(end);
+        }
+        branch.values
+    }
+}
+
+impl VariableReferences for Body<'_, '_> {
     fn reference(
         &mut self,
         path: &str,
@@ -193,13 +199,14 @@ impl Target for Body<'_, '_> {
         self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    fn function(&self, name: &Name) -> Option<Arc<Function>> {
-        let bare = Name { global: false, parts: name.parts.clone() };
-        self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
-    }
-
     fn value_type(&self, path: &str) -> Option<ValueType> {
         super::component_type(self.function, path)
+    }
+}
+
+impl FunctionCalls for Body<'_, '_> {
+    fn flat(&self) -> &FlatModel {
+        self.flat
     }
 
     fn call(
@@ -233,6 +240,12 @@ impl Target for Body<'_, '_> {
         Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
     }
 
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.instances.interpreted
+    }
+}
+
+impl StringOperations for Body<'_, '_> {
     fn string_number(&mut self, text: &Arc<str>) -> Option<Operand> {
         self.composes.then(|| Operand::Constant(self.instances.number_of(text)))
     }
@@ -257,23 +270,9 @@ impl Target for Body<'_, '_> {
     fn misses_text(&mut self) {
         self.instances.misses_text = true;
     }
-
-    fn is_strict(&self) -> bool {
-        self.flat.strict
-    }
-
-    fn interpreted(&self) -> &Cell<u64> {
-        &self.instances.interpreted
-    }
-
-    fn functions(&self) -> Vec<Arc<Function>> {
-        self.flat.functions.values().cloned().collect()
-    }
-
-    fn resources(&self) -> crate::external::Resources {
-        self.flat.resources.clone()
-    }
 }
+
+impl TimeOperators for Body<'_, '_> {}
 
 fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
