@@ -137,7 +137,7 @@ fn about_parameters(
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     let name = |k: usize| solution.parameters[k].name.as_str();
-    for group in &statistics.non_identifiable {
+    for group in &statistics.rank.non_identifiable {
         let kind = match group.form {
             Form::Sum | Form::Product | Form::Function => FindingKind::StructurallyNonIdentifiable,
             Form::Local => FindingKind::PracticallyNonIdentifiable,
@@ -164,7 +164,7 @@ fn about_parameters(
             .push(Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information));
     }
     // A lack of rank has been reported.
-    let condition = solution.condition.filter(|_| statistics.non_identifiable.is_empty());
+    let condition = solution.condition.filter(|_| statistics.rank.non_identifiable.is_empty());
     if let Some(condition) = condition.filter(|condition| *condition > ILL_CONDITIONED) {
         let sentence = format!(
             "The sensitivities are ill-conditioned ({}): small errors in the data cause large \

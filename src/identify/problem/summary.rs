@@ -54,7 +54,7 @@ impl Solution {
             parameters: parameters(run, &best.values, &statistics, &effects),
             series: solved_series(problem, &statistics, &simulated),
             validation,
-            condition: statistics.condition.filter(|condition| condition.is_finite()),
+            condition: statistics.rank.condition.filter(|condition| condition.is_finite()),
             likelihood: Likelihood {
                 error_model: ErrorModel::of(problem),
                 degrees_of_freedom: Some(statistics.freedom).filter(|own| own.is_finite()),
@@ -291,8 +291,13 @@ fn effects(
     statistics: &mut Statistics,
 ) -> Result<Vec<(usize, Effect)>, Fault> {
     let mut effects = Vec::new();
-    for k in
-        statistics.without_effect.iter().chain(&statistics.cancelling).copied().collect::<Vec<_>>()
+    for k in statistics
+        .rank
+        .without_effect
+        .iter()
+        .chain(&statistics.cancelling)
+        .copied()
+        .collect::<Vec<_>>()
     {
         let at = (values, simulated);
         let (found, simulations) = effect(&run.problem, &run.evaluation, statistics, at, k)?;

@@ -144,7 +144,7 @@ impl Solution {
             return Judged::Effect;
         }
         let in_group = |form: &Form| matches!(form, Form::Sum | Form::Product | Form::Function);
-        let mut groups = statistics.non_identifiable.iter();
+        let mut groups = statistics.rank.non_identifiable.iter();
         if groups.any(|group| in_group(&group.form) && group.parameters.contains(&k)) {
             own.verdict = Some(Verdict::StructurallyNonIdentifiable);
             own.determined = Some(false);
@@ -269,7 +269,7 @@ impl Solution {
         if self.parameters[k].verdict != Some(Verdict::Identifiable) {
             return;
         }
-        let mut groups = statistics.non_identifiable.iter();
+        let mut groups = statistics.rank.non_identifiable.iter();
         let Some(group) = groups.find(|group| group.parameters.contains(&k)) else { return };
         let valley = profile.valley.iter();
         let ends = [

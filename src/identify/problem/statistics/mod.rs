@@ -23,7 +23,7 @@ use at_bounds::AtBounds;
 pub(crate) use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
-use super::non_identifiable::{self, Form, NonIdentifiable};
+use super::non_identifiable::{self, Form, NonIdentifiable, Rank};
 use super::sensitivities::Sensitivities;
 use super::separable::Combination;
 use super::{ErrorModel, Evaluation, Problem, Series};
@@ -90,14 +90,10 @@ pub struct Statistics {
     pub residuals: Vec<f64>,
     /// Series that hold the same numbers as an earlier one: the later and the earlier.
     pub repeated: Vec<(usize, usize)>,
-    /// Condition number of the sensitivities, columns of unit length.
-    pub condition: Option<f64>,
-    /// Groups of parameters that only together have an effect.
-    pub(crate) non_identifiable: Vec<NonIdentifiable>,
+    /// The rank of the sensitivities at the best values.
+    pub(super) rank: Rank,
     /// Parameters whose derivatives cancel each other, while finite changes do not.
     pub(super) cancelling: Vec<usize>,
-    /// Parameters without any effect on the compared points at the best values.
-    pub(crate) without_effect: Vec<usize>,
     /// Sensitivities of the simulated points by the parameters, column by column, without weights.
     pub jacobian: Vec<Vec<f64>>,
     /// Simulations that it took.
@@ -170,10 +166,8 @@ impl Statistics {
             weights: data.weights.clone(),
             residuals: data.residuals.clone(),
             repeated,
-            condition: None,
-            non_identifiable: Vec::new(),
+            rank: Rank::default(),
             cancelling: Vec::new(),
-            without_effect: Vec::new(),
             jacobian,
             simulations,
             shares: data.shares.clone(),
@@ -183,9 +177,9 @@ impl Statistics {
         found.estimate_errors(problem, evaluation, &data, &best);
         let limit = data.square + elementary::powi(found.quantile, 2) * found.variance;
         found.find_rank(problem, evaluation, (&best, simulated), others, &data.scales, limit);
-        let groups = found.non_identifiable.iter().filter(|group| group.form != Form::Local);
+        let groups = found.rank.non_identifiable.iter().filter(|group| group.form != Form::Local);
         found.open = groups.map(|group| group.excess).sum();
-        if !found.non_identifiable.is_empty() {
+        if !found.rank.non_identifiable.is_empty() {
             found.estimate_errors(problem, evaluation, &data, &best);
         }
         found
@@ -225,7 +219,7 @@ impl Statistics {
         self.at_bounds = self.uncertainty.as_ref().and_then(|_| {
             let plain = (!spread.robust).then(|| data.shared_residuals());
             let variances = [spread.variance, spread.rise()];
-            let groups = &self.non_identifiable;
+            let groups = &self.rank.non_identifiable;
             AtBounds::of(&best.columns, groups, plain.as_deref(), &self.inward, variances)
         });
         (self.quantile, self.freedom, self.variance) =
@@ -262,18 +256,18 @@ impl Statistics {
         };
         for group in rank.non_identifiable {
             if group.form == Form::Function {
-                self.non_identifiable.push(group);
+                self.rank.non_identifiable.push(group);
                 continue;
             }
             let at = (&best.values[..], simulated);
             let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
             self.simulations += took;
             match holds {
-                true => self.non_identifiable.push(group),
+                true => self.rank.non_identifiable.push(group),
                 false => self.cancelling.extend(group.parameters),
             }
         }
-        (self.condition, self.without_effect) = (rank.condition, rank.without_effect);
+        (self.rank.condition, self.rank.without_effect) = (rank.condition, rank.without_effect);
     }
 
     /// The sensitivities at those points elsewhere at which they exceed the errors of the simulation.
@@ -459,7 +453,7 @@ impl Statistics {
     /// with three parameters at ends beside such a group (stack NedStack PS6), the linear model put the
     /// optimum 7e6 standard errors away.
     pub(super) fn pull(&self, k: usize) -> Option<f64> {
-        if !self.non_identifiable.is_empty() {
+        if !self.rank.non_identifiable.is_empty() {
             return None;
         }
         let mut ends = self.at_bounds.iter().flat_map(|own| &own.ends);
