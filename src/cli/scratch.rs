@@ -3,7 +3,7 @@
 use super::world::SystemWorld;
 use crate::script::access::policy::{Access, Change, Grant, Policy};
 use crate::script::runs::view::Progress;
-use crate::script::world::{Environment, FileReader, Files, Screen, Stamp};
+use crate::script::world::{Environment, FileAccess, FileReader, Files, Screen, Stamp};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ fn missing(path: &Path) -> io::Error {
     io::Error::new(io::ErrorKind::NotFound, format!("no such file: {}", path.display()))
 }
 
-impl Files for ScratchWorld {
+impl FileAccess for ScratchWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.absolute(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
@@ -71,7 +71,9 @@ impl Files for ScratchWorld {
             }
         }
     }
+}
 
+impl Files for ScratchWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let path = self.absolute(path);
         match self.files.get(&path) {

@@ -14,7 +14,7 @@ use crate::packages;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
-use crate::script::world::{Content, Environment, FileReader, Files, Screen, Stamp};
+use crate::script::world::{Content, Environment, FileAccess, FileReader, Files, Screen, Stamp};
 use gapilib_identify::problem::Status;
 use gapilib_identify::ranks::Ranks;
 use std::collections::BTreeMap;
@@ -171,7 +171,7 @@ impl SystemWorld {
     }
 }
 
-impl Files for SystemWorld {
+impl FileAccess for SystemWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.at(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
@@ -184,7 +184,9 @@ impl Files for SystemWorld {
     fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         self.disk.permits(&self.at(path), access)
     }
+}
 
+impl Files for SystemWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.disk.read(&self.at(path))
     }

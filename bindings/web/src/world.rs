@@ -6,7 +6,7 @@ use crate::runs::Change;
 use gapilib::internals::packages;
 use gapilib::internals::script::access::policy::{Access, Grant};
 use gapilib::internals::script::runs::view::{Fitted, Progress, Spread, View};
-use gapilib::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
+use gapilib::world::{Environment, FileAccess, FileReader, Files, MemoryWorld, Screen, Stamp};
 use serde_json::json;
 use std::cell::Cell;
 use std::io;
@@ -184,7 +184,7 @@ impl FileReader for Reader {
     }
 }
 
-impl Files for LiveWorld {
+impl FileAccess for LiveWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         self.memory.grant(grant);
     }
@@ -192,7 +192,9 @@ impl Files for LiveWorld {
     fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         self.memory.permits(path, access)
     }
+}
 
+impl Files for LiveWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         packages::read(path).map_or_else(|| self.memory.read(path), |bytes| Ok(bytes.to_vec()))
     }

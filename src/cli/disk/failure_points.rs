@@ -12,7 +12,7 @@ use super::*;
 use crate::budget::memory_requests;
 use crate::script::runs::problem::{RunOptions, solve};
 use crate::script::runs::view::Progress;
-use crate::script::world::{Environment, Files, MemoryWorld, Screen, Stamp};
+use crate::script::world::{Environment, FileAccess, Files, MemoryWorld, Screen, Stamp};
 use crate::script::{Journaling, Options, Session};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -71,56 +71,74 @@ impl DiskWorld {
     }
 }
 
-impl Files for DiskWorld {
+impl FileAccess for DiskWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.at(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
     }
+
     fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
         self.disk.permits(&self.at(path), access)
     }
+}
+
+impl Files for DiskWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.disk.read(&self.at(path))
     }
+
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.disk.write(&self.at(path), bytes)
     }
+
     fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
         self.disk.write_with(&self.at(path), content)
     }
+
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         self.disk.append(&self.at(path), bytes)
     }
+
     fn sync(&mut self, path: &Path) -> io::Result<()> {
         self.disk.sync(&self.at(path))
     }
+
     fn remove(&mut self, path: &Path) -> io::Result<()> {
         self.disk.remove(&self.at(path))
     }
+
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
         self.disk.create_folders(&self.at(path))
     }
+
     fn exists(&self, path: &Path) -> bool {
         packages::read(path).is_some() || packages::list(path).is_some() || self.at(path).exists()
     }
+
     fn is_dir(&self, path: &Path) -> bool {
         packages::list(path).is_some() || self.at(path).is_dir()
     }
+
     fn stamp(&self, _: &Path) -> Option<Stamp> {
         None
     }
+
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
         self.disk.list_dir(&self.at(path))
     }
+
     fn reader(&self) -> Arc<dyn FileReader> {
         self.disk.clone()
     }
+
     fn current_dir(&self) -> PathBuf {
         self.root.clone()
     }
+
     fn set_current_dir(&mut self, _: &Path) -> io::Result<()> {
         Ok(())
     }
+
     fn output_dir(&self) -> PathBuf {
         self.root.join("results")
     }

@@ -25,8 +25,8 @@ pub trait FileReader: fmt::Debug + Send + Sync {
 /// Writes the content of a file.
 pub type Content<'a> = &'a mut dyn FnMut(&mut dyn io::Write) -> io::Result<()>;
 
-/// The files that a script can read and write. Paths may be relative to [`Files::current_dir`].
-pub trait Files {
+/// Which files a script may read and write.
+pub trait FileAccess {
     /// Allows something from here on: called by what starts the run, never by a script.
     fn grant(&mut self, grant: Grant<'_>);
     /// What is allowed and excluded, for people: what it means, and the path or whatever it is about.
@@ -38,6 +38,10 @@ pub trait Files {
     /// # Errors
     /// What refuses it; see `refusal_of`.
     fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
+}
+
+/// The files that a script can read and write. Paths may be relative to [`Files::current_dir`].
+pub trait Files: FileAccess {
     /// The bytes of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
     /// The first bytes of a file, at most this many.

@@ -1,6 +1,6 @@
 //! A world in memory: what tests and documentation run scripts in.
 
-use super::{Environment, FileReader, Files, Screen, Stamp};
+use super::{Environment, FileAccess, FileReader, Files, Screen, Stamp};
 use crate::access::policy::{Access, Change, Grant, Policy};
 use crate::identify::problem::Status;
 use crate::runs::view::{Progress, View};
@@ -201,7 +201,7 @@ impl FileReader for MemoryFiles {
     }
 }
 
-impl Files for MemoryWorld {
+impl FileAccess for MemoryWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let real = grant.path().map_or_else(PathBuf::new, |path| self.absolute(path));
         self.policy.grant(grant, real);
@@ -217,7 +217,9 @@ impl Files for MemoryWorld {
             }
         }
     }
+}
 
+impl Files for MemoryWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.files.get(&self.absolute(path)).cloned().ok_or_else(|| missing(path))
     }

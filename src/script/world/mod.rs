@@ -9,7 +9,7 @@ mod memory;
 mod screen;
 
 pub use environment::{Environment, Store};
-pub use files::{Content, FileReader, Files, Stamp, normalized};
+pub use files::{Content, FileAccess, FileReader, Files, Stamp, normalized};
 #[cfg(test)]
 pub(crate) use memory::Shown;
 pub use memory::{MemoryWorld, Streams, Views};

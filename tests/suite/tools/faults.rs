@@ -13,7 +13,7 @@ use gapilib::internals::script::access::policy::{Access, Grant};
 use gapilib::internals::script::runs::problem::{RunOptions, solve};
 use gapilib::internals::script::runs::view::Progress;
 use gapilib::internals::script::runs::view::View;
-use gapilib::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
+use gapilib::world::{Environment, FileAccess, FileReader, Files, MemoryWorld, Screen, Stamp};
 use gapilib::{Journaling, Options, Session};
 use std::cell::RefCell;
 use std::io;
@@ -99,10 +99,21 @@ impl FaultyWorld {
     }
 }
 
+impl FileAccess for FaultyWorld {
+    fn grant(&mut self, grant: Grant<'_>) {
+        self.inner.borrow_mut().grant(grant);
+    }
+
+    fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
+        self.inner.borrow().permits(path, access)
+    }
+}
+
 impl Files for FaultyWorld {
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().write(path, bytes) }
     }
+
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let half = &bytes[..bytes.len() / 2];
         if self.fails(|world| world.append(path, half).unwrap_or_default()) {
@@ -110,45 +121,51 @@ impl Files for FaultyWorld {
         }
         self.inner.borrow_mut().append(path, bytes)
     }
+
     fn sync(&mut self, path: &Path) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().sync(path) }
     }
+
     fn remove(&mut self, path: &Path) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().remove(path) }
     }
+
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().create_dirs(path) }
     }
-    fn grant(&mut self, grant: Grant<'_>) {
-        self.inner.borrow_mut().grant(grant);
-    }
-    fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
-        self.inner.borrow().permits(path, access)
-    }
+
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.inner.borrow().read(path)
     }
+
     fn exists(&self, path: &Path) -> bool {
         self.inner.borrow().exists(path)
     }
+
     fn is_dir(&self, path: &Path) -> bool {
         self.inner.borrow().is_dir(path)
     }
+
     fn stamp(&self, path: &Path) -> Option<Stamp> {
         self.inner.borrow().stamp(path)
     }
+
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
         self.inner.borrow().list_dir(path)
     }
+
     fn reader(&self) -> Arc<dyn FileReader> {
         self.inner.borrow().reader()
     }
+
     fn current_dir(&self) -> PathBuf {
         self.inner.borrow().current_dir()
     }
+
     fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
         self.inner.borrow_mut().set_current_dir(path)
     }
+
     fn output_dir(&self) -> PathBuf {
         self.inner.borrow().output_dir()
     }
