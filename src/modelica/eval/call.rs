@@ -271,7 +271,8 @@ impl Evaluator<'_> {
                 *value = Some(reshaped(actual, &input.dims));
             }
         }
-        let is_followed = self.host.begin_command(header, &given);
+        let script = self.host.script();
+        let is_followed = script.is_some_and(|script| script.begin_command(header, &given));
         let formatted = has_format(&given);
         let done = self.complete(header, given, span).map_err(|error| match formatted {
             true if error.code == TYPE_MISMATCH => error.help(format!(
@@ -280,10 +281,14 @@ impl Evaluator<'_> {
             )),
             _ => error,
         });
-        let done =
-            done.and_then(|values| self.host.call_builtin_among(header, values, span, self.scope));
+        let Some(script) = self.host.script() else {
+            return Err(
+                fault!(UNKNOWN_FUNCTION, "`{}` is a command of scripts", header.name).at(span)
+            );
+        };
+        let done = done.and_then(|values| script.call_builtin(header, values, span, self.scope));
         if is_followed {
-            self.host.end_command(done.as_ref().err());
+            script.end_command(done.as_ref().err());
         }
         done
     }
@@ -295,7 +300,8 @@ impl Evaluator<'_> {
         arguments: &ast::Arguments,
         error: &Diagnostic,
     ) {
-        let names = self.host.inputs_looked_at(header);
+        let script = self.host.script();
+        let names = script.map_or(&[][..], |script| script.inputs_looked_at(header));
         if names.is_empty() {
             return;
         }
@@ -312,8 +318,10 @@ impl Evaluator<'_> {
                 given[at] = Some(value.unwrap_or(Value::nothing()));
             }
         }
-        if self.host.begin_command(header, &given) {
-            self.host.end_command(Some(error));
+        if let Some(script) = self.host.script()
+            && script.begin_command(header, &given)
+        {
+            script.end_command(Some(error));
         }
     }
 }

@@ -27,10 +27,14 @@ impl Evaluator<'_> {
             return Ok(outputs);
         }
         let mut scope = Scope::of_function(function.clone(), given, span);
-        self.host.begin_function();
+        if let Some(script) = self.host.script() {
+            script.begin_function();
+        }
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
         let done = inner.body(function);
-        self.host.end_function(function);
+        if let Some(script) = self.host.script() {
+            script.end_function(function);
+        }
         done.map_err(|error| traced(error, function, span))
     }
 

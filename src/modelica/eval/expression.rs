@@ -109,7 +109,9 @@ impl Evaluator<'_> {
     pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
         self.begin_use(expression);
         let value = self.boolean(expression)?;
-        self.host.tested();
+        if let Some(script) = self.host.script() {
+            script.tested();
+        }
         Ok(value)
     }
 

@@ -12,8 +12,7 @@ use std::sync::Arc;
 pub enum Callee {
     /// A function written in Modelica.
     Function(Arc<Function>),
-    /// A command that the host runs itself: [`Host::call_builtin`] gets the unevaluated
-    /// arguments' values as [`Host`] expects them.
+    /// A command of scripts, which [`ScriptHost::call_builtin`] runs.
     Builtin(Arc<Function>),
 }
 
@@ -35,30 +34,82 @@ pub trait Host {
         self.callee(&Name::from(name))
     }
 
+    /// The value of a global variable, package constant or enumeration literal; `None` if there is
+    /// none.
+    fn variable(
+        &mut self,
+        reference: &ast::ComponentReference,
+    ) -> Result<Option<Value>, Diagnostic>;
+
+    /// Names of functions, for "did you mean".
+    fn function_names(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Answers external functions that access files or the screen; without it they are refused.
+    fn outside(&mut self) -> Option<&mut dyn crate::external::Outside> {
+        None
+    }
+
+    /// External functions that are compiled together with this one, which is in C: all that share
+    /// variables with it. Its object's destructor at least.
+    fn c_companions(&mut self, function: &Function) -> Vec<Arc<Function>> {
+        match self.callee(&super::c_function::destructor(function)) {
+            Ok(Some(Callee::Function(destructor))) => vec![destructor],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.
+    fn warn(&mut self, warning: Diagnostic) {
+        let _ = warning;
+    }
+
+    /// Called when a function uses or returns a variable before it is assigned: whether the default of
+    /// its type is taken (MLS §4.9).
+    fn takes_default(&mut self, warning: Diagnostic) -> bool {
+        let _ = warning;
+        false
+    }
+
+    /// Whether results beyond the largest Real are infinite, as in compiled functions, and not faults.
+    fn overflows(&self) -> bool {
+        false
+    }
+
+    /// Who may have compiled a pure function that has become worth it; `None` by default.
+    fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
+        None
+    }
+
+    /// Called between statements and loop iterations: whether to stop (the user pressed Ctrl-C),
+    /// and the error to stop with.
+    fn interrupted(&mut self) -> Option<Fault> {
+        None
+    }
+
+    /// The script among whose statements this is evaluated; `None` in models, whose hosts give out
+    /// no builtin.
+    fn script(&mut self) -> Option<&mut dyn ScriptHost> {
+        None
+    }
+}
+
+/// Runs the commands of a script, and learns what its statements do with their results.
+pub trait ScriptHost {
     /// Runs a builtin: `arguments` are complete, in the order of the header's inputs, defaults
-    /// filled in. Returns its outputs, as many as the header declares.
+    /// filled in. Returns its outputs, as many as the header declares. Builtins that execute
+    /// statements do so among the variables of the caller.
     fn call_builtin(
         &mut self,
         header: &Arc<Function>,
         arguments: Vec<Value>,
         span: Span,
+        scope: &mut Scope,
     ) -> Result<Vec<Value>, Diagnostic>;
 
-    /// As [`Host::call_builtin`], for hosts whose builtins execute statements among the variables of
-    /// the caller.
-    fn call_builtin_among(
-        &mut self,
-        header: &Arc<Function>,
-        arguments: Vec<Value>,
-        span: Span,
-        scope: &mut Scope,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        let _ = scope;
-        self.call_builtin(header, arguments, span)
-    }
-
     /// Called before the inputs of a builtin are checked, with what it is given; `None` where the
-    /// default counts. Whether [`Host::end_command`] is to be called.
+    /// default counts. Whether [`ScriptHost::end_command`] is to be called.
     fn begin_command(&mut self, header: &Arc<Function>, given: &[Option<Value>]) -> bool {
         let _ = (header, given);
         false
@@ -69,24 +120,17 @@ pub trait Host {
         let _ = error;
     }
 
-    /// Whether [`Host::begin_command`] looks at the inputs of builtins of this name.
+    /// Whether [`ScriptHost::begin_command`] looks at the inputs of builtins of this name.
     fn is_looked_at(&self, name: Ident) -> bool {
         let _ = name;
         false
     }
 
-    /// The inputs of a builtin that [`Host::begin_command`] looks at.
+    /// The inputs of a builtin that [`ScriptHost::begin_command`] looks at.
     fn inputs_looked_at(&self, header: &Arc<Function>) -> &'static [&'static str] {
         let _ = header;
         &[]
     }
-
-    /// The value of a global variable, package constant or enumeration literal; `None` if there is
-    /// none.
-    fn variable(
-        &mut self,
-        reference: &ast::ComponentReference,
-    ) -> Result<Option<Value>, Diagnostic>;
 
     /// Assigns to a dotted or global name that is not a variable of the scope, such as a parameter
     /// of the model translated last or a flag; `false` if there is nothing of that name.
@@ -150,56 +194,9 @@ pub trait Host {
     /// Called when a condition has been evaluated.
     fn tested(&mut self) {}
 
-    /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.
-    fn warn(&mut self, warning: Diagnostic) {
-        let _ = warning;
-    }
-
-    /// Called when a function uses or returns a variable before it is assigned: whether the default of
-    /// its type is taken (MLS §4.9).
-    fn takes_default(&mut self, warning: Diagnostic) -> bool {
-        let _ = warning;
-        false
-    }
-
-    /// Names of functions, for "did you mean".
-    fn function_names(&mut self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Answers external functions that access files or the screen; without it they are refused.
-    fn outside(&mut self) -> Option<&mut dyn crate::external::Outside> {
-        None
-    }
-
-    /// External functions that are compiled together with this one, which is in C: all that share
-    /// variables with it. Its object's destructor at least.
-    fn c_companions(&mut self, function: &Function) -> Vec<Arc<Function>> {
-        match self.callee(&super::c_function::destructor(function)) {
-            Ok(Some(Callee::Function(destructor))) => vec![destructor],
-            _ => Vec::new(),
-        }
-    }
-
-    /// Whether results beyond the largest Real are infinite, as in compiled functions, and not faults.
-    fn overflows(&self) -> bool {
-        false
-    }
-
-    /// Who may have compiled a pure function that has become worth it; `None` by default.
-    fn compiler(&mut self) -> Option<&mut dyn RunCompiled> {
-        None
-    }
-
     /// Called before each iteration of an outermost loop of a script, not of a function:
     /// `iteration` counts from 0, `count` is `None` in a `while` loop.
     fn loop_iteration(&mut self, iteration: usize, count: Option<usize>) {
         let _ = (iteration, count);
-    }
-
-    /// Called between statements and loop iterations: whether to stop (the user pressed Ctrl-C),
-    /// and the error to stop with.
-    fn interrupted(&mut self) -> Option<Fault> {
-        None
     }
 }

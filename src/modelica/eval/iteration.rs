@@ -21,8 +21,8 @@ impl Evaluator<'_> {
         index: &ForIndex,
         body: Body<'_>,
     ) -> Result<Range, Diagnostic> {
-        if let Some(range) = &index.range {
-            self.host.iterates(index.name.node, range);
+        if let (Some(range), Some(script)) = (&index.range, self.host.script()) {
+            script.iterates(index.name.node, range);
         }
         match &index.range {
             None => self.deduced(index, body),

@@ -38,7 +38,7 @@ pub use call::Arguments;
 pub use declaration::{Given, declare};
 pub use depth::with_stack;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
-pub use host::{Callee, Host, RunCompiled};
+pub use host::{Callee, Host, RunCompiled, ScriptHost};
 pub use scalar_function::Compiled;
 pub use scope::Scope;
 pub use statement::targets;
@@ -51,8 +51,8 @@ use crate::syntax::ast;
 use crate::value::Value;
 use std::sync::Arc;
 
-/// Statements of a script are not executed because of an error: see [`Host::lose`] and
-/// [`Host::begin_command`].
+/// Statements of a script are not executed because of an error: see [`ScriptHost::lose`] and
+/// [`ScriptHost::begin_command`].
 pub fn leave_out(
     statements: &[ast::Statement],
     scope: &mut Scope,
@@ -67,12 +67,11 @@ pub fn leave_out(
 ///
 /// ```
 /// use gapilib_base::diag::{Diagnostic, Fault};
-/// use gapilib_modelica::eval::{Callee, Function, Host, Scope, evaluate};
+/// use gapilib_modelica::eval::{Callee, Host, Scope, evaluate};
 /// use gapilib_base::name::{Ident, Name};
-/// use gapilib_base::source::{SourceId, Span};
+/// use gapilib_base::source::SourceId;
 /// use gapilib_modelica::syntax::{ast::ComponentReference, parse_expression};
 /// use gapilib_modelica::value::Value;
-/// use std::sync::Arc;
 ///
 /// /// Knows nothing beyond what evaluation knows by itself.
 /// struct Alone;
@@ -80,14 +79,6 @@ pub fn leave_out(
 /// impl Host for Alone {
 ///     fn callee(&mut self, _: &Name) -> Result<Option<Callee>, Diagnostic> {
 ///         Ok(None)
-///     }
-///     fn call_builtin(
-///         &mut self,
-///         _: &Arc<Function>,
-///         arguments: Vec<Value>,
-///         _: Span,
-///     ) -> Result<Vec<Value>, Diagnostic> {
-///         Ok(arguments)
 ///     }
 ///     fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
 ///         Ok(None)

@@ -101,7 +101,9 @@ impl Evaluator<'_> {
                 let before = self.scope.variables.get(&name);
                 let undeclared = before.filter(|variable| variable.declared.is_none());
                 let before = undeclared.map(|variable| &variable.value);
-                if self.host.assigned(name, before, &value).at(span)? {
+                if let Some(script) = self.host.script()
+                    && script.assigned(name, before, &value).at(span)?
+                {
                     return Ok(());
                 }
             }
@@ -113,7 +115,9 @@ impl Evaluator<'_> {
         // A number has no components: `x.start` is that of the model's `x`.
         if self.scope.is_script() && target.parts.len() > 1 && self.is_scalar(first.name) {
             let literal = self.with_literal_subscripts(target)?;
-            if self.host.assign(&literal, value.clone(), span)? {
+            if let Some(script) = self.host.script()
+                && script.assign(&literal, value.clone(), span)?
+            {
                 return Ok(());
             }
         }
@@ -159,7 +163,9 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Result<(), Diagnostic> {
         let literal = self.with_literal_subscripts(target)?;
-        if self.host.assign(&literal, value, span)? {
+        if let Some(script) = self.host.script()
+            && script.assign(&literal, value, span)?
+        {
             return Ok(());
         }
         Err(self.scope.unknown(target.parts[0].name).at(target.span))

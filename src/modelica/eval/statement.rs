@@ -65,8 +65,8 @@ impl Domain for Evaluator<'_> {
         let result = body.repeat(self, |evaluator| {
             let Some(iteration) = iterations.next() else { return Ok(false) };
             evaluator.check_interrupted(index.name.span)?;
-            if watched {
-                evaluator.host.loop_iteration(iteration, Some(range.count()));
+            if watched && let Some(script) = evaluator.host.script() {
+                script.loop_iteration(iteration, Some(range.count()));
             }
             evaluator.scope.iterators.truncate(depth);
             evaluator.scope.iterators.push((index.name.node, range.get(iteration)));
@@ -91,8 +91,8 @@ impl Domain for Evaluator<'_> {
                 let warning = endless(condition, &simple, &targets(body.statements));
                 warning.into_iter().for_each(|warning| evaluator.host.warn(warning));
             }
-            if watched {
-                evaluator.host.loop_iteration(iteration, None);
+            if watched && let Some(script) = evaluator.host.script() {
+                script.loop_iteration(iteration, None);
             }
             iteration += 1;
             Ok(true)
@@ -123,13 +123,15 @@ impl Domain for Evaluator<'_> {
     /// value, and the host learns which of its commands are not called.
     fn leave_out(&mut self, statements: &[Statement], error: &Diagnostic) {
         self.lose(targets(statements));
-        if !self.scope.is_script() || !self.host.loses_failed() {
+        if !self.loses_failed() {
             return;
         }
         for call in calls(statements) {
             let ExpressionKind::Call { function, arguments } = &call.kind else { continue };
             let name = function.parts.last().map(|part| part.name);
-            if name.is_some_and(|name| self.host.is_looked_at(name))
+            let mut is_looked_at =
+                |name| self.host.script().is_some_and(|script| script.is_looked_at(name));
+            if name.is_some_and(&mut is_looked_at)
                 && let Ok(Target::Builtin(header)) = self.target(function)
             {
                 self.refuse(&header, arguments, error);
@@ -156,15 +158,20 @@ impl Evaluator<'_> {
     /// What statements of a script that failed or were not reached would have assigned: these variables
     /// have no value, whatever they had before.
     fn lose<'t>(&mut self, targets: impl IntoIterator<Item = &'t ComponentReference>) {
-        if !self.scope.is_script() || !self.host.loses_failed() {
+        if !self.loses_failed() {
             return;
         }
         for target in targets {
-            match self.scope.contains(target.parts[0].name) {
-                true => self.scope.forget(target.parts[0].name),
-                false => self.host.lose(target),
+            if self.scope.contains(target.parts[0].name) {
+                self.scope.forget(target.parts[0].name);
+            } else if let Some(script) = self.host.script() {
+                script.lose(target);
             }
         }
+    }
+
+    fn loses_failed(&mut self) -> bool {
+        self.scope.is_script() && self.host.script().is_some_and(|script| script.loses_failed())
     }
 
     fn assign_each(&mut self, targets: &Targets, call: &Expression) -> Executed {
@@ -194,12 +201,16 @@ impl Evaluator<'_> {
 
     /// This value is going to be assigned or tested.
     pub(super) fn begin_use(&mut self, value: &Expression) {
-        self.host.begin_use(value);
+        if let Some(script) = self.host.script() {
+            script.begin_use(value);
+        }
     }
 
     /// This value is assigned, which may say whether a command succeeded.
     fn keep_status(&mut self, target: &ComponentReference, value: &Value) {
-        self.host.keep_status(target, value);
+        if let Some(script) = self.host.script() {
+            script.keep_status(target, value);
+        }
     }
 
     fn is_outermost_of_script(&self) -> bool {

@@ -5,7 +5,7 @@ use crate::builtins;
 use crate::builtins::{BuiltinId, Failure};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::errors::{INTERRUPTED, OWN_FUNCTION};
-use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
+use crate::eval::{Callee, Function, FunctionBody, Host, Scope, ScriptHost};
 use crate::external::c::Request;
 use crate::external::{Entry, Outside, Random};
 use crate::name::{Ident, Name};
@@ -39,30 +39,24 @@ impl Host for Session {
         Ok(callee)
     }
 
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        arguments: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        let Some(id) = BuiltinId::of(header) else {
-            unreachable!("`callee` gives out headers of the table only")
-        };
-        let around = self.execution.begin_call(span);
-        let before = self.output.messages.next_number();
-        let result = id.run(self, arguments);
-        self.execution.end_call(around);
-        if let Ok(answer) = &result {
-            self.statuses.answered(answer, before..self.output.messages.next_number());
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        if let Some(value) = self.workspace.flag_at(reference) {
+            return Ok(Some(value));
         }
-        if result.as_ref().is_ok_and(is_success) {
-            self.output.messages.note_success();
+        if let Some(value) = self.constant(reference).at(reference.span)? {
+            return Ok(Some(value));
         }
-        match result {
-            Ok(Value::Tuple(values)) => Ok(values),
-            Ok(value) => Ok(vec![value]),
-            Err(failure) => Err(self.last_of(failure, span)),
+        let first = reference.parts[0].name;
+        match self.follow_up(first, reference.span) {
+            Some(note) => Err(note),
+            None => self.model_value(reference),
         }
+    }
+
+    fn function_names(&mut self) -> Vec<String> {
+        let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
+        names.extend(self.classes.read_names().iter().map(Name::to_string));
+        names
     }
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
@@ -73,8 +67,25 @@ impl Host for Session {
         self.c_functions_near(function)
     }
 
+    fn warn(&mut self, warning: Diagnostic) {
+        self.report(warning);
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        match self.is_interrupted() || self.execution.stop().is_some() {
+            true => Some(Fault::new(INTERRUPTED, "interrupted")),
+            false => None,
+        }
+    }
+
+    fn script(&mut self) -> Option<&mut dyn ScriptHost> {
+        Some(self)
+    }
+}
+
+impl ScriptHost for Session {
     /// Commands that run scripts work among the variables of the caller.
-    fn call_builtin_among(
+    fn call_builtin(
         &mut self,
         header: &Arc<Function>,
         arguments: Vec<Value>,
@@ -86,7 +97,7 @@ impl Host for Session {
             std::mem::swap(&mut self.workspace.variables, scope);
         }
         self.execution.descend();
-        let result = self.call_builtin(header, arguments, span);
+        let result = self.run_command(header, arguments, span);
         self.execution.ascend();
         if !self.execution.is_in_function() {
             std::mem::swap(&mut self.workspace.variables, scope);
@@ -109,20 +120,6 @@ impl Host for Session {
 
     fn inputs_looked_at(&self, header: &Arc<Function>) -> &'static [&'static str] {
         builtins::inputs_of_files(header)
-    }
-
-    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
-        if let Some(value) = self.workspace.flag_at(reference) {
-            return Ok(Some(value));
-        }
-        if let Some(value) = self.constant(reference).at(reference.span)? {
-            return Ok(Some(value));
-        }
-        let first = reference.parts[0].name;
-        match self.follow_up(first, reference.span) {
-            Some(note) => Err(note),
-            None => self.model_value(reference),
-        }
     }
 
     fn assign(
@@ -196,25 +193,8 @@ impl Host for Session {
         self.statuses.used().into_iter().for_each(|numbers| messages.note_tested(numbers));
     }
 
-    fn warn(&mut self, warning: Diagnostic) {
-        self.report(warning);
-    }
-
-    fn function_names(&mut self) -> Vec<String> {
-        let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
-        names.extend(self.classes.read_names().iter().map(Name::to_string));
-        names
-    }
-
     fn loop_iteration(&mut self, iteration: usize, iterations: Option<usize>) {
         self.execution.iterate((iteration, iterations));
-    }
-
-    fn interrupted(&mut self) -> Option<Fault> {
-        match self.is_interrupted() || self.execution.stop().is_some() {
-            true => Some(Fault::new(INTERRUPTED, "interrupted")),
-            false => None,
-        }
     }
 }
 
@@ -272,6 +252,32 @@ impl Outside for Session {
 }
 
 impl Session {
+    fn run_command(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let Some(id) = BuiltinId::of(header) else {
+            unreachable!("`callee` gives out headers of the table only")
+        };
+        let around = self.execution.begin_call(span);
+        let before = self.output.messages.next_number();
+        let result = id.run(self, arguments);
+        self.execution.end_call(around);
+        if let Ok(answer) = &result {
+            self.statuses.answered(answer, before..self.output.messages.next_number());
+        }
+        if result.as_ref().is_ok_and(is_success) {
+            self.output.messages.note_success();
+        }
+        match result {
+            Ok(Value::Tuple(values)) => Ok(values),
+            Ok(value) => Ok(vec![value]),
+            Err(failure) => Err(self.last_of(failure, span)),
+        }
+    }
+
     /// The last diagnostic of a command that failed; the others are reported.
     pub(super) fn last_of(&mut self, failure: Failure, span: Span) -> Diagnostic {
         match failure {

@@ -196,15 +196,6 @@ impl Host for Functions {
         Ok(self.0.get(name).cloned().map(Callee::Function))
     }
 
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        _: Vec<Value>,
-        _: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        panic!("`{}` is not a command", header.name)
-    }
-
     fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         Ok(None)
     }

@@ -2,8 +2,8 @@
 
 use crate::diag::{Code, Diagnostic, Fault};
 use crate::eval::{
-    Callee, Compiled, Function, FunctionBody, FunctionComponent, Host, Scope, ValueType, evaluate,
-    evaluate_dimensions,
+    Callee, Compiled, Function, FunctionBody, FunctionComponent, Host, Scope, ScriptHost,
+    ValueType, evaluate, evaluate_dimensions,
 };
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -194,16 +194,6 @@ impl Host for TestHost {
         Ok(self.functions.get(&name).cloned().map(Callee::Function).or(builtin))
     }
 
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        arguments: Vec<Value>,
-        _span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        self.builtin_calls.push(arguments);
-        Ok(header.outputs.iter().map(|_| Value::Boolean(true)).collect())
-    }
-
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         let Some(first) = reference.parts.first() else { return Ok(None) };
         let Some(definition) = self.enumerations.get(first.name.as_str()) else { return Ok(None) };
@@ -224,6 +214,37 @@ impl Host for TestHost {
         })
     }
 
+    fn function_names(&mut self) -> Vec<String> {
+        self.functions.keys().cloned().collect()
+    }
+
+    fn warn(&mut self, warning: Diagnostic) {
+        self.warnings.push(warning);
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        let patience = self.patience.as_mut()?;
+        *patience = patience.saturating_sub(1);
+        (*patience == 0).then(|| Fault::new(STOPPED, "stopped"))
+    }
+
+    fn script(&mut self) -> Option<&mut dyn ScriptHost> {
+        Some(self)
+    }
+}
+
+impl ScriptHost for TestHost {
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        _: Span,
+        _: &mut Scope,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        self.builtin_calls.push(arguments);
+        Ok(header.outputs.iter().map(|_| Value::Boolean(true)).collect())
+    }
+
     fn assign(
         &mut self,
         target: &ComponentReference,
@@ -234,21 +255,7 @@ impl Host for TestHost {
         Ok(target.parts.len() > 1)
     }
 
-    fn warn(&mut self, warning: Diagnostic) {
-        self.warnings.push(warning);
-    }
-
-    fn function_names(&mut self) -> Vec<String> {
-        self.functions.keys().cloned().collect()
-    }
-
     fn loop_iteration(&mut self, iteration: usize, iterations: Option<usize>) {
         self.iterations.push((iteration, iterations));
-    }
-
-    fn interrupted(&mut self) -> Option<Fault> {
-        let patience = self.patience.as_mut()?;
-        *patience = patience.saturating_sub(1);
-        (*patience == 0).then(|| Fault::new(STOPPED, "stopped"))
     }
 }

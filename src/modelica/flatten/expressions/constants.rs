@@ -3,7 +3,7 @@
 
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
-use crate::eval::{Callee, Function, Host, Scope, evaluate};
+use crate::eval::{Callee, Host, Scope, evaluate};
 use crate::external::Outside;
 use crate::fault;
 use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH, VALUE_NEEDED};
@@ -24,7 +24,6 @@ use crate::syntax::ast::{
     VariabilityPrefix,
 };
 use crate::value::{ArrayValue, Value};
-use std::sync::Arc;
 
 /// The constants and literals that a reference may mean, looked up by its first part and followed to
 /// the end.
@@ -472,15 +471,6 @@ struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         Ok(self.0.functions.table.get(name).cloned().flatten().map(Callee::Function))
-    }
-
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        _arguments: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function", header.name).at(span))
     }
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {

@@ -370,15 +370,6 @@ impl<T: Target> Host for Compiling<'_, T> {
         Ok(self.target.function(name).map(Callee::Function))
     }
 
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        _: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
-    }
-
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         let _ = reference;
         Ok(None)
@@ -429,15 +420,6 @@ struct Reading<'r, 'a, T: Target> {
 impl<T: Target> Host for Reading<'_, '_, T> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         Ok(self.lowering.target.function(name).map(Callee::Function))
-    }
-
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        _: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
     }
 
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {

@@ -234,15 +234,6 @@ impl Host for Interpreting<'_> {
         Ok(self.library.functions.get(name).cloned().map(Callee::Function))
     }
 
-    fn call_builtin(
-        &mut self,
-        header: &Arc<Function>,
-        _: Vec<Value>,
-        span: Span,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
-    }
-
     fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         Ok(None)
     }
