@@ -100,7 +100,7 @@ impl Screen for Terminal {
         }))
     }
 
-    fn wants_view(&mut self) -> bool {
+    fn is_view_due(&mut self) -> bool {
         self.draws && self.live.is_due()
     }
 
@@ -118,7 +118,7 @@ impl Screen for Terminal {
         }
     }
 
-    fn wants_pause(&mut self) -> bool {
+    fn is_pause_requested(&mut self) -> bool {
         let was_pressed = self.live.pause_was_pressed();
         if was_pressed {
             self.end_view();

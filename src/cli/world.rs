@@ -381,8 +381,8 @@ impl Screen for SystemWorld {
         self.screen.status()
     }
 
-    fn wants_view(&mut self) -> bool {
-        self.screen.wants_view()
+    fn is_view_due(&mut self) -> bool {
+        self.screen.is_view_due()
     }
 
     fn show_view(&mut self, view: &View) {
@@ -393,8 +393,8 @@ impl Screen for SystemWorld {
         self.screen.end_view();
     }
 
-    fn wants_pause(&mut self) -> bool {
-        self.screen.wants_pause()
+    fn is_pause_requested(&mut self) -> bool {
+        self.screen.is_pause_requested()
     }
 
     fn begin_pause(&mut self, help: &str) {

@@ -95,7 +95,7 @@ impl Screen for LiveWorld {
         self.total = progress.total;
     }
 
-    fn wants_view(&mut self) -> bool {
+    fn is_view_due(&mut self) -> bool {
         // One can go back to each of the first ones, and the last is the one that remains.
         let is_wanted = self.generation <= SHOW_FIRST || self.generation == self.total;
         is_wanted || host::monotonic() - self.shown >= SHOW_EVERY
@@ -106,7 +106,7 @@ impl Screen for LiveWorld {
         host::send(&json!({ "view": described(view) }));
     }
 
-    fn wants_pause(&mut self) -> bool {
+    fn is_pause_requested(&mut self) -> bool {
         self.look();
         self.changes.replace(false) || self.is_due()
     }

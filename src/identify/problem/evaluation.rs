@@ -242,7 +242,7 @@ impl Evaluation {
         let mut objectives = vec![f64::NAN; n * m];
         let mut failed: Vec<Option<Failed>> = vec![None; n];
         // Those with equal genes stand for each other; with residuals everything is simulated.
-        let mut wanted: Vec<usize> = Vec::with_capacity(n);
+        let mut unknown: Vec<usize> = Vec::with_capacity(n);
         for (k, genome) in batch.rows().enumerate() {
             match self.memory.find(genome).filter(|_| !residuals) {
                 Some(place) => self.memory.answer(
@@ -251,16 +251,16 @@ impl Evaluation {
                     &mut objectives[k * m..(k + 1) * m],
                     &mut failed[k],
                 ),
-                None => wanted.push(k),
+                None => unknown.push(k),
             }
         }
-        let places: Vec<Vec<f64>> = wanted.iter().map(|&k| problem.values(batch.row(k))).collect();
+        let places: Vec<Vec<f64>> = unknown.iter().map(|&k| problem.values(batch.row(k))).collect();
         let found = self.distributed(&places, (Asked::Points, 1.0), |own| {
             let rated = self.rate(problem, &own.row, own.failed);
             (rated, residuals.then_some(own.row))
         });
         let mut rows = Vec::new();
-        for (&k, ((values, failure), row)) in wanted.iter().zip(found) {
+        for (&k, ((values, failure), row)) in unknown.iter().zip(found) {
             objectives[k * m..(k + 1) * m].copy_from_slice(&values);
             failed[k] = failure;
             rows.extend(row.into_iter().flatten());
@@ -269,7 +269,7 @@ impl Evaluation {
             residuals: if residuals { self.residuals(problem, &rows) } else { Vec::new() },
             objectives,
             failures: failed.into_iter().enumerate().filter_map(|(k, f)| Some((k, f?))).collect(),
-            simulations: wanted.len() as u64,
+            simulations: unknown.len() as u64,
             jacobians: Vec::new(),
         }
     }

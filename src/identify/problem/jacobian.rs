@@ -56,19 +56,19 @@ impl Evaluation {
         factor: f64,
     ) -> Vec<Result<Linearization, Failed>> {
         let mut found = self.exact_all(places, factor);
-        let wanting: Vec<usize> = (0..places.len())
+        let without_derivatives: Vec<usize> = (0..places.len())
             .filter(|&k| matches!(&found[k], Ok(own) if own.derivatives.is_empty()))
             .collect();
-        if wanting.is_empty() {
+        if without_derivatives.is_empty() {
             return found;
         }
         let n = problem.parameters.len();
-        for &k in &wanting {
+        for &k in &without_derivatives {
             if let Ok(own) = &mut found[k] {
                 own.derivatives = vec![f64::NAN; own.simulated.len() * n];
             }
         }
-        let mut open: Vec<Stencil> = wanting
+        let mut open: Vec<Stencil> = without_derivatives
             .iter()
             .flat_map(|&k| (0..n).map(move |j| (k, j)))
             .map(|(k, j)| Stencil::first(problem, k, j, &places[k]))

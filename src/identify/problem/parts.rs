@@ -50,7 +50,7 @@ pub struct ShardFile {
     /// The problem file as it was named.
     pub problem: String,
     /// What was requested beyond the fit, in a form that is the same where that is the same.
-    pub wanted: Vec<u8>,
+    pub requested: Vec<u8>,
     /// The journal of the search.
     pub journal: Vec<u8>,
     known: BTreeMap<(String, u64), Results>,
@@ -63,7 +63,7 @@ impl ShardFile {
             origins: origins.clone(),
             shard,
             problem: problem.to_owned(),
-            wanted: Vec::new(),
+            requested: Vec::new(),
             journal: Vec::new(),
             known: parts.known().clone(),
         }

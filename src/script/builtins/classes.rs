@@ -234,13 +234,13 @@ end getParameterValue;
 
 fn get_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("class_")?;
-    let wanted: String = args.take("parameterName")?;
+    let requested: String = args.take("parameterName")?;
     let Some(class) = asked(session, &name) else { return Ok(text(String::new())) };
     let all = components(&class);
-    let Some(component) = all.iter().find(|component| component.one.name.node == *wanted) else {
+    let Some(component) = all.iter().find(|component| component.one.name.node == *requested) else {
         let known = all.iter().map(|component| component.one.name.node.as_str());
-        let hint = crate::diag::suggest::did_you_mean(&wanted, known);
-        let fault = fault!(BAD_ARGUMENT, "`{name}` does not declare `{wanted}`").help_if(hint);
+        let hint = crate::diag::suggest::did_you_mean(&requested, known);
+        let fault = fault!(BAD_ARGUMENT, "`{name}` does not declare `{requested}`").help_if(hint);
         session.report_fault(fault);
         return Ok(text(String::new()));
     };

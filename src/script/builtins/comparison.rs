@@ -37,10 +37,10 @@ fn compare_simulation_results(session: &mut Session, mut args: Args) -> Result<V
     let (file, reference): (String, String) = (args.take("filename")?, args.take("reffilename")?);
     let log: String = args.take("logfilename")?;
     let tolerance = Tolerance { relative: args.take("relTol")?, absolute: args.take("absTol")? };
-    let wanted: Vec<String> = args.take("vars")?;
+    let requested: Vec<String> = args.take("vars")?;
     let actual = super::results::table(session, &file)?;
     let expected = super::results::table(session, &reference)?;
-    let differences = differences(&actual, &expected, &wanted, tolerance)?;
+    let differences = differences(&actual, &expected, &requested, tolerance)?;
     if !log.is_empty() {
         let lines: String = differences.iter().map(|one| format!("{one}\n")).collect();
         session.write_file(Path::new(&log), lines.as_bytes())?;
@@ -74,10 +74,10 @@ fn diff_simulation_results(session: &mut Session, mut args: Args) -> Result<Valu
     let prefix: String = args.take("diffPrefix")?;
     let (relative, of_range, delta): (f64, f64, f64) =
         (args.take("relTol")?, args.take("relTolDiffMinMax")?, args.take("rangeDelta")?);
-    let wanted: Vec<String> = args.take("vars")?;
+    let requested: Vec<String> = args.take("vars")?;
     let keep: bool = args.take("keepEqualResults")?;
     let mut failed = Vec::new();
-    for name in names(&expected, &wanted) {
+    for name in names(&expected, &requested) {
         let tube = Tube::around(&expected, &name, [relative, of_range, delta])?;
         let inside = actual.column(&name).is_ok_and(|values| tube.holds(&actual.time, &values));
         if !prefix.is_empty() && (keep || !inside) {
@@ -146,10 +146,10 @@ fn grid(table: &ResultTable, intervals: i64) -> Result<Vec<f64>, Fault> {
 }
 
 /// The variables to compare: those requested, else all of the table.
-fn names(table: &ResultTable, wanted: &[String]) -> Vec<String> {
-    match wanted {
+fn names(table: &ResultTable, requested: &[String]) -> Vec<String> {
+    match requested {
         [] => table.series.iter().map(|series| series.name.clone()).collect(),
-        wanted => wanted.to_vec(),
+        requested => requested.to_vec(),
     }
 }
 
@@ -180,7 +180,7 @@ impl std::fmt::Display for Difference {
 fn differences(
     actual: &ResultTable,
     expected: &ResultTable,
-    wanted: &[String],
+    requested: &[String],
     tolerance: Tolerance,
 ) -> Result<Vec<Difference>, Fault> {
     let (Some(first), Some(last)) = (actual.time.first(), actual.time.last()) else {
@@ -189,7 +189,7 @@ fn differences(
     let inside = |time: &f64| (first..=last).contains(&time);
     let times: Vec<f64> = expected.time.iter().copied().filter(inside).collect();
     let mut different = Vec::new();
-    for name in names(expected, wanted) {
+    for name in names(expected, requested) {
         let reference = expected.interpolate(&name, &times)?;
         let Ok(values) = actual.interpolate(&name, &times) else {
             different.push(Difference { name, at: None });

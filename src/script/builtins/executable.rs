@@ -79,12 +79,12 @@ fn run(
     let mut flags = parsed.map_err(|error| vec![error])?;
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
-    let wanted = (file.as_str(), &program.filter);
+    let output = (file.as_str(), &program.filter);
     let model = match flags.csv_input {
         None => program.model.clone(),
         Some(_) => openmodelica::driven_model(session, &program.model.problem, &flags)?,
     };
-    openmodelica::run(session, &model, &program.options, flags, wanted).map(|_| ())
+    openmodelica::run(session, &model, &program.options, flags, output).map(|_| ())
 }
 
 /// The words of a command line and the file that its output goes to; `None` if it is more than one

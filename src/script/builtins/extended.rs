@@ -167,13 +167,13 @@ fn each_row(
     request: &Request,
     names: &[String],
     values: &RealMatrix,
-    wanted: usize,
+    expected: usize,
     take: impl Fn(&Simulated) -> Result<Vec<f64>, Fault>,
 ) -> Result<(bool, Vec<f64>), Failure> {
     check_count(names, values.columns)?;
-    let mut all = Vec::with_capacity(values.rows * wanted);
+    let mut all = Vec::with_capacity(values.rows * expected);
     let Some(model) = translated_model(session, &request.problem) else {
-        all.resize(values.rows * wanted, f64::NAN);
+        all.resize(values.rows * expected, f64::NAN);
         return Ok((false, all));
     };
     let mut ok = true;
@@ -185,7 +185,7 @@ fn each_row(
             Some(run) => all.extend(take(&run)?),
             None => {
                 ok = false;
-                all.resize(all.len() + wanted, f64::NAN);
+                all.resize(all.len() + expected, f64::NAN);
             }
         }
     }

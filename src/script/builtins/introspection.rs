@@ -383,7 +383,7 @@ fn class_annotation_exists(session: &mut Session, mut args: Args) -> Result<Valu
 }
 
 /// An annotation of a class.
-fn annotation<'c>(class: &'c ClassDefinition, wanted: &str) -> Option<&'c Modification> {
+fn annotation<'c>(class: &'c ClassDefinition, requested: &str) -> Option<&'c Modification> {
     let own = |section: &'c Section| match section {
         Section::Annotation(annotation) => Some(annotation),
         _ => None,
@@ -395,7 +395,7 @@ fn annotation<'c>(class: &'c ClassDefinition, wanted: &str) -> Option<&'c Modifi
     };
     let all = sections(class).filter_map(own).chain(short);
     let mut arguments = all.flat_map(|annotation| &annotation.arguments).filter_map(named);
-    arguments.find(|(name, _)| name == wanted).map(|(_, modification)| modification)
+    arguments.find(|(name, _)| name == requested).map(|(_, modification)| modification)
 }
 
 fn named(argument: &Argument) -> Option<(String, &Modification)> {
@@ -438,9 +438,9 @@ end getElementModifierNames;
 "#;
 
 fn get_component_modifier_names(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wanted: String = args.take("componentName")?;
+    let requested: String = args.take("componentName")?;
     let class = class(session, &mut args)?;
-    let arguments = class.as_deref().and_then(|class| modification_of(class, &wanted));
+    let arguments = class.as_deref().and_then(|class| modification_of(class, &requested));
     Ok(string_array(arguments.map_or(Vec::new(), |whole| modified_names("", &whole.arguments))))
 }
 
@@ -461,9 +461,9 @@ end getElementModifierValue;
 "#;
 
 fn get_component_modifier_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wanted: String = args.take("modifier")?;
+    let requested: String = args.take("modifier")?;
     let Some(class) = class(session, &mut args)? else { return Ok(text(String::new())) };
-    let (component, inner) = wanted.split_once('.').unwrap_or((&wanted, ""));
+    let (component, inner) = requested.split_once('.').unwrap_or((&requested, ""));
     let whole = modification_of(&class, component);
     let found = whole.and_then(|whole| match inner {
         "" => Some(whole),
@@ -565,11 +565,11 @@ fn of_component(
     mut args: Args,
     answer: fn(&Component<'_>) -> bool,
 ) -> Result<Value, Failure> {
-    let wanted: String = args.take("componentName")?;
+    let requested: String = args.take("componentName")?;
     let class = class(session, &mut args)?;
     let found = class.as_deref().is_some_and(|class| {
         let all = components(class).into_iter();
-        all.filter(|component| component.one.name.node == *wanted).any(|c| answer(&c))
+        all.filter(|component| component.one.name.node == *requested).any(|c| answer(&c))
     });
     Ok(found.into())
 }

@@ -93,7 +93,7 @@ fn open_model_file(session: &mut Session, mut args: Args) -> Result<Value, Failu
     let (model, path): (String, String) = (args.take("modelName")?, args.take("path")?);
     if path.is_empty() {
         let (model, version) = (Name::parse(&model), args.take::<String>("version")?);
-        session.want_version(&model, vec![version]);
+        session.require_version(&model, vec![version]);
         return Ok(is_loaded(session, &model).into());
     }
     let loaded = session.load_path(Path::new(&path));
@@ -177,7 +177,7 @@ end loadModel;
 
 fn load_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("className")?;
-    session.want_version(&name, args.take("priorityVersion")?);
+    session.require_version(&name, args.take("priorityVersion")?);
     Ok(is_loaded(session, &name).into())
 }
 

@@ -37,15 +37,15 @@ pub(super) fn with_method_of_ours(
     session: &mut Session,
     options: SimulationOptions,
 ) -> SimulationOptions {
-    let Some(wanted) = options.method.as_deref() else { return options };
-    let is_in = |names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(wanted));
+    let Some(requested) = options.method.as_deref() else { return options };
+    let is_in = |names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(requested));
     let ours = match () {
         () if is_in(IMPLICIT) => "dassl",
         () if is_in(EXPLICIT) => "dopri5",
         () => return options,
     };
     let text =
-        format!("the integration method `{wanted}` is not available; `{ours}` is used instead");
+        format!("the integration method `{requested}` is not available; `{ours}` is used instead");
     session.note(METHOD_REPLACED, text);
     SimulationOptions { method: Some(ours.to_owned()), ..options }
 }

@@ -127,7 +127,7 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let class: Name = args.take("className")?;
     let prefix: String = args.take("fileNamePrefix")?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
-    let (wanted, format) = (options(&mut args)?, args.take("outputFormat")?);
+    let (requested, format) = (options(&mut args)?, args.take("outputFormat")?);
     let filter = filter_of(&args.take::<String>("variableFilter")?)?;
     let flags = args.take("simflags")?;
     let done = simulation::translate_anew(session, &class.to_string());
@@ -135,7 +135,7 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         built_models::refuse(session, &prefix, class.to_string());
         return Ok(vec![String::new(), String::new()].into());
     };
-    let program = Executable { model, options: wanted, format, filter, flags };
+    let program = Executable { model, options: requested, format, filter, flags };
     let init_file = built_models::keep(session, &prefix, program);
     Ok(vec![prefix, init_file].into())
 }

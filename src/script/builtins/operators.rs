@@ -97,13 +97,13 @@ impl Operator {
             Ok(outputs) => {
                 let mut numbers = Vec::new();
                 for (value, (name, size)) in outputs.iter().zip(self.kind.signature.outputs) {
-                    let (own, wanted) = (value.as_vector()?, size.count(n_genes));
-                    if own.len() != wanted {
+                    let (own, expected) = (value.as_vector()?, size.count(n_genes));
+                    if own.len() != expected {
                         let (operator, found) = (&self.choice.name, own.len());
                         bail!(
                             BAD_OPERATOR,
                             "`{name}` of the {} `{operator}` has size {found} instead of \
-                             {wanted}", self.kind.name;
+                             {expected}", self.kind.name;
                             help: "return one value per gene"
                         );
                     }

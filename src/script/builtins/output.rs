@@ -128,7 +128,7 @@ pub(super) fn stored(
     let variables = model.program.variables().iter();
     let protected: HashSet<&str> =
         variables.clone().filter(|variable| variable.protected).map(|v| &*v.name).collect();
-    let is_wanted = |variable: &VariableInfo| {
+    let is_stored = |variable: &VariableInfo| {
         let name = &*variable.name;
         if hides && protected.contains(differentiated(name).unwrap_or(name)) {
             return false;
@@ -143,7 +143,7 @@ pub(super) fn stored(
         }
     };
     let left_out: HashSet<&str> =
-        variables.filter(|variable| !is_wanted(variable)).map(|variable| &*variable.name).collect();
+        variables.filter(|variable| !is_stored(variable)).map(|variable| &*variable.name).collect();
     let mut stored = match left_out.is_empty() {
         true => table.clone(),
         false => table.only(|name| !left_out.contains(name)),

@@ -30,7 +30,7 @@ end identify;
 "#;
 
 fn identify(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wanted: Value = args.take("problem")?;
+    let requested: Value = args.take("problem")?;
     let folder: String = args.take("folder")?;
     let sensitivity: String = args.take("sensitivity")?;
     let resume = args.take("resume")?;
@@ -43,7 +43,7 @@ fn identify(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         folder: folder.into(),
         ..RunOptions::default()
     };
-    let solution = match wanted {
+    let solution = match requested {
         Value::String(file) => problem::solve(session, Path::new(&*file), &options)?,
         Value::Record(record) => problem::solve_record(session, &record, &options)?,
         other => bail!(

@@ -63,18 +63,18 @@ fn compiled(args: &mut Args) -> Result<Regex, Fault> {
 }
 
 fn regex(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let (subject, wanted): (String, i64) = (args.take("str")?, args.take("maxMatches")?);
-    let wanted = usize::try_from(wanted).ok().filter(|wanted| *wanted <= 1000);
-    let Some(wanted) = wanted else {
+    let (subject, requested): (String, i64) = (args.take("str")?, args.take("maxMatches")?);
+    let requested = usize::try_from(requested).ok().filter(|requested| *requested <= 1000);
+    let Some(requested) = requested else {
         bail!(BAD_ARGUMENT, "`maxMatches` must be between 0 and 1000")
     };
     let found = compiled(&mut args)?.captures(&subject).map_or(Vec::new(), |captures| {
-        let parts = captures.iter().take(wanted);
+        let parts = captures.iter().take(requested);
         parts.map(|part| part.map_or(String::new(), |part| part.as_str().to_owned())).collect()
     });
     let count = found.len() as i64;
     let mut strings = found;
-    strings.resize(wanted, String::new());
+    strings.resize(requested, String::new());
     Ok(Value::Tuple(vec![count.into(), strings.into()]))
 }
 

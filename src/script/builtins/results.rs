@@ -241,10 +241,10 @@ fn read_simulation_result_vars(session: &mut Session, mut args: Args) -> Result<
     let file: String = args.take("fileName")?;
     let with_parameters: bool = args.take("readParameters")?;
     let table = table(session, &file)?;
-    let is_wanted = |series: &&results::Series| {
+    let is_listed = |series: &&results::Series| {
         with_parameters || !matches!(series.values, results::Values::Constant(_))
     };
-    let series = table.series.iter().filter(is_wanted).map(|series| series.name.clone());
+    let series = table.series.iter().filter(is_listed).map(|series| series.name.clone());
     let mut names: Vec<String> = std::iter::once("time".to_owned()).chain(series).collect();
     names.sort();
     Ok(names.into())

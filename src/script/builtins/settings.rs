@@ -67,9 +67,9 @@ end echo;
 "#;
 
 fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wanted: bool = args.take("setEcho")?;
-    session.output.set_muted(!wanted);
-    Ok(wanted.into())
+    let enabled: bool = args.take("setEcho")?;
+    session.output.set_muted(!enabled);
+    Ok(enabled.into())
 }
 
 const LIST_VARIABLES: &str = r#"

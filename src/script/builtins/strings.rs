@@ -154,7 +154,7 @@ fn is_empty(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 /// The inputs that `count`, `find` and `replace` share.
 struct Search {
     string: Vec<char>,
-    wanted: Vec<char>,
+    pattern: Vec<char>,
     start: usize,
     case_sensitive: bool,
 }
@@ -166,17 +166,17 @@ impl Search {
         Ok(Search {
             start: usize::try_from(start - 1).unwrap_or(0).min(string.len()),
             string,
-            wanted: characters(args.take("searchString")?),
+            pattern: characters(args.take("searchString")?),
             case_sensitive: args.take("caseSensitive")?,
         })
     }
 
     fn is_at(&self, at: usize) -> bool {
-        let Some(part) = self.string.get(at..at + self.wanted.len()) else { return false };
+        let Some(part) = self.string.get(at..at + self.pattern.len()) else { return false };
         let same = |a: &char, b: &char| {
             a == b || !self.case_sensitive && a.to_lowercase().eq(b.to_lowercase())
         };
-        !self.wanted.is_empty() && part.iter().zip(&self.wanted).all(|(a, b)| same(a, b))
+        !self.pattern.is_empty() && part.iter().zip(&self.pattern).all(|(a, b)| same(a, b))
     }
 
     fn next_from(&self, from: usize) -> Option<usize> {
@@ -199,7 +199,7 @@ fn count(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (mut from, mut number) = (search.start, 0);
     while let Some(at) = search.next_from(from) {
         number += 1;
-        from = at + search.wanted.len();
+        from = at + search.pattern.len();
     }
     Ok(Value::Integer(number))
 }
@@ -257,7 +257,7 @@ fn replace(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
         result.extend(&search.string[from..at]);
         check_length(result.len().saturating_add(by.len()))?;
         result.push_str(&by);
-        from = at + search.wanted.len();
+        from = at + search.pattern.len();
         if !all {
             break;
         }

@@ -48,8 +48,8 @@ const STYLES: &[(&str, &[&str])] = &[
 pub(super) fn literal(name: &Name) -> Option<Value> {
     let owner = name.parent();
     let (style, literals) = STYLES.iter().find(|(style, _)| owner.to_string() == *style)?;
-    let wanted = name.last()?;
-    let at = literals.iter().position(|known| wanted == **known)?;
+    let literal = name.last()?;
+    let at = literals.iter().position(|known| literal == **known)?;
     let literals = literals.iter().map(|literal| Ident::new(literal)).collect();
     let definition = Arc::new(EnumerationDefinition { name: Name::parse(style), literals });
     Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))

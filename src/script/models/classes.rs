@@ -267,15 +267,18 @@ impl Classes {
 
     /// The fault of a class that is not loaded and cannot be found.
     pub fn unknown_class(&self, name: &Name) -> Fault {
-        let wanted = name.to_string();
+        let requested = name.to_string();
         let known = self.read_names().iter().map(Name::to_string).collect::<Vec<_>>();
         let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
-        let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
-            .or_else(|| suggest::did_you_mean(&wanted, last));
+        let hint = suggest::did_you_mean(&requested, known.iter().map(String::as_str))
+            .or_else(|| suggest::did_you_mean(&requested, last));
         let misnamed = self.misnamed_note(name);
-        fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(misnamed).help_if(hint).help(
-            "load the file that defines it first, with `openModel` or `loadFile`, or give its \
+        fault!(UNKNOWN_CLASS, "there is no class `{requested}`")
+            .help_if(misnamed)
+            .help_if(hint)
+            .help(
+                "load the file that defines it first, with `openModel` or `loadFile`, or give its \
              folder with `--library`",
-        )
+            )
     }
 }

@@ -156,7 +156,7 @@ impl Session {
         loop {
             let answer = question(&self.classes.library);
             // A library that cannot be loaded is missed again by what needs it.
-            if !self.load_wanted().unwrap_or(false) {
+            if !self.load_requested().unwrap_or(false) {
                 return answer;
             }
         }

@@ -72,8 +72,8 @@ impl Session {
         }
         let folders = self.folders();
         let exact = self.classes.versions.get(&name).and_then(|version| {
-            let wanted = format!("{name} {version}");
-            folders.iter().find_map(|folder| self.version_in(folder, &wanted))
+            let required = format!("{name} {version}");
+            folders.iter().find_map(|folder| self.version_in(folder, &required))
         });
         let name = name.as_str();
         exact
@@ -82,11 +82,11 @@ impl Session {
     }
 
     /// Asks for the first of these versions that is there, when the library is loaded.
-    pub(crate) fn want_version(&mut self, name: &Name, versions: Vec<String>) {
+    pub(crate) fn require_version(&mut self, name: &Name, versions: Vec<String>) {
         let Some(library) = name.first() else { return };
         let folders = self.folders();
-        let wanted = versions.into_iter().take_while(|version| version != "default");
-        let found = wanted.into_iter().find(|version| {
+        let required = versions.into_iter().take_while(|version| version != "default");
+        let found = required.into_iter().find(|version| {
             let named = format!("{library} {version}");
             folders.iter().any(|folder| self.version_in(folder, &named).is_some())
         });
@@ -131,10 +131,12 @@ impl Session {
     }
 
     /// The folder `Name 1.2.3`, also with more after it: `Name 1.2.3+build.4`.
-    fn version_in(&self, folder: &Path, wanted: &str) -> Option<PathBuf> {
+    fn version_in(&self, folder: &Path, required: &str) -> Option<PathBuf> {
         let entries = self.world.list_dir(folder).ok()?;
         let fits = |entry: &&String| {
-            entry.strip_prefix(wanted).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+            entry
+                .strip_prefix(required)
+                .is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
         };
         let found = entries.iter().find(fits)?;
         Some(folder.join(found))
@@ -203,19 +205,19 @@ impl Session {
     /// The warning about a library that is older than what was asked for, or of another main
     /// version. The library in the program serves models of all versions.
     fn other_version(&self, name: &Name) -> Option<Fault> {
-        let wanted = self.classes.versions.get(&name.first()?)?;
+        let required = self.classes.versions.get(&name.first()?)?;
         let definition = self.classes.library.definition(name)?;
         let loaded = version(&definition)?;
         let is_shipped = self.classes.file_of(name)?.starts_with(packages::FOLDER);
-        let (asked, given) = (numbers(wanted), numbers(&loaded));
+        let (asked, given) = (numbers(required), numbers(&loaded));
         let fits = asked.first() == given.first() && asked <= given;
-        let converts = match self.classes.library.converts_from(name, wanted) {
+        let converts = match self.classes.library.converts_from(name, required) {
             true => "its conversion script is applied; ",
             false => "",
         };
         (!fits && !is_shipped).then(|| {
             fault!(OTHER_VERSION, "version {loaded} of library `{name}` is loaded, but version \
-                                   {wanted} is required";
+                                   {required} is required";
                 help: "{converts}if results differ, give the folder of the required version with \
                        `--library`")
         })

@@ -234,9 +234,9 @@ impl Places {
         };
         let columns: Vec<_> = names.iter().map(|name| access(name)).collect::<Result<_, _>>()?;
         let place = |name: &str| {
-            let wanted = access(name)?;
+            let input = access(name)?;
             let found = columns.iter().enumerate().find_map(|(at, state)| {
-                let ((column, negated), (of, sign)) = (wanted?, (*state)?);
+                let ((column, negated), (of, sign)) = (input?, (*state)?);
                 (column == of).then_some((at, if negated == sign { 1.0 } else { -1.0 }))
             });
             found.ok_or_else(|| {

@@ -203,7 +203,7 @@ impl Session {
 
     /// Loads what the library asked for and did not have. Returns whether something was loaded:
     /// then what failed is worth another attempt.
-    pub(crate) fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
+    pub(crate) fn load_requested(&mut self) -> Result<bool, Vec<Diagnostic>> {
         let mut loaded = false;
         for name in self.classes.library.take_missing() {
             loaded |= self.autoload_class(name)?;
@@ -302,7 +302,7 @@ impl Session {
                     return Ok(own);
                 }
                 Err(errors) => {
-                    if !self.load_wanted().map_err(first)? {
+                    if !self.load_requested().map_err(first)? {
                         return Err(first(errors));
                     }
                 }

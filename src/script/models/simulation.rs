@@ -299,7 +299,7 @@ pub(crate) fn flattened(
         let found = session
             .ask_library(|library| flatten::flatten_unbalanced(library, &name, &modification));
         // Functions that only other functions call are missed without an error.
-        if session.load_wanted()? {
+        if session.load_requested()? {
             continue;
         }
         let (mut flattened, imbalance) = found.map_err(|errors| {
@@ -401,7 +401,7 @@ pub fn simulate(
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = match &options.only {
-        Some(only) => Trajectory::keeping(wanted_columns(model, only)),
+        Some(only) => Trajectory::keeping(recorded_columns(model, only)),
         None => Trajectory::default(),
     };
     system.system.listen();
@@ -552,17 +552,17 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
 }
 
 /// Which columns hold a variable that is recorded.
-fn wanted_columns(model: &Translated, only: &Regex) -> Vec<bool> {
-    let mut wanted = Vec::new();
+fn recorded_columns(model: &Translated, only: &Regex) -> Vec<bool> {
+    let mut recorded = Vec::new();
     for variable in model.program.variables() {
         if let Access::Observed { column, .. } = variable.access {
-            if wanted.len() <= column {
-                wanted.resize(column + 1, false);
+            if recorded.len() <= column {
+                recorded.resize(column + 1, false);
             }
-            wanted[column] |= only.is_match(&variable.name);
+            recorded[column] |= only.is_match(&variable.name);
         }
     }
-    wanted
+    recorded
 }
 
 /// The variables of a simulation that are recorded. Aliases have their own values where not all

@@ -28,8 +28,8 @@ pub(super) fn number_of(base: &BaseType, name: &str, value: &Value) -> Result<f6
         _ => None,
     };
     number.ok_or_else(|| {
-        let (wanted, given) = (base_name(base), value.type_name());
-        fault!(BAD_PARAMETER_VALUE, "`{name}` is of type {wanted}, and the value of type {given}";
+        let (declared, given) = (base_name(base), value.type_name());
+        fault!(BAD_PARAMETER_VALUE, "`{name}` is of type {declared}, and the value of type {given}";
             help: "assign a value of the type of the parameter")
     })
 }

@@ -193,9 +193,9 @@ fn observed(program: &Program, reference: Option<&Reference>) -> (Vec<usize>, Ve
     let signals = reference.map_or(&[][..], |reference| reference.signals);
     let without_blanks = |name: &str| name.replace(char::is_whitespace, "");
     let find = |signal: &String| {
-        let wanted = without_blanks(signal);
-        let is_wanted = |name: &str| name == wanted || without_blanks(name) == wanted;
-        let at = program.variables().iter().position(|variable| is_wanted(&variable.name))?;
+        let requested = without_blanks(signal);
+        let is_requested = |name: &str| name == requested || without_blanks(name) == requested;
+        let at = program.variables().iter().position(|variable| is_requested(&variable.name))?;
         Some((at, signal.clone()))
     };
     signals.iter().filter_map(find).unzip()

@@ -18,7 +18,7 @@ impl Session {
         drawn: impl FnOnce() -> Drawn,
     ) -> bool {
         self.world.progress(&progress);
-        let is_drawn = self.world.wants_view();
+        let is_drawn = self.world.is_view_due();
         if is_drawn {
             self.world.show_view(&View::of(progress, record, drawn()));
         }

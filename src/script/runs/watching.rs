@@ -49,7 +49,7 @@ impl Session {
         while let Some(line) = self.typed_before() {
             self.typed(&line).map_err(|wrong| Failure::Elsewhere(vec![wrong]))?;
         }
-        if !self.world.wants_pause() {
+        if !self.world.is_pause_requested() {
             return Ok(());
         }
         if self.execution.is_in_function() {

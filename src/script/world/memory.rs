@@ -366,7 +366,7 @@ impl Screen for MemoryWorld {
         }))
     }
 
-    fn wants_view(&mut self) -> bool {
+    fn is_view_due(&mut self) -> bool {
         self.views.is_some()
     }
 
@@ -376,7 +376,7 @@ impl Screen for MemoryWorld {
         }
     }
 
-    fn wants_pause(&mut self) -> bool {
+    fn is_pause_requested(&mut self) -> bool {
         let pauses = self.pause.0 == 0;
         self.pause.0 = if pauses { u64::MAX } else { self.pause.0 - 1 };
         pauses

@@ -21,7 +21,7 @@ pub trait Screen {
         None
     }
     /// Whether a view of the run would be drawn now: asked often, so that none is made in vain.
-    fn wants_view(&mut self) -> bool {
+    fn is_view_due(&mut self) -> bool {
         false
     }
     /// Draws the run as it is now.
@@ -29,7 +29,7 @@ pub trait Screen {
     /// The run has ended: what was drawn goes away.
     fn end_view(&mut self) {}
     /// Whether the user requests a pause of the run; true once for each time.
-    fn wants_pause(&mut self) -> bool {
+    fn is_pause_requested(&mut self) -> bool {
         false
     }
     /// A pause begins: what the user can do then.

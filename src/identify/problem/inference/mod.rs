@@ -76,37 +76,37 @@ pub struct Inference {
 ///
 /// Settings that do not fit the problem.
 pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
-    let wanted = &run.problem.inference;
+    let requested = &run.problem.inference;
     let Some(best) = run.observed.best.as_ref().filter(|_| !run.evaluation.is_cancelled()) else {
-        return Ok(Inferred::stopped(wanted.parts()));
+        return Ok(Inferred::stopped(requested.parts()));
     };
     let mut found = Inferred {
         likelihood: Likelihood::of(run, &best.values),
         findings: prior_data::at_constraints(&run.problem, &best.values),
         ..Inferred::default()
     };
-    if wanted.is_empty() {
+    if requested.is_empty() {
         return Ok(found);
     }
     run.evaluation.show("intervals: derivatives at the best values");
     let local = match Local::at(&run.problem, &run.evaluation, &best.values) {
         Ok(local) => local,
-        Err(_) if run.evaluation.is_cancelled() => return Ok(Inferred::stopped(wanted.parts())),
+        Err(_) if run.evaluation.is_cancelled() => return Ok(Inferred::stopped(requested.parts())),
         Err(why) => {
-            if wanted.more_than_bands() {
+            if requested.more_than_bands() {
                 found.refusals.push(format!("Nothing is inferred beyond the estimates: {why}."));
             }
             return Ok(found);
         }
     };
     let mut parts = Made { run, refusals: Vec::new(), stopped: Vec::new() };
-    if let Some(predict) = wanted.predict.as_ref().filter(|_| wanted.bands) {
+    if let Some(predict) = requested.predict.as_ref().filter(|_| requested.bands) {
         let make = |refusals: &mut Vec<String>| {
             bands::bands(&run.problem, predict.as_ref(), &local, refusals)
         };
         found.bands = parts.part(BANDS, make)?;
     }
-    if let Some(settings) = &wanted.design {
+    if let Some(settings) = &requested.design {
         let make = |refusals: &mut Vec<String>| {
             design::next_measurement(&run.problem, settings, &local, refusals)
         };
@@ -116,7 +116,7 @@ pub(crate) fn infer(run: &Run) -> Result<Inferred, Fault> {
     if local.robust {
         found.likelihood = None;
     }
-    found.draw((&mut parts, &local), wanted)?;
+    found.draw((&mut parts, &local), requested)?;
     found.refusals.append(&mut parts.refusals);
     found.refusals.append(&mut Inferred::stopped(parts.stopped).refusals);
     Ok(found)
@@ -127,11 +127,11 @@ impl Inferred {
     fn draw(
         &mut self,
         (parts, local): (&mut Made<'_>, &Local),
-        wanted: &Inference,
+        requested: &Inference,
     ) -> Result<(), Fault> {
         let run = parts.run;
         if local.robust {
-            if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
+            if requested.bootstrap.is_some() || requested.posterior.is_some() {
                 parts.refusals.push(format!(
                     "There is no bootstrap and no posterior for the robust loss `{}`: minimise \
                      `sum_of_squares` instead.",
@@ -140,11 +140,11 @@ impl Inferred {
             }
             return Ok(());
         }
-        if let Some(settings) = &wanted.bootstrap {
+        if let Some(settings) = &requested.bootstrap {
             let make = |refusals: &mut _| bootstrap::bootstrap(run, settings, local, refusals);
             self.bootstrap = parts.part(BOOTSTRAP, make)?;
         }
-        if let Some(settings) = &wanted.posterior {
+        if let Some(settings) = &requested.posterior {
             let make = |refusals: &mut _| posterior::posterior(run, settings, local, refusals);
             self.posterior = parts.part(POSTERIOR, make)?;
         }
@@ -249,7 +249,7 @@ impl Inference {
             (BOOTSTRAP, self.bootstrap.is_some()),
             (POSTERIOR, self.posterior.is_some()),
         ];
-        all.into_iter().filter(|(_, is_wanted)| *is_wanted).map(|(name, _)| name).collect()
+        all.into_iter().filter(|(_, is_requested)| *is_requested).map(|(name, _)| name).collect()
     }
 
     /// Whether something was asked for that is not computed anyway.

@@ -76,9 +76,9 @@ impl Folder {
     fn entry(&self, name: &str) -> Option<Entry> {
         let path = self.path.join(name);
         if let Some(stem) = name.strip_suffix(".mo") {
-            let is_wanted = stem != "package" && self.files.is_file(&path);
+            let is_class = stem != "package" && self.files.is_file(&path);
             let stem = stem.to_owned();
-            return is_wanted.then_some(Entry { file: path, folder: None, stem });
+            return is_class.then_some(Entry { file: path, folder: None, stem });
         }
         let file = path.join("package.mo");
         let is_package = self.files.is_file(&file);

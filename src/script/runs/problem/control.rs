@@ -32,15 +32,15 @@ impl Watched {
         self.stamp = stamp;
         let Ok(bytes) = session.world.read(&self.path) else { return };
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        let wanted: IndexMap<String, f64> = match toml::from_str(&text) {
-            Ok(wanted) => wanted,
+        let requested: IndexMap<String, f64> = match toml::from_str(&text) {
+            Ok(requested) => requested,
             Err(error) => {
                 let text = format!("warning: `{}`: {}\n", self.path.display(), error.message());
                 session.world.eprint(&text);
                 return;
             }
         };
-        for (setting, value) in wanted {
+        for (setting, value) in requested {
             if self.known.get(&setting) == Some(&value) {
                 continue;
             }

@@ -279,9 +279,10 @@ impl Source<'_> {
                 .map_err(|error| vec![error])?;
         }
         let mut observed = Vec::new();
-        for (y_name, wanted) in entry.all_outputs() {
+        for (y_name, requested) in entry.all_outputs() {
             let place = observed.len();
-            let delayed = dynamics::delayed(file, y_name, place, &wanted, &x.name, &mut enclosing);
+            let delayed =
+                dynamics::delayed(file, y_name, place, &requested, &x.name, &mut enclosing);
             let delayed = delayed.map_err(|fault| vec![fault.at(entry.places.column(y_name))])?;
             observed.push(delayed);
         }

@@ -277,7 +277,7 @@ pub(super) struct CheckpointEntry {
 /// `true`, `false`, or names of variables.
 #[derive(Debug)]
 pub(super) enum BandsEntry {
-    Wanted(bool),
+    Requested(bool),
     Variables(Vec<String>),
 }
 

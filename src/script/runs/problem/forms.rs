@@ -194,7 +194,7 @@ in_forms!(
 in_forms!(
     BandsEntry,
     Forms::<_> {
-        truth: Some(BandsEntry::Wanted),
+        truth: Some(BandsEntry::Requested),
         list: Some(BandsEntry::Variables),
         ..Forms::new("`true`, `false`, or a list of variables")
     }

@@ -30,8 +30,8 @@ pub(super) fn inference(
     cancel: Option<&Arc<AtomicBool>>,
 ) -> Result<Inference, Fault> {
     let (bands, band_variables) = match &file.bands {
-        None | Some(BandsEntry::Wanted(true)) => (true, Vec::new()),
-        Some(BandsEntry::Wanted(false)) => (false, Vec::new()),
+        None | Some(BandsEntry::Requested(true)) => (true, Vec::new()),
+        Some(BandsEntry::Requested(false)) => (false, Vec::new()),
         Some(BandsEntry::Variables(names)) => (true, names.clone()),
     };
     band_variables.iter().try_for_each(|name| known("bands", name, experiments))?;

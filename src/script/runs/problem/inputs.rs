@@ -99,9 +99,9 @@ pub(super) fn inputs(
         _ => (x.name, x.values),
     };
     let (mut undecided, mut torn) = (Vec::new(), Vec::new());
-    for (name, wanted) in &entry.inputs {
+    for (name, requested) in &entry.inputs {
         let place = entry.places.column(name);
-        let input = (name.as_str(), &wanted.entry());
+        let input = (name.as_str(), &requested.entry());
         let base = type_of_input(name, flat).at(place)?;
         let followed = followed(input, table, times, (flat, &base), notes).at(place)?;
         declare((name, &base, place), &followed, enclosing);
@@ -217,18 +217,21 @@ fn own_times(
 
 /// The samples of an input, and how it continues between them.
 fn followed(
-    (name, wanted): (&str, &ColumnEntry),
+    (name, requested): (&str, &ColumnEntry),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
     (flat, base): (&FlatModel, &BaseType),
     notes: &mut Notes,
 ) -> Result<Followed, Fault> {
-    let column = data::column(table, wanted, name, notes)?;
-    notes.warn_about(table, fault_codes::codes(wanted.column.as_deref().unwrap_or(name), &column));
+    let column = data::column(table, requested, name, notes)?;
+    notes.warn_about(
+        table,
+        fault_codes::codes(requested.column.as_deref().unwrap_or(name), &column),
+    );
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
     check_type(name, base, &column)?;
     let unit = variable_unit(flat, name);
-    let values = data::in_unit(&column, name, &unit, wanted, (table, notes))?.values;
+    let values = data::in_unit(&column, name, &unit, requested, (table, notes))?.values;
     let rows: Vec<usize> =
         (0..time.len()).filter(|&row| time[row].is_finite() && values[row].is_finite()).collect();
     if rows.is_empty() {
@@ -245,8 +248,8 @@ fn followed(
     }
     let samples: Vec<(f64, f64)> = rows.iter().map(|&row| (time[row], values[row])).collect();
     let (between, is_decided) = match base {
-        BaseType::Real => between(name, wanted, &samples, notes)?,
-        _ if wanted.interpolation.as_deref() == Some("linear") => bail!(
+        BaseType::Real => between(name, requested, &samples, notes)?,
+        _ if requested.interpolation.as_deref() == Some("linear") => bail!(
             BAD_OPTION,
             "the input `{name}` is not Real and cannot be interpolated linearly";
             help: "remove `interpolation`: each value is held until the next sample"

@@ -28,8 +28,8 @@ pub(super) fn method(
     usual: &str,
     n_genes: usize,
 ) -> Result<Named, Vec<Diagnostic>> {
-    let wanted = file.method.name.as_deref().unwrap_or(usual);
-    let entry = registry::find("method", METHODS, wanted);
+    let requested = file.method.name.as_deref().unwrap_or(usual);
+    let entry = registry::find("method", METHODS, requested);
     let entry = *entry.as_ref().map_err(|fault| vec![fault.clone().at(Span::NONE)])?;
     let mut options = Options::default();
     file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
@@ -100,8 +100,8 @@ fn without(entry: &Entry<dyn Method>, kind: &str) -> Fault {
 /// `bad-operator`, with the declaration that is expected.
 pub(crate) fn check(kind: &OperatorKind, name: &str, function: &Function) -> Result<(), Fault> {
     let found = [function.inputs.len(), function.outputs.len()];
-    let wanted = [kind.signature.inputs.len(), kind.signature.outputs.len()];
-    if found == wanted {
+    let expected = [kind.signature.inputs.len(), kind.signature.outputs.len()];
+    if found == expected {
         return Ok(());
     }
     let count = |[inputs, outputs]: [usize; 2]| {
@@ -113,7 +113,7 @@ pub(crate) fn check(kind: &OperatorKind, name: &str, function: &Function) -> Res
         "`{name}` has {}, but a {} has {}",
         count(found),
         kind.name,
-        count(wanted)
+        count(expected)
     )
     .help(format!("declare it as\n{}", kind.declaration().trim_end())))
 }

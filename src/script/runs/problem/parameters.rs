@@ -212,14 +212,16 @@ pub(super) fn check_taken(
     });
     let set = entry.set.iter().map(|(name, value)| (name, *value, entry.places.value(name)));
     for (name, value, place) in fixed.chain(set) {
-        let wanted = match value {
+        let requested = match value {
             ValueEntry::Number(number) => number,
             ValueEntry::Truth(truth) => f64::from(truth),
         };
-        let Some(taken) = value_of(model, name).filter(|taken| *taken != wanted) else { continue };
+        let Some(taken) = value_of(model, name).filter(|taken| *taken != requested) else {
+            continue;
+        };
         let fault = fault!(
             BAD_OPTION,
-            "`{name}` cannot be set to {wanted}: it keeps its value {taken}, which a component of \
+            "`{name}` cannot be set to {requested}: it keeps its value {taken}, which a component of \
              the model has as a whole"
         );
         return Err(fault

@@ -247,9 +247,9 @@ impl<'t> Place<'t> {
     }
 
     fn remedy(&self, message: &str) -> Option<String> {
-        let is = |found: &str, wanted: &str| {
+        let is = |found: &str, expected: &str| {
             message.contains(&format!("invalid type: {found}"))
-                && message.contains(&format!("expected {wanted}"))
+                && message.contains(&format!("expected {expected}"))
         };
         let (_, after) = self.line();
         let has_number = || {

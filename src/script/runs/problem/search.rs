@@ -109,7 +109,7 @@ impl Search {
             self.looked = seconds;
             watched.apply(session, &mut self.run);
         }
-        if session.world.wants_pause() && self.pause(session, seconds) {
+        if session.world.is_pause_requested() && self.pause(session, seconds) {
             let reason = "stopped by the user: these are the best values found so far";
             return Some(Ending::by_user(reason));
         }

@@ -119,7 +119,7 @@ pub(super) fn segments(
     rows: &Rows<'_>,
     notes: &mut Notes,
 ) -> Result<Vec<Segment>, Fault> {
-    let Some(wanted) = &entry.segments else {
+    let Some(requested) = &entry.segments else {
         return Ok(vec![Segment::whole(entry, number, rows.origin)]);
     };
     let name = entry.label(number);
@@ -131,7 +131,7 @@ pub(super) fn segments(
             help: "remove one of the two"
         );
     }
-    let ranges = match wanted {
+    let ranges = match requested {
         SegmentsEntry::Auto => found(entry, table, rows)?,
         SegmentsEntry::Times(times) => cut_at(&name, times, rows)?,
     };

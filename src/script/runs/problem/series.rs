@@ -50,8 +50,8 @@ impl Comparison<'_> {
         notes: &mut Notes,
     ) -> Result<(Vec<Observation>, Vec<Series>), Diagnostic> {
         let (mut observations, mut series) = (Vec::new(), Vec::new());
-        for ((y_name, wanted), observed) in self.entry.all_outputs().zip(observed) {
-            let one = self.output(y_name, &wanted, notes);
+        for ((y_name, requested), observed) in self.entry.all_outputs().zip(observed) {
+            let one = self.output(y_name, &requested, notes);
             let one = one.at(self.entry.places.column(y_name))?;
             observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
             series.push(one);
@@ -62,19 +62,19 @@ impl Comparison<'_> {
     fn output(
         &self,
         y_name: &str,
-        wanted: &ColumnEntry,
+        requested: &ColumnEntry,
         notes: &mut Notes,
     ) -> Result<Series, Fault> {
         let (table, unit) = (self.table, self.unit(y_name));
-        let column = data::column(table, wanted, y_name, notes)?;
-        note_suspicious(wanted.column.as_deref().unwrap_or(y_name), &column, (table, notes));
-        let measured = data::in_unit(&column, y_name, &unit, wanted, (table, notes))?;
+        let column = data::column(table, requested, y_name, notes)?;
+        note_suspicious(requested.column.as_deref().unwrap_or(y_name), &column, (table, notes));
+        let measured = data::in_unit(&column, y_name, &unit, requested, (table, notes))?;
         let VariableUnit { symbol: unit, is_relative } = unit;
-        note_unit_of_sigma(y_name, wanted, (&measured, &unit), notes);
+        note_unit_of_sigma(y_name, requested, (&measured, &unit), notes);
         let count = measured.values.len();
         data::same_length([self.x_name, y_name], [self.x.len(), count])?;
-        let factor = data::sigma_factor(table, wanted.sigma.as_ref(), &unit, measured.factor);
-        let sigma = sigma::sigma(wanted.sigma.as_ref(), y_name, table, factor, count)?;
+        let factor = data::sigma_factor(table, requested.sigma.as_ref(), &unit, measured.factor);
+        let sigma = sigma::sigma(requested.sigma.as_ref(), y_name, table, factor, count)?;
         let measured_in = |row: &usize| {
             self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
         };
@@ -93,13 +93,13 @@ impl Comparison<'_> {
             bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
         }
         let values = rows.iter().map(|row| measured.values[*row]);
-        note_temperature(y_name, (&unit, is_relative), (wanted, &column), values, notes);
+        note_temperature(y_name, (&unit, is_relative), (requested, &column), values, notes);
         note_constant(y_name, rows.iter().map(|row| measured.values[*row]), notes);
-        let weight = self.weight(y_name, wanted)?;
+        let weight = self.weight(y_name, requested)?;
         Ok(Series {
             experiment: self.experiment.to_owned(),
             y_name: y_name.to_owned(),
-            y_unit: data::shown_unit(&unit, wanted, &column.about),
+            y_unit: data::shown_unit(&unit, requested, &column.about),
             x_name: self.x_name.to_owned(),
             x_unit: self.unit(self.x_name).symbol,
             file: self.entry.data.display().to_string(),
@@ -107,7 +107,7 @@ impl Comparison<'_> {
             y: rows.iter().map(|row| measured.values[*row]).collect(),
             weight,
             sigma,
-            column: wanted.column.clone().unwrap_or_else(|| y_name.to_owned()),
+            column: requested.column.clone().unwrap_or_else(|| y_name.to_owned()),
             rows: rows.iter().map(|row| first_row + row).collect(),
             missing: missing.iter().map(|row| first_row + row).collect(),
         })
@@ -188,9 +188,9 @@ impl Comparison<'_> {
         Ok(sigma)
     }
 
-    fn weight(&self, y_name: &str, wanted: &ColumnEntry) -> Result<f64, Fault> {
+    fn weight(&self, y_name: &str, requested: &ColumnEntry) -> Result<f64, Fault> {
         let weight =
-            wanted.weight.map_or(1.0, |weight| weight.0) * self.entry.weight.unwrap_or(1.0);
+            requested.weight.map_or(1.0, |weight| weight.0) * self.entry.weight.unwrap_or(1.0);
         if !(weight.is_finite() && weight > 0.0) {
             bail!(BAD_OPTION, "the weight of `{y_name}` in {} is {weight}", self.experiment);
         }
@@ -264,11 +264,11 @@ fn note_suspicious(name: &str, column: &Column, (table, notes): (&MatFile, &mut 
 /// Where values were converted, a number for sigma is taken in the unit of the model.
 fn note_unit_of_sigma(
     y_name: &str,
-    wanted: &ColumnEntry,
+    requested: &ColumnEntry,
     (measured, unit): (&Measured, &str),
     notes: &mut Notes,
 ) {
-    if let (true, Some(SigmaEntry::Number(sigma))) = (measured.factor != 1.0, &wanted.sigma) {
+    if let (true, Some(SigmaEntry::Number(sigma))) = (measured.factor != 1.0, &requested.sigma) {
         notes.add(format!("the sigma column {sigma} of `{y_name}` is in {}", in_words(unit)));
     }
 }

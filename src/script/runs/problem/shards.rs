@@ -61,20 +61,20 @@ pub(super) fn keep(
     let Division::Shard(shard) = options.division else { return Ok(()) };
     let problem = problem.to_string_lossy();
     let mut file = ShardFile::new(&run.evaluation.parts, shard, origins, &problem);
-    file.wanted = wanted(options);
+    file.requested = requested(options);
     // How long it took differs between equal runs.
     file.journal = without_times(&session.read_bytes(journal)?);
     session.write_safely(&folder.join(FILE), &file.to_bytes())
 }
 
 /// What is asked for beyond the fit.
-type Wanted = ([bool; 4], Option<String>, usize, Option<u64>, Option<usize>);
+type Requested = ([bool; 4], Option<String>, usize, Option<u64>, Option<usize>);
 
-fn wanted(options: &RunOptions) -> Vec<u8> {
+fn requested(options: &RunOptions) -> Vec<u8> {
     let RunOptions { profile, design, bootstrap, posterior, .. } = *options;
     let RunOptions { sensitivity, samples, evaluations, searches, .. } = options;
     let parts = [profile, design, bootstrap, posterior];
-    let all: Wanted = (parts, sensitivity.clone(), *samples, *evaluations, *searches);
+    let all: Requested = (parts, sensitivity.clone(), *samples, *evaluations, *searches);
     // Names and numbers only.
     postcard::to_allocvec(&all).unwrap_or_default()
 }
@@ -105,7 +105,7 @@ pub fn read_shards(
     }
     let Some((_, first)) = files.first() else { bail!(BAD_OPTION, "there are no shards") };
     let problem = PathBuf::from(&first.problem);
-    let options: Option<Wanted> = postcard::from_bytes(&first.wanted).ok();
+    let options: Option<Requested> = postcard::from_bytes(&first.requested).ok();
     let Some((parts, sensitivity, samples, evaluations, searches)) = options else {
         bail!(BAD_OPTION, "the shards were written by another version of gapilib");
     };
@@ -125,9 +125,9 @@ pub fn read_shards(
     }
     let division = Division::Merged(files);
     let [profile, design, bootstrap, posterior] = parts;
-    let wanted =
+    let requested =
         RunOptions { profile, design, bootstrap, posterior, sensitivity, ..RunOptions::default() };
-    Ok((problem, RunOptions { samples, evaluations, searches, division, fresh: true, ..wanted }))
+    Ok((problem, RunOptions { samples, evaluations, searches, division, fresh: true, ..requested }))
 }
 
 /// The file, if it belongs to those that were read before.
@@ -146,7 +146,7 @@ fn agreeing(
         Some(format!("these differ: {}", listed(&changed)))
     } else if file.shard.count != first.shard.count {
         Some(format!("{} shards, and {}", first.shard.count, file.shard.count))
-    } else if file.wanted != first.wanted || records(&file) != records(first) {
+    } else if file.requested != first.requested || records(&file) != records(first) {
         Some("the options or the searches differ".to_owned())
     } else {
         None
