@@ -14,6 +14,13 @@ use crate::syntax::visit::{Visit, walk_reference};
 /// Deepest chain of parameters.
 const MAX_DEPTH: usize = 100;
 
+/// What becomes of parameters whose values have been read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Afterwards {
+    Settable,
+    Fixed,
+}
+
 impl Builder<'_> {
     /// The value of a parameter. Where a function in it has variables whose sizes follow from what the
     /// function computes, the parameters that it is called with are evaluated when compiling; they
@@ -58,7 +65,9 @@ impl Builder<'_> {
         }
         let first = self.scalars.first[position].0;
         for scalar in first..first + variable.len() as u32 {
-            if let Some(value) = self.evaluated_parameter(VarId(scalar), MAX_DEPTH)? {
+            if let Some(value) =
+                self.evaluated_parameter(VarId(scalar), MAX_DEPTH, Afterwards::Fixed)?
+            {
                 self.dae.variables[scalar as usize].kind = VariableKind::Constant(value);
             }
         }
@@ -68,17 +77,29 @@ impl Builder<'_> {
     /// The value that parameters give an expression when compiling; they cannot be set any more.
     /// `None` if it depends on variables, or on parameters without values.
     pub(super) fn evaluate_structural(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
-        self.evaluate_below(e, MAX_DEPTH)
+        self.evaluate_below(e, MAX_DEPTH, Afterwards::Fixed)
     }
 
-    fn evaluate_below(&mut self, e: Expr, depth: usize) -> Result<Option<f64>, Diagnostic> {
+    /// The same value, while the parameters can still be set.
+    pub(super) fn value_in_model(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
+        self.evaluate_below(e, MAX_DEPTH, Afterwards::Settable)
+    }
+
+    fn evaluate_below(
+        &mut self,
+        e: Expr,
+        depth: usize,
+        afterwards: Afterwards,
+    ) -> Result<Option<f64>, Diagnostic> {
         if let Some(known) = self.dae.pool.as_constant(e) {
             return Ok(Some(known));
         }
         let variables = self.dae.pool.variables(e);
         let mut values = vec![f64::NAN; variables.last().map_or(0, |v| v.0 as usize + 1)];
         for variable in variables {
-            let Some(value) = self.evaluated_parameter(variable, depth)? else { return Ok(None) };
+            let Some(value) = self.evaluated_parameter(variable, depth, afterwards)? else {
+                return Ok(None);
+            };
             values[variable.0 as usize] = value;
         }
         let value = evaluate(&self.dae.pool, e, &values[..]);
@@ -89,6 +110,7 @@ impl Builder<'_> {
         &mut self,
         variable: VarId,
         depth: usize,
+        afterwards: Afterwards,
     ) -> Result<Option<f64>, Diagnostic> {
         let position = variable.0 as usize;
         match self.dae.variables[position].kind {
@@ -98,7 +120,7 @@ impl Builder<'_> {
             VariableKind::Discrete
                 if depth > 0 && self.dae.variables[position].base != BaseType::Real =>
             {
-                return self.evaluated_variable(variable, depth);
+                return self.evaluated_variable(variable, depth, afterwards);
             }
             _ => return Ok(None),
         }
@@ -110,8 +132,8 @@ impl Builder<'_> {
         };
         let element = self.sized(given, &declared.dims)?.elements
             [(variable.0 - self.scalars.first[at].0) as usize];
-        let value = self.evaluate_below(element, depth - 1)?;
-        if value.is_some() {
+        let value = self.evaluate_below(element, depth - 1, afterwards)?;
+        if value.is_some() && afterwards == Afterwards::Fixed {
             self.dae.variables[position].kind = VariableKind::Parameter { tunable: false };
         }
         Ok(value)
@@ -122,6 +144,7 @@ impl Builder<'_> {
         &mut self,
         variable: VarId,
         depth: usize,
+        afterwards: Afterwards,
     ) -> Result<Option<f64>, Diagnostic> {
         let Some(at) = self.flat_position(variable) else { return Ok(None) };
         let declared = &self.flat.variables[at];
@@ -134,7 +157,7 @@ impl Builder<'_> {
         };
         let place = (variable.0 - self.scalars.first[at].0) as usize;
         match self.sized(binding, &declared.dims) {
-            Ok(array) => self.evaluate_below(array.elements[place], depth - 1),
+            Ok(array) => self.evaluate_below(array.elements[place], depth - 1, afterwards),
             Err(_) => Ok(None),
         }
     }

@@ -227,6 +227,8 @@ impl Builder<'_> {
         Ok(self.dae.pool.variable(variable))
     }
 
+    /// `delay(argument, time, longest)` (MLS §3.7.4.1). A delay time that is 0 in the model is a
+    /// connection: the parameters in it cannot be set any more.
     fn delay(
         &mut self,
         argument: Expr,
@@ -244,9 +246,13 @@ impl Builder<'_> {
         if let Some(known) = self.dae.events.delays.iter().find(same) {
             return Ok(self.dae.pool.variable(known.variable));
         }
+        if self.value_in_model(time)? == Some(0.0) {
+            self.evaluate_structural(time)?;
+            return Ok(argument);
+        }
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
-        let message = "the delay time of `delay` must be positive".into();
+        let message = "the delay time of `delay` must be positive, or 0 in the model itself".into();
         let parts = vec![StringPart::Text(message)];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);

@@ -13,7 +13,7 @@
 //! After an event a function that is at zero has no such values: it is evaluated nearer and nearer
 //! to the event, until the sign of its derivative there is clear.
 
-use super::{Events, Failure, Integrator, Problem};
+use super::{Events, Failure, Integrator, Problem, Residual};
 
 /// The width to which an event is located, relative to the step.
 const WIDTH: f64 = 1e-10;
@@ -163,6 +163,7 @@ impl CrossingSearch {
         if self.signs.is_empty() {
             return Ok(None);
         }
+        let end = b;
         problem.system.crossings(b, y, &mut self.right)?;
         self.is_near.fill(true);
         self.note_lasting();
@@ -183,6 +184,9 @@ impl CrossingSearch {
             self.is_near[at] = !is_far || self.followed[at];
         }
         let b = self.narrow(problem, integrator, (a, b), y)?;
+        let Some(b) = self.with_loops_solved(problem, integrator, (b, end), y)? else {
+            return Ok(None);
+        };
         integrator.interpolate(b, y);
         self.switched.clear();
         for at in 0..self.signs.len() {
@@ -225,6 +229,52 @@ impl CrossingSearch {
             }
         }
         Ok(b)
+    }
+
+    /// The integrator knows the unknowns of algebraic loops to its tolerance alone, and an event that
+    /// lies in this error is undone when the loops are solved for it. The event at `found`, or the
+    /// first one from there to `end` where a sign changes with loops solved; `None` if there is
+    /// none, and then the search continues from `end`, with y there.
+    fn with_loops_solved(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (found, end): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        if problem.system.n_algebraic() == problem.system.n_auxiliary() {
+            return Ok(Some(found));
+        }
+        problem.system.solve_loops(true);
+        let event = self.confirmed(problem, integrator, (found, end), y);
+        problem.system.solve_loops(false);
+        event
+    }
+
+    fn confirmed(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (found, end): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        integrator.interpolate(found, y);
+        let is_solved = problem.system.crossings(found, y, &mut self.trial).is_ok();
+        if !is_solved || self.changed(&self.trial) || found >= end {
+            return Ok(Some(found));
+        }
+        std::mem::swap(&mut self.left, &mut self.trial);
+        y.copy_from_slice(&self.kept);
+        if problem.system.crossings(end, y, &mut self.trial).is_err() {
+            return Ok(Some(found));
+        }
+        if !self.changed(&self.trial) {
+            std::mem::swap(&mut self.left, &mut self.trial);
+            self.earlier_time = None;
+            return Ok(None);
+        }
+        std::mem::swap(&mut self.right, &mut self.trial);
+        self.narrow(problem, integrator, (found, end), y).map(Some)
     }
 
     /// Counts the steps at whose ends a function has kept another sign and grown.

@@ -449,6 +449,35 @@ fn a_delayed_equation_follows_its_pieces() {
 }
 
 #[test]
+fn a_delay_of_zero_is_a_connection() {
+    let text = |d: f64| {
+        format!(
+            "model Z parameter Real d = {d}; parameter Real e = 2*d; Real u = sin(time);
+        Real x; equation x + 0.5*delay(x, e) = u; end Z;"
+        )
+    };
+    let run = simulated(&text(0.0), 2.0);
+    near(run.last("x"), 2f64.sin() / 1.5, 1e-12);
+    let run = simulated(&text(2.0), 2.0);
+    near(run.last("x"), 2f64.sin(), 1e-12);
+    let negative = attempt(&text(-1.0), 1.0).3.expect_err("a negative delay");
+    let program = compiled(&text(-1.0)).expect("a model");
+    assert!(program.explain(&negative).message.contains("must be positive"));
+}
+
+#[test]
+fn when_statements_in_a_loop_are_one_for_each_value() {
+    let text = "model W Real sum(start = 0, fixed = true); Real at[3](each start = 0, each fixed = true);
+        algorithm for i in 1:3 loop when time > 0.2*i then sum := pre(sum) + i; at[i] := time; end when;
+        end for; end W;";
+    let run = simulated(text, 1.0);
+    near(run.last("sum"), 6.0, 0.0);
+    for (name, time) in [("at[1]", 0.2), ("at[2]", 0.4), ("at[3]", 0.6)] {
+        near(run.last(name), time, 1e-9);
+    }
+}
+
+#[test]
 fn delayed_jumps_arrive_at_the_exact_time() {
     let text = "model J parameter Real d = 0.35; Real u = if time > 0.5 then 2 + sin(time) else 0; Real y = delay(u, d);
         Real area(start = 0, fixed = true); Boolean late = y > 1; Real twice = delay(y, 0.4, 1);

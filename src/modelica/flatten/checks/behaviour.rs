@@ -27,11 +27,19 @@ struct Around {
     varying: bool,
     /// A for- or while-loop of an algorithm.
     looped: bool,
+    /// A while-loop of an algorithm.
+    repeated: bool,
     /// An algorithm.
     algorithm: bool,
     /// The algorithm of a function.
     function: bool,
 }
+
+/// MLS §11.2.7.1.
+const NESTED_WHEN: (&str, &str) = (
+    "a when-statement is not allowed inside another statement",
+    "move it to the top of the algorithm",
+);
 
 /// Checks the own sections of a class.
 pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
@@ -204,11 +212,15 @@ impl BehaviourCheck<'_, '_> {
                 "a when-clause is not allowed in an initial section",
                 "write `when initial() then` in an equation section",
             ))
-        } else if around.algorithm && (around.looped || around.varying) {
-            Some((
-                "a when-statement is not allowed inside another statement",
-                "move it to the top of the algorithm",
-            ))
+        } else if around.algorithm && (around.repeated || around.varying) {
+            Some(NESTED_WHEN)
+        } else if around.algorithm && around.looped {
+            // Libraries repeat it so (SolarTherm): one when-statement for each value.
+            let (message, help) = NESTED_WHEN;
+            let error = fault!(MISPLACED, "{message}"; help: "{help}").at(span);
+            let is_strict = self.class.library.is_strict();
+            self.errors.push(if is_strict { error } else { error.warning() });
+            None
         } else {
             None
         };
@@ -277,8 +289,11 @@ impl BehaviourCheck<'_, '_> {
                 branches.iter().for_each(|(_, body)| self.statements(body, &inside));
                 self.statements(otherwise, &inside);
             }
-            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-                let inside = Around { looped: true, ..around.clone() };
+            StatementKind::For { body, .. } => {
+                self.statements(body, &Around { looped: true, ..around.clone() });
+            }
+            StatementKind::While { body, .. } => {
+                let inside = Around { looped: true, repeated: true, ..around.clone() };
                 self.statements(body, &inside);
             }
             StatementKind::When { branches } => {
