@@ -28,6 +28,14 @@ const MAX_EQUATIONS: usize = 5_000_000;
 /// The scalar system of a flat model.
 pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let mut builder = Builder::new(flat);
+    if let Err(error) = lower_all(flat, &mut builder) {
+        let missing = builder.scalars.missing_strings.first();
+        return Err(missing.map_or(error.clone(), |why| error.or_else("here", why)));
+    }
+    Ok(finished(builder))
+}
+
+fn lower_all(flat: &FlatModel, builder: &mut Builder) -> Result<(), Diagnostic> {
     builder.declare();
     builder.find_varying_strings();
     builder.find_discrete();
@@ -58,7 +66,12 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         builder.algorithm(statements)?;
     }
     builder.move_to_start(asserted);
-    builder.partition_clocks()?;
+    builder.partition_clocks()
+}
+
+/// The system with the code of its functions.
+fn finished(mut builder: Builder) -> Dae {
+    builder.dae.warnings.append(&mut builder.scalars.missing_strings);
     let (functions, warnings) = builder.calls.functions.finish();
     builder.dae.warnings.extend(warnings);
     for (function, code) in functions.codes.iter().enumerate() {
@@ -74,7 +87,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         }
     }
     builder.dae.functions = Arc::new(functions);
-    Ok(builder.dae)
+    builder.dae
 }
 
 impl<'a> Builder<'a> {

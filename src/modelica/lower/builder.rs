@@ -6,6 +6,7 @@ use super::equation::Instance;
 use super::execution::Execution;
 use super::expressions::Lowered;
 use super::function::{CallResults, Instances};
+use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
 use crate::syntax::ast::Expression;
@@ -53,6 +54,9 @@ pub(super) struct Scalars {
     pub(super) conditions: FxHashMap<Expr, VarId>,
     /// Variables that hold relations.
     pub(super) relations: FxHashMap<(RelationOperator, Expr, Expr), VarId>,
+    /// Warnings that parameters have no text because what gives it was run and failed: a file
+    /// that cannot be read, say.
+    pub(super) missing_strings: Vec<Diagnostic>,
 }
 
 /// Where in the model the equation or statement at hand stands.
@@ -125,6 +129,7 @@ impl Scalars {
             previous: IndexMap::default(),
             conditions: FxHashMap::default(),
             relations: FxHashMap::default(),
+            missing_strings: Vec::new(),
         }
     }
 }

@@ -425,12 +425,10 @@ impl Builder<'_> {
         let before = std::mem::replace(&mut self.scalars.folding[position], Folding::InProgress);
         let lowered = Lowering::new(self).lower(binding);
         self.scalars.folding[position] = before;
-        lowered.map_err(|why| self.warn_of_missing_text(position, why)).ok()
+        lowered.map_err(|why| self.warn_of_missing_string(position, why)).ok()
     }
 
-    /// That a parameter has no text because what gives it was run and failed: a file that cannot be
-    /// read, say.
-    fn warn_of_missing_text(&mut self, position: usize, why: Diagnostic) {
+    fn warn_of_missing_string(&mut self, position: usize, why: Diagnostic) {
         let Some((name, variable)) = self.flat.variables.get_index(position) else { return };
         let is_run_later = [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&why.code);
         if is_run_later || variable.variability > Variability::Parameter {
@@ -438,8 +436,8 @@ impl Builder<'_> {
         }
         let message = format!("`{name}` has no value: {}", why.message);
         let warning = why.reworded(message).warning();
-        if !self.dae.warnings.contains(&warning) {
-            self.dae.warnings.push(warning);
+        if !self.scalars.missing_strings.contains(&warning) {
+            self.scalars.missing_strings.push(warning);
         }
     }
 

@@ -91,3 +91,17 @@ fn a_discrete_variable_is_one_in_later_conditions() {
     );
     assert_eq!(said, "");
 }
+
+#[test]
+fn a_missing_file_is_named_where_its_path_is_needed() {
+    let text = "model M\n\
+        parameter String file = Modelica.Utilities.Files.loadResource(\"modelica://Nowhere/data.txt\");\n\
+        parameter Integer n = Modelica.Utilities.Strings.length(file);\n\
+        Real x = n;\n\
+        end M;\n";
+    let script = "openModel(\"M.mo\");\nok := simulateModel(\"M\");\n";
+    let world = shipped::world().with_file("M.mo", text).with_file("test.mos", script);
+    let run = shipped::run_in(world, "test.mos");
+    let reason = "`file` has no value: there is no file `modelica://Nowhere/data.txt`";
+    assert!(run.errors.contains(reason), "{}", run.errors);
+}
