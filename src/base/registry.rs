@@ -13,7 +13,7 @@ codes! {
         "## What it means\n\nThe name of a method, operator or format is unknown.\n\n## Example\n\n`simulateModel(\"M\", method=\"dasl\")`\n\n## What to do\n\nUse one of the names that the message lists.",
     /// An option that its choice does not have, or a value outside its domain.
     BAD_OPTION = "bad-option":
-        "## What it means\n\nAn option is unknown, or its value is outside the range given in the message.\n\n## Example\n\n`tolerance = -1`\n\n## What to do\n\nCorrect the name or the value.",
+        "## What it means\n\nAn option, an argument or an entry of a problem file is unknown, has the wrong form (a problem file is TOML), or its value is outside the range given in the message; or the settings cannot be used together, with these data or with this model.\n\n## Example\n\n`tolerance = -1`, or `G = [0.1, 20]` instead of `G = { min = 0.1, max = 20 }`\n\n## What to do\n\nCorrect the name, the form or the value at the position shown; the help of the message says what is expected there.",
 }
 
 /// One named choice: what the user writes, what it means, and how to make it.

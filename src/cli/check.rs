@@ -30,7 +30,7 @@ pub(super) struct CheckArgs {
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
-    /// Reject what the specification forbids even where libraries rely on it
+    /// Reject everything that the specification forbids, even if libraries rely on it
     #[arg(long)]
     pub strict: bool,
     /// Show from where each library was loaded

@@ -38,7 +38,7 @@ pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCod
     let named: Vec<(String, &Solution)> = names.into_iter().zip(&solutions).collect();
     match compare(&named) {
         Ok(comparison) => {
-            terminal::print(&comparison.text());
+            terminal::print_report(&comparison.text());
             write(&comparison, arguments.out.as_deref().unwrap_or(Path::new(RESULTS)))
         }
         Err(fault) => {

@@ -1,4 +1,4 @@
-//! `--stats`: the table of what made a simulation work.
+//! `--stats`: the table of what cost a simulation the most effort.
 
 use crate::runtime::LoopEffort;
 use crate::script::models::hardest::Hardest;

@@ -59,7 +59,7 @@ pub(super) struct IdentifyArgs {
     /// The problem file (.toml)
     #[arg(value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
-    /// Further problems with the same data: compares the models
+    /// Further problem files on the same data, whose models are compared
     #[arg(value_hint = ValueHint::FilePath)]
     pub others: Vec<PathBuf>,
     /// Folder for results, figures and the checkpoint [default: one per problem in `results`]
@@ -80,13 +80,13 @@ pub(super) struct IdentifyArgs {
     /// Stop after this number of evaluations
     #[arg(long, value_name = "N", value_parser = super::numbers::whole_number)]
     pub evaluations: Option<u64>,
-    /// Search N times, each time with another seed, and take the best result
+    /// Run N searches with different seeds and keep the best result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub searches: Option<u32>,
     /// Compute profile likelihoods of the parameters after the fit
     #[arg(long)]
     pub profile: bool,
-    /// After the fit, find the further measurements that would shrink the intervals most (optimal design)
+    /// After the fit, suggest the additional measurements that would narrow the intervals most (optimal design)
     #[arg(long)]
     pub design: bool,
     /// After the fit, compute intervals by fits to resampled data (bootstrap)
@@ -101,10 +101,10 @@ pub(super) struct IdentifyArgs {
     /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
     #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub samples: Option<u32>,
-    /// Compute one of N shards of further searches and of what follows the fit; `gapi report --merge` makes the report of all
+    /// Compute shard K of N of a study (searches, bootstrap, profiles, chains); `gapi report --merge` makes the report of all
     #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with_all = ["others", "watch"])]
     pub shard: Option<Shard>,
-    /// A file with settings (name = number) that can be changed during the run
+    /// Read settings (name = number) from this file whenever it changes
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
     /// Show a progress bar instead of the live view (which otherwise appears after one second on a terminal)

@@ -1,5 +1,5 @@
 //! Whether a launcher of MPI jobs (`mpirun`, `mpiexec`, `srun`) has started several processes
-//! together, recognised by the variables that it sets.
+//! together, recognized by the variables that it sets.
 
 use super::terminal;
 use std::process::ExitCode;

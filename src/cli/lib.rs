@@ -30,6 +30,7 @@ mod disk;
 mod effort;
 pub mod embedding;
 mod explain;
+mod fitted;
 mod fmt;
 mod hangup;
 mod help;

@@ -2,13 +2,14 @@
 
 use super::options::Global;
 use super::session;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::runs::problem::{Draft, DraftOptions, draft};
+use crate::script::runs::problem::{Draft, DraftOptions, Question, draft};
 use crate::source::Span;
 use clap::{Args, ValueHint};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -55,7 +56,9 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
     session.grant_input(&arguments.data);
     session.grant_input(&arguments.model);
     let options = options(arguments, &output);
-    match draft(&mut session, &options).and_then(|draft| write(&mut session, &output, draft)) {
+    let drafted =
+        draft(&mut session, &options).and_then(|draft| answered(&mut session, options, draft));
+    match drafted.and_then(|draft| write(&mut session, &output, draft)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),
     }
@@ -79,6 +82,7 @@ fn options(arguments: &NewArgs, output: &Path) -> DraftOptions {
     DraftOptions {
         data: path(&arguments.data),
         models: if is_file { path(&arguments.model) } else { String::new() },
+        output: None,
         class: match (&arguments.class, is_file) {
             (Some(class), _) => class.clone(),
             (None, true) => String::new(),
@@ -87,11 +91,38 @@ fn options(arguments: &NewArgs, output: &Path) -> DraftOptions {
     }
 }
 
-fn write(
+/// On a terminal, asks what is open, and drafts again with the answer. Elsewhere the draft says what is
+/// a guess.
+fn answered(
     session: &mut Session,
-    output: &Path,
+    options: DraftOptions,
     draft: Draft,
-) -> Result<(), Vec<crate::diag::Diagnostic>> {
+) -> Result<Draft, Vec<Diagnostic>> {
+    let Some(question) = draft.question.as_ref().filter(|_| std::io::stdin().is_terminal()) else {
+        return Ok(draft);
+    };
+    let Question { column, candidates } = question;
+    let choices: String =
+        candidates.iter().enumerate().map(|(k, name)| format!("  {}  {name}\n", k + 1)).collect();
+    session.print(&format!("Which variable does the column `{column}` hold?\n{choices}"));
+    let prompt = format!("1 to {} [1]: ", candidates.len());
+    let chosen = loop {
+        let Some(answer) = session.world.ask(&prompt) else { return Ok(draft) };
+        let number = match answer.trim() {
+            "" => Ok(1),
+            answer => answer.parse::<usize>(),
+        };
+        let chosen = number.ok().and_then(|number| candidates.get(number.checked_sub(1)?));
+        if let Some(chosen) =
+            chosen.or_else(|| candidates.iter().find(|name| *name == answer.trim()))
+        {
+            break chosen.clone();
+        }
+    };
+    self::draft(session, &DraftOptions { output: Some(chosen), ..options })
+}
+
+fn write(session: &mut Session, output: &Path, draft: Draft) -> Result<(), Vec<Diagnostic>> {
     session.world.write(output, draft.text.as_bytes()).map_err(|error| {
         let message = format!("`{}` cannot be written: {error}", output.display());
         vec![Fault::new(BAD_OPTION, message).at(Span::NONE)]

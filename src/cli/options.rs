@@ -40,7 +40,9 @@ pub(super) struct Global {
     #[arg(long, global = true, value_name = "LIBRARY", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = ALL_LIBRARIES, help_heading = ALLOWED)]
     pub allow_external: Vec<String>,
-    /// List the permissions of scripts and models, and do nothing else
+    /// List the permissions of scripts and models, and do nothing else. Without the options above, they
+    /// can read the folder of the script, the working folder and libraries, and write to the output
+    /// folder and to new files
     #[arg(long, global = true, help_heading = ALLOWED)]
     pub(crate) show_permissions: bool,
 }
@@ -51,10 +53,8 @@ pub(super) const EVERYWHERE: &str = "/";
 /// `--allow-external` without a library.
 pub(super) const ALL_LIBRARIES: &str = "*";
 
-/// The heading of the permissions, with what holds without them.
-const ALLOWED: &str = "Permissions of scripts and models. They can read the folder of the \
-                       script, the working folder and libraries, and write to the output folder \
-                       and to new files";
+/// The heading of the permissions.
+const ALLOWED: &str = "Permissions";
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -35,7 +35,7 @@ pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
         }
     }
     terminal::print(&format!(
-        "{accepted} accepted, {rejected} rejected, {data} recognised as data\n"
+        "{accepted} accepted, {rejected} rejected, {data} recognized as data\n"
     ));
     if rejected > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }

@@ -5,6 +5,7 @@ use super::numbers::number;
 use super::options::{Global, Limits};
 use super::terminal::Terminal;
 use super::{limits, session};
+use crate::diag::suggest::counted;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
@@ -325,14 +326,13 @@ fn summary(model: &str, simulated: &Simulated) -> String {
     let (first, last) = (time.first().unwrap_or(&0.0), time.last().unwrap_or(&0.0));
     let s = &simulated.statistics;
     format!(
-        "{model}: {first} s to {last} s, {} points, {} steps ({} rejected), {} right-hand sides, \
-         {} Jacobians, {} events\n",
-        time.len(),
-        s.steps,
+        "{model}: {first} s to {last} s, {}, {} ({} rejected), {}, {}, {}\n",
+        counted(time.len() as u64, "point"),
+        counted(s.steps, "step"),
         s.error_failures + s.newton_failures,
-        s.rhs_evaluations,
-        s.jacobian_evaluations,
-        s.state_events + s.time_events
+        counted(s.rhs_evaluations, "right-hand side evaluation"),
+        counted(s.jacobian_evaluations, "Jacobian"),
+        counted(s.state_events + s.time_events, "event")
     )
 }
 
@@ -341,7 +341,7 @@ fn statistics(s: &Statistics) -> String {
         ("accepted steps", s.steps),
         ("steps rejected by the error test", s.error_failures),
         ("steps rejected by the corrector", s.newton_failures),
-        ("right-hand sides", s.rhs_evaluations),
+        ("right-hand side evaluations", s.rhs_evaluations),
         ("Jacobians", s.jacobian_evaluations),
         ("factorizations", s.factorizations),
         ("state events", s.state_events),

@@ -213,7 +213,7 @@ fn compare(
     let branches = Branches { original, changed: &changed, generation, change };
     let figure = branches.figure();
     let file = shown(&output(arguments)?.folder.join("what_if.svg"));
-    terminal::print(&format!("{}\n\n{}\n", branches.summary(), figure.text(64, 14)));
+    terminal::print_report(&format!("{}\n\n{}\n", branches.summary(), figure.text(64, 14)));
     write(&file, &figure.svg())?;
     terminal::print(&format!("written to {}\n", file.display()));
     Ok(())
@@ -248,7 +248,7 @@ fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let repeated = repeated.collect::<Result<Vec<_>, Trouble>>()?;
     let figure = bands::figure(&repeated);
     let file = shown(&output(arguments)?.folder.join("what_if.svg"));
-    terminal::print(&format!(
+    terminal::print_report(&format!(
         "{}\n{}\n",
         bands::summary(&repeated),
         bands::medians(&repeated).text(64, 14)
@@ -345,7 +345,7 @@ fn show(
     let score = teach_screen::walk_through(screen, run_again, simulate, &interrupt)
         .map_err(|error| Trouble::Message(format!("cannot draw on the terminal: {error}")))?;
     if let Some(score) = score {
-        terminal::print(&format!("{score}\n"));
+        terminal::print_report(&format!("{score}\n"));
     }
     Ok(())
 }
@@ -366,28 +366,28 @@ fn print(mut walk: TraceCursor, arguments: &TeachArgs) {
         if arguments.quiz {
             ask(&walk, &mut score);
         }
-        terminal::print(&format!("{}\n", plain::step(&walk)));
+        terminal::print_report(&format!("{}\n", plain::step(&walk)));
         if !walk.forward() || walk.number() >= last {
             break;
         }
     }
-    terminal::print(&plain::summary(&walk));
+    terminal::print_report(&plain::summary(&walk));
     if arguments.quiz {
-        terminal::print(&format!("\n{score}\n"));
+        terminal::print_report(&format!("\n{score}\n"));
     }
 }
 
 /// Asks what the step will do, if there is something to ask and someone to answer.
 fn ask(walk: &TraceCursor, score: &mut Score) {
     let Some(question) = quiz::question(walk) else { return };
-    terminal::print(&format!("? {}\n> ", question.text));
+    terminal::print_report(&format!("? {}\n> ", question.text));
     loop {
         let mut answer = String::new();
         match std::io::stdin().read_line(&mut answer) {
             Ok(length) if length > 0 => match question.judge(&answer) {
                 Ok(verdict) => {
                     score.count(&verdict);
-                    return terminal::print(&format!("{}\n\n", verdict.text));
+                    return terminal::print_report(&format!("{}\n\n", verdict.text));
                 }
                 Err(again) => terminal::print(&format!("{again}\n> ")),
             },

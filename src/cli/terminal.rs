@@ -1,6 +1,7 @@
 //! The terminal: the only place that prints.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is where printing happens")]
 
+use super::fitted::fitted;
 use super::live::Live;
 use super::options::Colour;
 use crate::diag::{visible, visible_coloured};
@@ -9,6 +10,7 @@ use crate::script::runs::view::View;
 use crate::script::world::Screen;
 use gapilib_identify::problem::Status;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use ratatui::crossterm::terminal::size;
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
 use std::sync::Arc;
@@ -93,7 +95,8 @@ impl Screen for Terminal {
         self.end_view();
         self.finish_progress();
         Some(Arc::new(|text: &str| {
-            // The line is written over by the next one.
+            // The line is written over by the next one, which a second line would not be.
+            let text: String = text.chars().take(columns().saturating_sub(1)).collect();
             let line = format!("\r\u{1b}[K{text}");
             let mut err = std::io::stderr().lock();
             let _ = err.write_all(line.as_bytes()).and_then(|()| err.flush());
@@ -114,7 +117,7 @@ impl Screen for Terminal {
     fn end_view(&mut self) {
         self.live.close();
         for (out, text) in std::mem::take(&mut self.kept) {
-            if out { self.print(&text) } else { self.eprint(&text) }
+            if out { self.print_of_script(&text) } else { self.eprint(&text) }
         }
     }
 
@@ -140,7 +143,7 @@ impl Screen for Terminal {
 
     fn print(&mut self, text: &str) {
         if !self.quiet {
-            self.print_of_script(text);
+            self.print_of_script(&for_stream(&std::io::stdout(), text));
         }
     }
 
@@ -164,8 +167,9 @@ impl Screen for Terminal {
             self.kept.push((false, text.to_owned()));
             return;
         }
+        let text = for_stream(&std::io::stderr(), text);
         self.suspended(|| {
-            let _ = std::io::stderr().lock().write_all(visible_coloured(text).as_bytes());
+            let _ = std::io::stderr().lock().write_all(visible_coloured(&text).as_bytes());
         });
     }
 
@@ -189,6 +193,7 @@ impl Screen for Terminal {
 /// What was said while a run was drawn is said although the run ended otherwise.
 impl Drop for Terminal {
     fn drop(&mut self) {
+        self.finish_progress();
         self.end_view();
     }
 }
@@ -201,9 +206,9 @@ fn on_terminal(is_terminal: bool, text: &str) -> Cow<'_, str> {
 fn new_bar(progress: &Progress) -> ProgressBar {
     let known = progress.total > 0;
     let template = if known {
-        "{prefix} {pos}/{len} {bar:30.cyan/dim} {msg}  {left} left"
+        "{prefix} {pos}/{len} {wide_bar:.cyan/dim} {msg}  {left} left"
     } else {
-        "{prefix} {pos} {spinner} {msg}  {elapsed}"
+        "{prefix} {pos} {spinner} {wide_msg}  {elapsed}"
     };
     let style = ProgressStyle::with_template(template)
         .unwrap_or_else(|_| ProgressStyle::default_bar())
@@ -219,6 +224,30 @@ fn new_bar(progress: &Progress) -> ProgressBar {
 
 fn round_up(duration: Duration) -> Duration {
     Duration::from_secs(duration.as_secs() + u64::from(duration.subsec_nanos() > 0))
+}
+
+/// Columns of a terminal that does not say how many it has.
+const COLUMNS: usize = 80;
+
+/// Columns of the terminal.
+fn columns() -> usize {
+    // A terminal of a few columns would have a word on each line.
+    let known = size().ok().map(|(columns, _)| usize::from(columns)).filter(|columns| *columns > 0);
+    known.unwrap_or(COLUMNS).max(COLUMNS / 2)
+}
+
+/// What the program says, laid out for the terminal; unchanged elsewhere.
+fn for_stream<'t>(stream: &impl IsTerminal, text: &'t str) -> Cow<'t, str> {
+    match stream.is_terminal() {
+        true => Cow::Owned(fitted(text, columns())),
+        false => Cow::Borrowed(text),
+    }
+}
+
+/// Writes a report to standard output where there is no session: laid out on a terminal, unchanged
+/// elsewhere.
+pub(super) fn print_report(text: &str) {
+    print(&for_stream(&std::io::stdout(), text));
 }
 
 /// Writes to standard output where there is no session: as text on a terminal, unchanged elsewhere.
@@ -258,7 +287,8 @@ fn checked(written: std::io::Result<()>) {
 
 /// Writes to standard error where there is no session.
 pub(super) fn eprint(text: &str) {
-    let _ = std::io::stderr().lock().write_all(visible(text).as_bytes());
+    let text = for_stream(&std::io::stderr(), text);
+    let _ = std::io::stderr().lock().write_all(visible(&text).as_bytes());
 }
 
 /// Says what is wrong with the command line, or the help that was asked for; the exit code. Arguments

@@ -1,4 +1,4 @@
-//! Which function of the sums of squares a script minimises, found from the values that it sorts
+//! Which function of the sums of squares a script minimizes, found from the values that it sorts
 //! by: a script sums the results of several calls of `Fit` as it likes, and what it gives to
 //! `Fit_Order` decides.
 
@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 /// another order differ by rounding only, some 1e-15 for each term.
 const SAME: f64 = 1e-9;
 
-/// What a script minimises.
+/// What a script minimizes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Objective {
     /// The sum of the squared residuals of all series, each times its weight.
@@ -24,7 +24,7 @@ pub enum Objective {
 }
 
 impl Objective {
-    /// What the script minimises by all that was seen: where the generations do not agree, as with
+    /// What the script minimizes by all that was seen: where the generations do not agree, as with
     /// the larger one of two sums, it is none of these.
     pub(super) fn agreeing(self, before: Option<&Objective>) -> Objective {
         let same = |a: &[f64], b: &[f64]| {
@@ -65,7 +65,7 @@ impl Objective {
 
 /// The objective that has the values `fitness` for individuals with these sums of squares:
 /// `sums[k]` has one entry for each series.
-pub fn recognised(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
+pub fn recognized(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
     let good: Vec<(&[f64], f64)> = sums
         .iter()
         .zip(fitness)
@@ -120,11 +120,11 @@ mod tests {
 
     fn found(of: impl Fn(&[f64; 2]) -> f64) -> Objective {
         let sums: Vec<Vec<f64>> = SUMS.iter().map(|sums| sums.to_vec()).collect();
-        recognised(&sums, &SUMS.iter().map(of).collect::<Vec<f64>>())
+        recognized(&sums, &SUMS.iter().map(of).collect::<Vec<f64>>())
     }
 
     #[test]
-    fn what_the_script_adds_up_is_recognised() {
+    fn what_the_script_adds_up_is_recognized() {
         assert_eq!(found(|s| s[0] + s[1]), Objective::SumOfSquares(vec![1.0, 1.0]));
         assert_eq!(found(|s| s[1]), Objective::SumOfSquares(vec![0.0, 1.0]));
         assert_eq!(found(|s| (s[0] + s[1]).sqrt()), Objective::Root(vec![1.0, 1.0]));
@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn few_individuals_do_not_make_weights() {
         let sums = [vec![1.0, 2.0], vec![2.0, 1.0]];
-        assert_eq!(recognised(&sums, &[5.0, 7.0]), Objective::Script);
-        assert_eq!(recognised(&[vec![1e60]], &[1e60]), Objective::Script, "all have failed");
+        assert_eq!(recognized(&sums, &[5.0, 7.0]), Objective::Script);
+        assert_eq!(recognized(&[vec![1e60]], &[1e60]), Objective::Script, "all have failed");
     }
 }

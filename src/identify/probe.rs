@@ -127,7 +127,7 @@ impl Ending<'_> {
             return Err("it was turned off".to_owned());
         }
         let Some(weights) = best.objective.weights(best.compared.len()) else {
-            return Err("the script minimises its own function, not a sum of squares".into());
+            return Err("the script minimizes its own function, not a sum of squares".into());
         };
         let models: Option<Vec<Arc<dyn Model>>> = self.models.iter().cloned().collect();
         let models = models.ok_or("a model of the best individual is no longer loaded")?;
@@ -319,6 +319,9 @@ impl Ending<'_> {
         script.interrupted = self.interrupted;
         script.error.clone_from(&self.error);
         script.changes.clone_from(&recorder.changes);
+        if script.probed {
+            solution.series.iter_mut().for_each(|own| own.script = simulated(best, own));
+        }
         let mut findings: Vec<Finding> = script.error.iter().map(ScriptError::finding).collect();
         findings.push(search(script.probe.clone()));
         if recorder.ranges.is_none() {
@@ -401,6 +404,17 @@ fn name(best: ScriptBest<'_>, k: usize) -> String {
         1 => String::new(),
         _ => format!("experiment {}", k + 1),
     }
+}
+
+/// X and Y of the best individual, for the series of a solution.
+fn simulated(best: ScriptBest<'_>, own: &SolvedSeries) -> Vec<[f64; 2]> {
+    let is_own = |(k, compared): &(usize, &Compared)| {
+        name(best, *k) == own.experiment && compared.study.y.name == own.y[0]
+    };
+    let Some((_, found)) = best.compared.iter().enumerate().find(is_own) else {
+        return Vec::new();
+    };
+    found.x.iter().zip(&found.simulated).map(|(x, y)| [*x, *y]).collect()
 }
 
 fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series> {

@@ -11,7 +11,7 @@
 use super::Simulated;
 use super::fitness::sum_of_squares;
 use super::generation::{self, Generation};
-use super::objective::{Objective, recognised};
+use super::objective::{Objective, recognized};
 use super::search_record::{Best, SearchRecord};
 use super::seeds::Seeds;
 use super::study::{Compared, Measurement, Study};
@@ -298,7 +298,7 @@ impl Recorder {
             (false, true, 1) => Objective::SumOfSquares(vec![1.0]),
             (false, ..) => Objective::Assumed,
             (true, ..) => {
-                recognised(&self.pending.sums(&experiments, all, &self.measurements), fitness)
+                recognized(&self.pending.sums(&experiments, all, &self.measurements), fitness)
             }
         };
         let before = self.comparison.as_ref().map(|before| &before.objective);

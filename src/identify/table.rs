@@ -1,5 +1,6 @@
 //! Numbers in tables for people, and names in tables for programs.
 
+pub use crate::diag::suggest::counted;
 use crate::elementary;
 
 /// A number to this many significant digits, without trailing zeros.
@@ -18,7 +19,7 @@ const OF_WIDTH: f64 = 100.0;
 /// The ends of an interval about a value, with at least two digits of their distance.
 pub fn ends([low, high]: [f64; 2], value: f64) -> String {
     let digits = digits_of(high - low, value.abs().max(low.abs()).max(high.abs()));
-    format!("{} .. {}", significant(low, digits), significant(high, digits))
+    format!("{} to {}", significant(low, digits), significant(high, digits))
 }
 
 /// So many digits of a number of this size show two of an error; four at least, and what a number has
@@ -30,11 +31,6 @@ pub(crate) fn digits_of(error: f64, size: f64) -> usize {
     } else {
         4
     }
-}
-
-/// `1 run`, `2 runs`
-pub fn counted(count: u64, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A cell of a CSV file; names that a spreadsheet would take for formulas are quoted, too.
@@ -63,10 +59,10 @@ mod tests {
     #[test]
     fn ends_of_intervals_show_their_width() {
         let cases = [
-            ([2.99955, 3.00014], 2.9998, "2.99955 .. 3.00014"),
-            ([0.69979, 0.70025], 0.7, "0.69979 .. 0.70025"),
-            ([0.0123456, 0.0456789], 0.03, "0.01235 .. 0.04568"),
-            ([-0.00301, 0.00302], 0.0, "-0.00301 .. 0.00302"),
+            ([2.99955, 3.00014], 2.9998, "2.99955 to 3.00014"),
+            ([0.69979, 0.70025], 0.7, "0.69979 to 0.70025"),
+            ([0.0123456, 0.0456789], 0.03, "0.01235 to 0.04568"),
+            ([-0.00301, 0.00302], 0.0, "-0.00301 to 0.00302"),
         ];
         for (interval, value, expected) in cases {
             assert_eq!(ends(interval, value), expected);

@@ -49,7 +49,7 @@ codes! {
         "## What it means\n\nA function of a loaded package has the full name of a built-in command. The function is called in its place, by its full name and by its bare one; of several functions of a bare name, the one loaded last. Reported once.\n\n## Example\n\n`openModel(\"GAPILib.mo\"); f = Fit(D, Y);` where `GAPILib.mo` defines `GAPILib.Basics.Fit`\n\n## What to do\n\nNothing, if you meant the function; otherwise rename it, or do not load it.",
     /// A command that the program does not carry out.
     REFUSED = "refused-command":
-        "## What it means\n\nThe command exists in other tools but is not supported here, for the reason given in the message.\n\n## Example\n\n`system(\"rm -rf results\")`\n\n## What to do\n\nRemove the call, or do its work outside the script.",
+        "## What it means\n\nThe command is not permitted, or it exists in other tools and is not supported here; the message says which, and why.\n\n## Example\n\n`system(\"rm -rf results\")`, `readFile(\"/etc/hosts\")`\n\n## What to do\n\nPermit it with the option that the message names: `--allow-read=DIR` and `--allow-write=DIR` for files outside the folders of the script, `--allow-system` for programs and environment variables. What is not supported must be done outside the script.",
     /// A command that only concerns a graphical window.
     NO_WINDOW = "no-window":
         "## What it means\n\nThe command concerns a window of a graphical tool, so it has no effect here. Reported once per command.\n\n## Example\n\n`animationSetup()`\n\n## What to do\n\nNothing; the results are not affected.",

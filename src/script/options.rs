@@ -79,7 +79,7 @@ pub enum Reporting {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// The dialect; `None` to recognise it from the script.
+    /// The dialect; `None` to recognize it from the script.
     pub dialect: Option<Dialect>,
     /// What is shown.
     pub echo: Echo,

@@ -48,7 +48,7 @@ def test_a_problem_as_a_dict(problem, capsys):
     covariance = solution.covariance
     deviations = [p["deviation"] for p in solution.data["parameters"]]
     np.testing.assert_allclose(np.sqrt(np.diag(covariance)), deviations, rtol=1e-9)
-    # The same as by linearised least squares at the solution.
+    # The same as by linearized least squares at the solution.
     times = np.linspace(0.1, 2, 20)
     k, a = solution.parameters["k"], solution.parameters["a"]
     jacobian = np.column_stack([-a * times * np.exp(-k * times), np.exp(-k * times)])

@@ -79,6 +79,7 @@ export class Live {
     this.#follows = true;
     at("watch").hidden = true;
     at("nothing").hidden = false;
+    at("preview").toggleAttribute("hidden", false);
   }
 
   /** One more picture of the run. */
@@ -91,6 +92,7 @@ export class Live {
     if (this.#views.length > MOST) this.#views = this.#views.filter((_, k) => k % 2 === 0 || k === this.#views.length - 1);
     at("watch").hidden = false;
     at("nothing").hidden = true;
+    at("preview").toggleAttribute("hidden", true);
     at("moment").max = this.#views.length - 1;
     if (this.#follows) this.#go(this.#views.length - 1);
   }
@@ -102,6 +104,7 @@ export class Live {
 
   /** The run has ended. */
   ended() {
+    if (!this.#views.length) at("preview").toggleAttribute("hidden", true);
     if (!this.#views.length) at("nothing").textContent = "This script compares no simulation with measurements, so there are no generations to draw. What it prints is in Output; calls of operators can be walked through in Step by step.";
   }
 

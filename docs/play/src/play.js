@@ -557,7 +557,10 @@ async function loadLessons() {
   try {
     lessons = await engine.ask("lessons");
   } catch (error) {
-    return status(`The program cannot be loaded: ${error.message}`);
+    const instead = location.protocol === "file:"
+      ? "open play.html, the page in one file, or serve this folder (python3 -m http.server)"
+      : "reload the page; if that does not help, try a current Firefox or Chromium without extensions, which can block WebAssembly";
+    return status(`The program cannot be loaded (${error.message}): ${instead}.`);
   }
   listWork();
   if (work.lesson) trainer.enter(lessons.find(({ number }) => number === work.lesson));

@@ -31,6 +31,11 @@ pub fn did_you_mean<'a>(
     nearest(misspelt, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
 }
 
+/// `1 run`, `2 runs`
+pub fn counted(count: u64, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// At most a dozen names.
 pub fn listed(names: &[&str]) -> String {
     const SHOWN: usize = 12;

@@ -1,23 +1,26 @@
 //! From a figure to a picture.
 
 use super::figure::{Axis, Figure, Mark, Panel, Scale, Series};
-use super::look::{FILE, Look, PAGE, SMALL, SOLID};
-use super::svg::{Anchor, Letters, Svg, Writing, label_width, raised};
+use super::look::{FILE, LEGEND, Look, PAGE, SMALL, SOLID};
+use super::svg::{Anchor, Letters, Svg, Writing, attribute, label_width, raised};
 use super::ticks::{Ticks, power_of_ten};
+use std::collections::HashSet;
 
 const RIGHT: f64 = 24.0;
 const GAP: f64 = 22.0;
 const BELOW: f64 = 52.0;
+/// A cloud of more dots has smaller ones.
+const THOUSANDS: usize = 1000;
 
 /// The area for data of one panel.
-struct Area<'a> {
-    left: f64,
-    top: f64,
-    width: f64,
-    height: f64,
-    x: &'a Ticks,
-    y: &'a Ticks,
-    look: &'static Look,
+pub(super) struct Area<'a> {
+    pub left: f64,
+    pub top: f64,
+    pub width: f64,
+    pub height: f64,
+    pub x: &'a Ticks,
+    pub y: &'a Ticks,
+    pub look: &'static Look,
 }
 
 impl Figure {
@@ -47,6 +50,16 @@ impl Figure {
     /// The same, for figures that stand side by side.
     pub fn small(&self, label: &str) -> String {
         self.within(&SMALL, label)
+    }
+
+    /// The legend alone, for figures that stand side by side and have none.
+    pub fn legend(&self) -> String {
+        let rows = legend_rows(&self.panels, LEGEND.width);
+        let mut svg = Svg::inline(LEGEND.width, 22.0 * rows.len() as f64, "legend");
+        for (row, entries) in rows.iter().enumerate() {
+            draw_legend(&mut svg, entries, &LEGEND, (0.0, 22.0 * row as f64 + 11.0));
+        }
+        svg.finish()
     }
 
     fn within(&self, look: &'static Look, label: &str) -> String {
@@ -95,7 +108,10 @@ impl<'a> Layout<'a> {
         let count = (look.width / 80.0) as usize;
         let x_ticks = Ticks::new(all.flat_map(|series| series.x.iter().copied()), x_scale, count);
         let left = left_margin(&y_ticks);
-        let legend = legend_rows(&figure.panels, look.width - RIGHT - left);
+        let legend = match look.legend {
+            true => legend_rows(&figure.panels, look.width - RIGHT - left),
+            false => Vec::new(),
+        };
         let title_height = if figure.title.is_empty() { 12.0 } else { 38.0 };
         let top = title_height + 22.0 * legend.len() as f64 + 4.0;
         let heights: f64 = figure.panels.iter().map(|panel| panel.height).sum();
@@ -184,7 +200,8 @@ fn area(series: &Series, look: &'static Look) -> String {
 
 fn cloud(series: &Series, look: &'static Look) -> String {
     let (colour, opacity) = look.faint(series.colour, "stroke-opacity", 0.55);
-    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3.6\"{opacity}")
+    let size = if series.x.len() > THOUSANDS { 2.2 } else { 3.6 };
+    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{size}\"{opacity}")
 }
 
 fn cross((x, y): (f64, f64)) -> String {
@@ -195,7 +212,11 @@ fn cross_style(series: &Series, look: &'static Look) -> String {
     format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", colour(series, look))
 }
 
-fn axis_title(axis: &Axis, exponent: i32) -> String {
+/// What stands beside an axis: the quantity with its unit.
+pub(super) fn axis_title(axis: &Axis, exponent: i32) -> String {
+    if let Some(unit) = prefixed(&axis.unit, exponent) {
+        return format!("{} [{}]", axis.label, marked_unit(&unit));
+    }
     let power = if exponent == 0 { String::new() } else { power_of_ten(exponent) };
     match (&*power, &*marked_unit(&axis.unit)) {
         ("", "") => axis.label.clone(),
@@ -207,15 +228,29 @@ fn axis_title(axis: &Axis, exponent: i32) -> String {
 
 impl Area<'_> {
     fn draw(&self, svg: &mut Svg, panel: &Panel, is_last: bool) {
+        self.draw_data(svg, panel);
+        self.draw_labels(svg, panel, is_last);
+    }
+
+    /// Grid, frame and series, without labels.
+    pub fn draw_data(&self, svg: &mut Svg, panel: &Panel) {
         self.draw_grid(svg);
         if panel.zero_line {
             self.draw_level(svg, 0.0, self.look.zero);
         }
-        svg.rectangle([self.left, self.top, self.width, self.height], self.look.frame);
+        let frame = format!("{}{}", self.look.frame, self.described());
+        svg.rectangle([self.left, self.top, self.width, self.height], &frame);
         for series in &panel.series {
-            self.draw_series(svg, series);
+            match self.look.describes {
+                false => self.draw_series(svg, series),
+                true => {
+                    let (name, of) = (attribute(&series.name), self.id());
+                    svg.begin(&format!("data-series=\"{name}\" data-of=\"{of}\""));
+                    self.draw_series(svg, series);
+                    svg.end();
+                }
+            }
         }
-        self.draw_labels(svg, panel, is_last);
     }
 
     fn x_of(&self, value: f64) -> Option<f64> {
@@ -252,24 +287,58 @@ impl Area<'_> {
 
     fn draw_labels(&self, svg: &mut Svg, panel: &Panel, is_last: bool) {
         let (small, large) = (self.look.writing(12.0), self.look.writing(13.0));
-        for (value, label) in &self.y.major {
-            if let Some(y) = self.y_of(*value) {
-                svg.text((self.left - 8.0, y + 4.2), Anchor::End, small, label);
-            }
-        }
+        self.label_rows(svg, small);
         let upright = Writing { upright: true, ..large };
         let middle = (18.0, self.top + 0.5 * self.height);
         svg.text(middle, Anchor::Middle, upright, &axis_title(&panel.y, self.y.exponent));
         if !is_last {
             return;
         }
-        for (value, label) in &self.x.major {
-            if let Some(x) = self.x_of(*value) {
-                svg.text((x, self.bottom() + 18.0), Anchor::Middle, small, label);
-            }
-        }
+        self.label_columns(svg, small);
         let place = (self.left + 0.5 * self.width, self.bottom() + 40.0);
         svg.text(place, Anchor::Middle, large, &axis_title(&panel.x, self.x.exponent));
+    }
+
+    /// What tells areas of a figure apart.
+    fn id(&self) -> String {
+        format!("{:.0} {:.0}", self.left, self.top)
+    }
+
+    /// Attributes with which a page finds the values at a place.
+    fn described(&self) -> String {
+        if !self.look.describes {
+            return String::new();
+        }
+        let axis = |ticks: &Ticks| {
+            let logarithmic = u8::from(ticks.scale == Scale::Logarithmic);
+            format!("{:e} {:e} {logarithmic}", ticks.low, ticks.high)
+        };
+        let place = [self.left, self.top, self.width, self.height].map(|side| format!("{side:.2}"));
+        format!(
+            " data-of=\"{}\" data-area=\"{}\" data-x=\"{}\" data-y=\"{}\"",
+            self.id(),
+            place.join(" "),
+            axis(self.x),
+            axis(self.y)
+        )
+    }
+
+    /// The numbers beside the vertical axis.
+    pub fn label_rows(&self, svg: &mut Svg, writing: Writing) {
+        for (value, label) in &self.y.major {
+            if let Some(y) = self.y_of(*value) {
+                svg.text((self.left - 8.0, y + 4.2), Anchor::End, writing, label);
+            }
+        }
+    }
+
+    /// The numbers below the horizontal axis.
+    pub fn label_columns(&self, svg: &mut Svg, writing: Writing) {
+        for (value, label) in &self.x.major {
+            if let Some(x) = self.x_of(*value) {
+                svg.text((x, self.bottom() + 18.0), Anchor::Middle, writing, label);
+            }
+        }
     }
 
     fn draw_series(&self, svg: &mut Svg, series: &Series) {
@@ -287,7 +356,7 @@ impl Area<'_> {
             }
             Mark::Area => svg.polygon(&shown().collect::<Vec<_>>(), &area(series, look)),
             Mark::Points => shown().for_each(|at| svg.circle(at, 3.4, &open_circle(series, look))),
-            Mark::Dots => svg.dots(&shown().collect::<Vec<_>>(), &cloud(series, look)),
+            Mark::Dots => svg.dots(&distinct(shown()), &cloud(series, look)),
             Mark::Crosses => {
                 let path: String = shown().map(cross).collect();
                 svg.path(&path, &cross_style(series, look));
@@ -314,6 +383,13 @@ impl Area<'_> {
     }
 }
 
+/// One of the points within each half of a pixel.
+fn distinct(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let mut seen = HashSet::new();
+    let half = |value: f64| (2.0 * value).round() as i64;
+    points.filter(|(x, y)| seen.insert((half(*x), half(*y)))).collect()
+}
+
 /// The points that are visibly distinct: of those within half a pixel the first, the lowest, the
 /// highest and the last.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
@@ -336,13 +412,35 @@ pub fn power(exponent: i32) -> String {
     raised(&power_of_ten(exponent))
 }
 
-/// A unit of Modelica as it is read: `A/cm²` for `A/cm2`.
+/// A unit of Modelica as it is read: `A/cm²` for `A/cm2`, `Ω` for `Ohm`, nothing for `1`.
 pub fn shown_unit(unit: &str) -> String {
     raised(&marked_unit(unit))
 }
 
+/// Units that take a prefix of the SI where a power of ten would stand before them. Of seconds only
+/// parts are usual.
+const WITH_PREFIX: [&str; 15] =
+    ["V", "A", "W", "J", "Pa", "N", "Ohm", "F", "H", "Hz", "S", "K", "m", "mol", "s"];
+/// Prefixes of the SI by their power of ten.
+const PREFIXES: [(i32, &str); 8] =
+    [(-12, "p"), (-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G"), (12, "T")];
+
+/// A unit with the prefix of a power of ten, `mV` for `V` and −3; `None` where none is usual.
+pub fn prefixed(unit: &str, exponent: i32) -> Option<String> {
+    let end = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
+    let (symbol, rest) = unit.split_at(end);
+    let (_, prefix) = PREFIXES.into_iter().find(|(power, _)| *power == exponent)?;
+    let is_usual = WITH_PREFIX.contains(&symbol)
+        && !rest.starts_with(|c: char| c.is_ascii_digit() || c == '-')
+        && !(symbol == "s" && exponent > 0);
+    is_usual.then(|| format!("{prefix}{unit}"))
+}
+
 /// A unit of Modelica (MLS chapter 19), its products as dots and its exponents marked `^{…}`.
 fn marked_unit(unit: &str) -> String {
+    if unit == "1" {
+        return String::new();
+    }
     let mut out = String::new();
     let is_exponent = |c: char| c.is_ascii_digit() || c == '-' || c == '+';
     let mut rest = unit;
@@ -355,7 +453,7 @@ fn marked_unit(unit: &str) -> String {
             rest = &rest[end..];
         }
     }
-    out
+    out.replace("Ohm", "Ω").replace("degC", "°C")
 }
 
 #[cfg(test)]
@@ -366,7 +464,21 @@ mod tests {
     fn units_show_exponents_and_products() {
         assert_eq!(marked_unit("A/cm2"), "A/cm^{2}");
         assert_eq!(marked_unit("kg.m.s-2"), "kg·m·s^{−2}");
-        assert_eq!(marked_unit("1"), "1");
+        assert_eq!(marked_unit("1"), "");
+        assert_eq!(marked_unit("mOhm.cm2"), "mΩ·cm^{2}");
+        assert_eq!(marked_unit("W/degC"), "W/°C");
+    }
+
+    #[test]
+    fn powers_of_ten_are_prefixes_where_engineers_write_them() {
+        let title = |unit: &str, exponent| axis_title(&Axis::linear("q", unit), exponent);
+        assert_eq!(title("V", -6), "q [µV]");
+        assert_eq!(title("Ohm.cm2", -3), "q [mΩ·cm^{2}]");
+        assert_eq!(title("J/K", 6), "q [MJ/K]");
+        assert_eq!(title("s", 3), "q [10^{3}\u{a0}s]");
+        assert_eq!(title("m2", -3), "q [10^{−3}\u{a0}m^{2}]");
+        assert_eq!(title("1", -3), "q [10^{−3}]");
+        assert_eq!(title("V", 0), "q [V]");
     }
 
     #[test]

@@ -22,6 +22,10 @@ pub struct Look {
     /// several transparencies in the order of a hash map, and the same figure must give the same
     /// bytes.
     pub(super) solid: bool,
+    /// Whether the legend is part of the figure.
+    pub(super) legend: bool,
+    /// Whether areas and series say what they are, for the script of a page.
+    pub(super) describes: bool,
 }
 
 /// A figure on white paper.
@@ -37,6 +41,8 @@ pub static FILE: Look = Look {
         "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442",
     ],
     solid: false,
+    legend: true,
+    describes: false,
 };
 
 /// The same for PNG and PDF.
@@ -46,8 +52,11 @@ pub(crate) static SOLID: Look = Look { solid: true, ..FILE };
 /// pixel letters are still 9 high.
 pub(crate) static PAGE: Look = page(480.0);
 
-/// A figure of which three stand side by side on a screen of 1280 pixels.
-pub static SMALL: Look = page(380.0);
+/// A figure of which three stand side by side on a screen of 1280 pixels; they have one legend.
+pub static SMALL: Look = Look { legend: false, ..page(380.0) };
+
+/// The legend of figures that stand side by side.
+pub(crate) static LEGEND: Look = page(350.0);
 
 const fn page(width: f64) -> Look {
     Look {
@@ -69,6 +78,8 @@ const fn page(width: f64) -> Look {
             "var(--c7)",
         ],
         solid: false,
+        legend: true,
+        describes: true,
     }
 }
 

@@ -11,14 +11,16 @@ mod draw;
 pub mod errors;
 mod figure;
 mod look;
+mod matrix;
 mod outline;
 mod picture;
 mod ready;
 mod svg;
 mod ticks;
 
-pub use draw::{power, shown_unit};
+pub use draw::{power, prefixed, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
+pub use matrix::Matrix;
 pub use picture::Picture;
-pub use ready::{Comparison, convergence, fit};
+pub use ready::{Comparison, MANY, convergence, fit, most, of_points, of_residuals};
 pub use svg::{Anchor, Letters, Svg, Writing};

@@ -5,6 +5,21 @@ use super::figure::{Axis, Figure, Mark, Panel, Series};
 /// Fitness values from here on stand for failed simulations (one alone counts 1e60); they are not
 /// drawn.
 const FAILED: f64 = 1e50;
+/// More measured points than this are small dots below the curve, and their residuals have no stems.
+pub const MANY: usize = 300;
+/// Means of a generation above so many times the first best fitness are not drawn: those of a random
+/// population would leave a few pixels to the best one.
+const DROWNING: f64 = 10.0;
+
+/// How so many measured points are drawn.
+pub fn of_points(count: usize) -> Mark {
+    if count > MANY { Mark::Dots } else { Mark::Points }
+}
+
+/// How residuals are drawn.
+pub fn of_residuals(is_long: bool) -> Mark {
+    if is_long { Mark::Dots } else { Mark::Stems }
+}
 
 /// A measured and a simulated quantity at the same places.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +55,14 @@ pub fn fit(data: &Comparison) -> Figure {
     let x_axis = Axis::linear(data.x_label.0, data.x_label.1);
     let series =
         |name: &str, (x, y), mark, colour| Series { name: name.to_owned(), x, y, mark, colour };
+    let is_long = x.len() > MANY;
+    let mut fit = vec![
+        series("simulated", curve, Mark::Line, 1),
+        series("measured", (x.clone(), measured), of_points(x.len()), 0),
+    ];
+    if is_long {
+        fit.rotate_left(1);
+    }
     Figure {
         title: data.title.to_owned(),
         panels: vec![
@@ -48,29 +71,32 @@ pub fn fit(data: &Comparison) -> Figure {
                 y: Axis::linear(data.y_label.0, data.y_label.1),
                 height: 270.0,
                 zero_line: false,
-                series: vec![
-                    series("simulated", curve, Mark::Line, 1),
-                    series("measured", (x.clone(), measured), Mark::Points, 0),
-                ],
+                series: fit,
             },
             Panel {
                 x: x_axis,
                 y: Axis::linear("residual", data.y_label.1),
                 height: 110.0,
                 zero_line: true,
-                series: vec![series("", (x, residuals), Mark::Stems, 0)],
+                series: vec![series("", (x, residuals), of_residuals(is_long), 0)],
             },
         ],
     }
 }
 
+/// The largest fitness that is drawn where the search began with this best one.
+pub fn most(first: f64) -> f64 {
+    if first > 0.0 { (DROWNING * first).min(FAILED) } else { FAILED }
+}
+
 /// Best and mean fitness over the generations, counted from 1, on a logarithmic axis. Means that
-/// contain a failed simulation are left out.
+/// contain a failed simulation, or are far above the first best fitness, are left out.
 pub fn convergence(title: &str, best: &[f64], mean: &[f64]) -> Figure {
+    let first = best.iter().copied().find(|best| *best < FAILED).unwrap_or(FAILED);
     let series = |name: &str, values: &[f64], mark, colour| Series {
         name: name.to_owned(),
         x: (1..=values.len()).map(|generation| generation as f64).collect(),
-        y: values.iter().map(|v| if *v < FAILED { *v } else { f64::NAN }).collect(),
+        y: values.iter().map(|v| if *v < most(first) { *v } else { f64::NAN }).collect(),
         mark,
         colour,
     };

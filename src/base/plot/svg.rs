@@ -73,10 +73,27 @@ impl Svg {
         }
     }
 
+    /// A picture within a page as large as it is drawn.
+    pub(crate) fn of_its_size(width: f64, height: f64, title: &str) -> Svg {
+        let inline = Svg::inline(width, height, title);
+        let size = format!("<svg width=\"{}\" height=\"{}\" ", number(width), number(height));
+        Svg { text: inline.text.replacen("<svg ", &size, 1), ..inline }
+    }
+
     /// Its text.
     pub fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");
         self.text
+    }
+
+    /// What follows belongs together, until [`Svg::end`]; `attributes` say as what.
+    pub(crate) fn begin(&mut self, attributes: &str) {
+        self.put(format_args!("<g {attributes}>"));
+    }
+
+    /// The end of what began last.
+    pub(crate) fn end(&mut self) {
+        self.put(format_args!("</g>"));
     }
 
     /// A line through points; `style` are further attributes.
@@ -167,6 +184,11 @@ impl Svg {
 fn places(points: &[(f64, f64)]) -> String {
     let place = |(x, y): &(f64, f64)| format!("{},{}", number(*x), number(*y));
     points.iter().map(place).collect::<Vec<_>>().join(" ")
+}
+
+/// A text as the value of an attribute.
+pub(crate) fn attribute(text: &str) -> String {
+    escape(&raised(text)).replace('"', "&quot;")
 }
 
 /// Text as SVG holds it, without what XML does not allow.

@@ -34,6 +34,11 @@ impl Ticks {
         }
     }
 
+    /// The same range without ticks.
+    pub(super) fn unlabelled(self) -> Ticks {
+        Ticks { major: Vec::new(), minor: Vec::new(), ..self }
+    }
+
     /// The place of a value between 0 and 1; `None` if it cannot be shown.
     pub fn place(&self, value: f64) -> Option<f64> {
         if !is_shown(value, self.scale) {

@@ -32,7 +32,7 @@ Examples:
 
 Each lesson is a script of about one page with a gap; its comments say what to do. Open the copy in \
                         an editor, change it, save it, and repeat the command. The check runs your \
-                        script also with other seeds and other data.
+                        script also with other seeds and data.
 
 Exit code: 0 if the lesson is passed, 1 if not, 2 for an invalid command line, 130 if interrupted.")]
 pub(super) struct LessonArgs {

@@ -13,7 +13,7 @@ use ratatui::crossterm::terminal::{
     EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
     is_raw_mode_enabled,
 };
-use std::io::{self, Stderr, stderr};
+use std::io::{self, Stderr, Write, stderr};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -22,6 +22,8 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Between two drawings.
 const EVERY: Duration = Duration::from_millis(150);
+/// What remains on the terminal of the view.
+const BEGINS: &str = "live view of the run (--plain shows a progress bar instead)\n";
 
 /// The view, once there is one.
 pub(super) struct Live {
@@ -88,6 +90,7 @@ impl Live {
 
     fn opened(&mut self) -> io::Result<&mut Screen> {
         if self.screen.is_none() {
+            stderr().write_all(BEGINS.as_bytes())?;
             enable_raw_mode()?;
             execute!(stderr(), EnterAlternateScreen)?;
             let terminal = Terminal::new(CrosstermBackend::new(stderr()))?;

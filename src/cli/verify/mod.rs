@@ -35,9 +35,9 @@ Examples:
   gapi verify --library ~/libraries --references ~/references
   gapi verify Decay.mo --references references --filter Decay --output table.json
 
-A case is a folder of the collection that holds NAME.csv with the folder's own name, and perhaps
-comparisonSignals.txt; its path below the collection is the name of the model. Or it is a file
-Library_Examples_Model.txt as BuildingsPy writes them, with samples of all signals.
+A case is a folder NAME of the collection with NAME.csv and, optionally, comparisonSignals.txt; its
+path below the collection is the name of the model. Or it is a file Library_Examples_Model.txt as
+BuildingsPy writes them, with samples of all signals.
 
 Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
 pub(crate) struct VerifyArgs {

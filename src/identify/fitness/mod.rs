@@ -57,7 +57,7 @@ pub trait Fitness: Send + Sync {
     }
 
     /// What takes the place of the residual variance where not the squares of the weighted
-    /// `residuals` are minimised.
+    /// `residuals` are minimized.
     fn robustness(&self, _residuals: &[f64], _freedom: f64) -> Option<Robustness> {
         None
     }

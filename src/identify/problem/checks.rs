@@ -134,7 +134,7 @@ pub(crate) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Outliers of the linearised problem, each series in units of its own residuals, and the residuals
+/// Outliers of the linearized problem, each series in units of its own residuals, and the residuals
 /// of all other points when the parameters no longer follow the outliers.
 fn suspected_outliers(
     statistics: &Statistics,
@@ -200,7 +200,7 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
     let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
     (total > 0.0 && y.len() > 2 && r_squared < -AS_GOOD).then(|| {
         let (severity, words) = match by_chance {
-            true => (Severity::Information, "these data do not show that the model explains more"),
+            true => (Severity::Information, "the model explains no more than the mean does"),
             false => (Severity::Serious, "the model does not describe these data"),
         };
         Finding::new(
@@ -370,7 +370,7 @@ fn spread(
         true => (
             by_value,
             "the size of the output",
-            "Give `sigma` as a formula of the output or as a column, or minimise `relative`",
+            "Give `sigma` as a formula of the output or as a column, or minimize `relative`",
         ),
         false => (by_x, "x", "Give `sigma` as a column of the data"),
     };
@@ -419,8 +419,8 @@ fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
                 if one { "this outlier" } else { "these outliers" },
                 match (own.robust, one) {
                     (true, _) => "; the robust fitness gives it little weight",
-                    (false, true) => ", or minimise `huber`, which gives it less weight",
-                    (false, false) => ", or minimise `huber`, which gives them less weight",
+                    (false, true) => ", or minimize `huber`, which gives it less weight",
+                    (false, false) => ", or minimize `huber`, which gives them less weight",
                 },
             ),
         )

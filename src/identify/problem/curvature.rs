@@ -63,7 +63,7 @@ impl Curvature {
 }
 
 /// Goes to a minimum that the linear model cannot find, if the best point lies beside one. Only where
-/// the search ended by itself.
+/// the search has converged.
 pub fn finish(run: &mut Run) {
     if run.cause() != Cause::Converged || run.problem.parameters.len() > MOST {
         return;

@@ -427,7 +427,7 @@ impl Evaluation {
         all
     }
 
-    /// Residuals of one simulation whose squares add up to what least squares minimises, and the
+    /// Residuals of one simulation whose squares add up to what least squares minimizes, and the
     /// factors that make derivatives of the points those of the residuals.
     pub(super) fn scaled(
         &self,

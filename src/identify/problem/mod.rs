@@ -225,7 +225,7 @@ pub struct Problem {
     pub parameters: Vec<Free>,
     /// The measured series.
     pub series: Vec<Series>,
-    /// Names and functions to minimise; several for a method that handles several.
+    /// Names and functions to minimize; several for a method that handles several.
     pub objectives: Vec<(String, Box<dyn Fitness>)>,
     /// The name of the method.
     pub method_name: String,

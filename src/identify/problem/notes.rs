@@ -93,7 +93,7 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
             }
             Effect::Finite(finite) => {
                 let acts = match finite.how {
-                    How::InSteps => "acts in steps: its derivative is zero",
+                    How::InSteps => "has a step-wise effect: its derivative is zero",
                     How::Vanishing => "has a derivative that vanishes at the best values",
                     How::Cancelling => "has a derivative that cancels with those of others",
                 };
@@ -444,7 +444,7 @@ fn determined(group: &NonIdentifiable, solution: &Solution, statistics: &Statist
         };
         let text = if is_product { product(parts) } else { sum(parts) };
         let [value, low, high] = [value, low, high].map(|value| significant(value, 4));
-        (value != "NaN").then(|| format!("{text} is {value} (95 % interval {low} .. {high})"))
+        (value != "NaN").then(|| format!("{text} is {value} (95 % interval {low} to {high})"))
     };
     if group.form == Form::Function {
         return determined_function(group, solution, statistics).unwrap_or_default();

@@ -89,7 +89,7 @@ impl Run {
         }
         let several = problem.objectives.len() > 1;
         if several && !problem.method.handles_several_objectives() {
-            bail!(BAD_OPTION, "`{}` minimises one fitness function, not {}", problem.method_name, problem.objectives.len(); help: "use `nsga2`");
+            bail!(BAD_OPTION, "`{}` minimizes one fitness function, not {}", problem.method_name, problem.objectives.len(); help: "use `nsga2`");
         }
         if problem.stop == Stop::default() {
             problem.stop.evaluations = Some(EVALUATIONS);
@@ -153,7 +153,7 @@ impl Run {
         if self.converged {
             self.cause = Cause::Converged;
         }
-        self.converged.then(|| "the search ended by itself".to_owned())
+        self.converged.then(|| "the search has converged".to_owned())
     }
 
     /// The stop condition that holds, in words.

@@ -1,6 +1,7 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
 use super::grounds::Grounds;
+use super::statistics::distributions::{normal_quantile, student_quantile};
 use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
     Profile, Profiles, Severity, SolvedDescent, residual_test,
@@ -330,6 +331,9 @@ pub struct SolvedSeries {
     /// X, measured, simulated.
     #[serde(deserialize_with = "points")]
     pub points: Vec<[f64; 3]>,
+    /// X and what the best individual of a script gives, where the result is another one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub script: Vec<[f64; 2]>,
 }
 
 impl SolvedSeries {
@@ -358,6 +362,7 @@ impl SolvedSeries {
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
             curve: Vec::new(),
             points,
+            script: Vec::new(),
         }
     }
 }
@@ -368,6 +373,15 @@ fn shown_unit(unit: &str) -> String {
 }
 
 impl Solution {
+    /// Half of a linearized 95 % interval, in standard errors.
+    pub(crate) fn quantile(&self) -> Option<f64> {
+        let freedom = self.likelihood.degrees_of_freedom.filter(|freedom| *freedom > 0.0)?;
+        Some(match self.likelihood.chi_square {
+            Some(_) => normal_quantile(0.975),
+            None => student_quantile(0.975, freedom),
+        })
+    }
+
     /// Takes standard errors and intervals away, and what was said of them. At the limit of a
     /// constraint they would be too small along it: the data may as well hold inside.
     pub(super) fn drop_intervals(&mut self) {

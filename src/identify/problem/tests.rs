@@ -96,7 +96,7 @@ fn the_truth_is_found_from_its_own_simulation() {
         assert!((found.value - truth).abs() < 1e-8, "{found:?}");
     }
     assert!(solution.effort.failures["model"] > 0, "some individuals fail");
-    assert_eq!(solution.outcome.stop, "the search ended by itself");
+    assert_eq!(solution.outcome.stop, "the search has converged");
 }
 
 #[test]

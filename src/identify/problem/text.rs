@@ -21,7 +21,7 @@ impl Solution {
                 let Some(profile) = self.profile_of(own) else { return format!("{} -", own.name) };
                 let ends =
                     profile.interval.map(|end| end.map_or("-".into(), |e| significant(e, 4)));
-                format!("{} in {} .. {}", profile.name, ends[0], ends[1])
+                format!("{} in {} to {}", profile.name, ends[0], ends[1])
             };
             let rows: Vec<String> = self.parameters.iter().map(row).collect();
             _ = writeln!(text, "  95 % by profiles: {}\n", rows.join("; "));
@@ -256,14 +256,28 @@ impl Solution {
     pub fn convergence_figure(&self) -> Figure {
         let best: Vec<f64> = self.course.history.iter().map(|generation| generation.best).collect();
         let mean: Vec<f64> = self.course.history.iter().map(|generation| generation.mean).collect();
-        plot::convergence(&self.subject.model, &best, &mean)
+        plot::convergence(self.class_name(), &best, &mean)
+    }
+
+    /// The model's class without packages and modification.
+    pub(crate) fn class_name(&self) -> &str {
+        let class = self.subject.model.split('(').next().unwrap_or_default().trim();
+        class.rsplit('.').next().unwrap_or(class)
+    }
+
+    /// The title with the name of the class alone, where it contains the model.
+    pub(crate) fn short_title(&self) -> String {
+        match self.subject.model.as_str() {
+            "" => self.subject.title.clone(),
+            model => self.subject.title.replace(model, self.class_name()),
+        }
     }
 
     /// Measured and simulated points of each series with their residuals, and the names of files.
     pub fn fit_figures(&self) -> Vec<(String, Figure)> {
         let named = |(k, series): (usize, &SolvedSeries)| {
             let name = if k == 0 { "fit.svg".to_owned() } else { format!("fit-{}.svg", k + 1) };
-            Some((name, series.figure(&self.subject.model)?))
+            Some((name, series.figure(self.class_name())?))
         };
         self.series.iter().enumerate().filter_map(named).collect()
     }
@@ -417,7 +431,7 @@ fn cells(parameter: &SolvedParameter) -> [String; 7] {
     if parameter.at_bound {
         remarks.push("at the end of its range");
     }
-    let range = parameter.range.map(|end| significant(end, 4)).join(" .. ");
+    let range = parameter.range.map(|end| significant(end, 4)).join(" to ");
     [
         parameter.name.clone(),
         significant(parameter.value, parameter.digits()),

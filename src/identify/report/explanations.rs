@@ -60,7 +60,7 @@ pub(crate) const WATERFALL: Explanation = Explanation {
 };
 pub(crate) const SEARCHES: Explanation = Explanation {
     topic: "searches",
-    line: "Each search began with another seed, sorted by its final objective; a plateau on the left \
+    line: "Each search began with a different seed, sorted by its final objective; a plateau on the left \
            means that the result does not depend on chance. The result is that of the best one.",
 };
 pub(crate) const CONVERGENCE: Explanation = Explanation {
@@ -76,7 +76,7 @@ pub(crate) const CORRELATION: Explanation = Explanation {
 pub(crate) const CONDITION: Explanation = Explanation {
     topic: "the condition number",
     line: "The condition number of the sensitivities shows how strongly small errors in the data \
-           are amplified; above 10 000, the estimates are unreliable.",
+           are amplified; above 10,000, the estimates are unreliable.",
 };
 pub(crate) const ELLIPSE: Explanation = Explanation {
     topic: "confidence ellipses",

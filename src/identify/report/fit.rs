@@ -4,29 +4,47 @@ use super::Section;
 use super::explanations::BAND;
 use super::parts::{explained, figure, one_panel, series};
 use super::view::{self, CurvePoint, View};
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Figure, MANY, Mark, Panel, Series, of_points, of_residuals};
 use crate::problem::{Band, SolvedSeries};
 use maud::{Markup, html};
+use std::path::Path;
 
-pub fn section(view: &View) -> Option<Section> {
+/// A series, its curve, and what it is besides a fitted one.
+type Shown<'v> = (&'v SolvedSeries, &'v [CurvePoint], &'static str);
+
+/// All series: those that were fitted, then those that were kept for validation.
+fn all<'v>(view: &'v View<'_>) -> Vec<Shown<'v>> {
     let solution = view.solution;
-    let fitted =
-        solution.series.iter().zip(&view.curves).map(|(series, curve)| (series, curve, ""));
-    let kept = solution.validation.iter().zip(&view.validation_curves);
-    let all: Vec<(&SolvedSeries, &Vec<CurvePoint>, &str)> =
-        fitted.chain(kept.map(|(series, curve)| (series, curve, "validation"))).collect();
-    if all.is_empty() {
+    let with = |series: &'v [SolvedSeries], curves: &'v [Vec<CurvePoint>], kind: &'static str| {
+        series.iter().zip(curves).map(move |(series, curve)| (series, curve.as_slice(), kind))
+    };
+    let fitted = with(&solution.series, &view.curves, "");
+    fitted.chain(with(&solution.validation, &view.validation_curves, "validation")).collect()
+}
+
+/// The first series, beside the table of the result.
+pub fn section(view: &View) -> Option<Section> {
+    let (series, curve, kind) = all(view).into_iter().next()?;
+    let content = html! {
+        (one(series, curve, kind))
+        @if curve.iter().any(|at| at.confidence.is_some()) { (explained(&BAND)) }
+    };
+    Some(Section { id: "fit", heading: "Fit and residuals", content, wide: false })
+}
+
+/// The other series, and curves of what was not measured.
+pub(super) fn others(view: &View) -> Option<Section> {
+    let all = all(view);
+    let others = all.get(1..).unwrap_or_default();
+    if others.is_empty() && view.unmeasured.is_empty() {
         return None;
     }
-    let banded = all.iter().any(|(_, curve, _)| curve.iter().any(|at| at.confidence.is_some()));
-    let wide = all.len() + view.unmeasured.len() > 1;
     let content = html! {
-        div.figures[wide] { @for (series, curve, kind) in &all { (one(series, curve, kind)) }
+        div.figures { @for (series, curve, kind) in others { (one(series, curve, kind)) }
             @for band in &view.unmeasured { (unmeasured(band)) }
         }
-        @if banded { (explained(&BAND)) }
     };
-    Some(Section { id: "fit", heading: "Fit and residuals", content, wide })
+    Some(Section { id: "series", heading: "Further series", content, wide: true })
 }
 
 fn name(series: &SolvedSeries, kind: &str) -> String {
@@ -47,7 +65,7 @@ fn one(series: &SolvedSeries, curve: &[CurvePoint], kind: &str) -> Markup {
     let caption = html! {
         strong { (name) } ": " (series.points.len())
         @if series.points.len() == 1 { " point" } @else { " points" }
-        @if !series.file.is_empty() { " from " (series.file) }
+        @if let Some(name) = Path::new(&series.file).file_name() { " from " (name.to_string_lossy()) }
         ". Residual: measured minus simulated."
     };
     figure(&drawing(series, curve), &label, &caption)
@@ -65,9 +83,17 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
     };
     let x = Axis::linear(&solved.x[0], &solved.x[1]);
     let mut fit = bands(curve);
-    fit.push(series("simulated", &line, Mark::Line, 1));
-    fit.push(series("measured", &column(|point| point[1]), Mark::Points, 0));
-    let residuals = vec![series("", &column(|point| point[1] - point[2]), Mark::Stems, 0)];
+    let is_long = points.len() > MANY;
+    let measured = series("measured", &column(|point| point[1]), of_points(points.len()), 0);
+    let simulated = series("simulated", &line, Mark::Line, 1);
+    fit.extend(if is_long { [measured, simulated] } else { [simulated, measured] });
+    if !solved.script.is_empty() {
+        let mut own: Vec<(f64, f64)> = solved.script.iter().map(|[x, y]| (*x, *y)).collect();
+        own.sort_by(|a, b| a.0.total_cmp(&b.0));
+        fit.push(series("script's best", &own, Mark::Dashed, 2));
+    }
+    let residuals = column(|point| point[1] - point[2]);
+    let residuals = vec![series("", &residuals, of_residuals(is_long), 0)];
     let panel = |label: &str, height, zero_line, series| Panel {
         x: x.clone(),
         y: Axis::linear(label, &solved.y[1]),

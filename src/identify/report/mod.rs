@@ -1,11 +1,12 @@
 //! The report page: what a run found, how well it fits, and what the data say about it, as one HTML
 //! file without any request to elsewhere.
 //!
-//! The page has no script. Figures are SVG in colours of the style sheet, so that they follow the
-//! reader's choice of light or dark; tables that are wider than the screen scroll by themselves and
-//! can be reached with the keyboard. A section whose data are missing is left out. Each statistic
-//! is explained in a line with its threshold, and leads to the chapter of the guide on reading
-//! reports, which is part of the page.
+//! All that the page says is there without a script. The script adds what paper cannot do: the values
+//! under the pointer, a closer look, series switched off. Figures are SVG in colours of the style sheet,
+//! so that they follow the reader's choice of light or dark; tables that are wider than the screen
+//! scroll by themselves and can be reached with the keyboard. A section whose data are missing is left
+//! out. Each statistic is explained in a line with its threshold, and leads to the chapter of the guide
+//! on reading reports, which is part of the page.
 
 mod convergence;
 mod explanations;
@@ -32,6 +33,7 @@ use maud::{Markup, html};
 use view::View;
 
 const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
 
 impl Solution {
     /// `report.html`.
@@ -40,7 +42,7 @@ impl Solution {
         Page {
             title: &self.subject.title,
             style: STYLE,
-            scripts: &[],
+            scripts: &[SCRIPT],
             data: &[],
             body: body(&view),
         }
@@ -58,9 +60,10 @@ struct Section {
 }
 
 fn body(view: &View) -> Markup {
-    let sections: Vec<Section> = [
+    let mut sections: Vec<Section> = [
         table::section(view),
         fit::section(view),
+        fit::others(view),
         convergence::section(view),
         waterfall::section(view),
         searches::section(view),
@@ -76,6 +79,7 @@ fn body(view: &View) -> Markup {
     .into_iter()
     .flatten()
     .collect();
+    without_empty_halves(&mut sections);
     html! {
         a.skip href="#content" { "Skip to the result" }
         header { (summary::head(view)) }
@@ -92,9 +96,19 @@ fn body(view: &View) -> Markup {
             }
             section.wide #guide aria-labelledby="guide-heading" {
                 h2 #guide-heading { "How to read this page" }
-                (guide::chapter())
+                details { summary { "Show the chapter" } (guide::chapter()) }
             }
         }
         footer { p { "gapilib " (view.solution.provenance.version) } }
+    }
+}
+
+/// A section that would have no neighbour in its row is as wide as the page.
+fn without_empty_halves(sections: &mut [Section]) {
+    for row in sections.chunk_by_mut(|a, b| a.wide == b.wide) {
+        let is_odd = row.len() % 2 == 1;
+        if let Some(last) = row.last_mut().filter(|_| is_odd) {
+            last.wide = true;
+        }
     }
 }

@@ -3,16 +3,18 @@
 
 use super::Section;
 use super::explanations::{CONDITION, CORRELATION, ELLIPSE};
-use super::parts::{axis, explained, number, one_panel, scrolling, series, small_figure};
+use super::parts::{axis, explained, number, scrolling, series};
 use super::view::{Pair, View, is_logarithmic};
 use crate::elementary;
 use crate::ga::has_failed;
-use crate::plot::{Figure, Mark};
+use crate::plot::{Axis, Mark, Matrix, Series};
 use crate::problem::SolvedParameter;
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
-/// Ellipses drawn; with more parameters the table shows the others.
-const DRAWN: usize = 24;
+/// Parameters whose pairs are drawn; with more parameters the table shows the others.
+const DRAWN: usize = 7;
+/// The diagonal shows the sum of squares up to so many times the distance of the 95 % limit.
+const SHOWN: f64 = 1.6;
 /// Individuals in one picture.
 const DOTS: usize = 400;
 /// Points of an ellipse.
@@ -25,7 +27,7 @@ pub fn section(view: &View) -> Option<Section> {
     if view.solution.parameters.len() < 2 {
         return None;
     }
-    let drawn = &view.pairs[..view.pairs.len().min(DRAWN)];
+    let shown = shown(view);
     let content = html! {
         (scrolling("Correlations", &table(view, rows)))
         (explained(&CORRELATION))
@@ -33,17 +35,31 @@ pub fn section(view: &View) -> Option<Section> {
             p { "Condition number: " strong { (number(condition, 3)) } }
             (explained(&CONDITION))
         }
-        @if drawn.is_empty() {
-            p { "No two estimates are correlated beyond ±0.5, so no ellipse is shown." }
-        } @else {
-            div.figures.small { @for pair in drawn { (one(view, pair)) } }
-            @if view.pairs.len() > drawn.len() {
-                p { "Drawn: the " (drawn.len()) " strongest of " (view.pairs.len()) " correlated pairs." }
+        @if shown.len() > 1 {
+            (matrix(view, &shown))
+            @if view.solution.parameters.len() > shown.len() {
+                p { "Drawn: " (shown.len()) " of " (view.solution.parameters.len())
+                    " parameters, those of the strongest correlations." }
             }
             (explained(&ELLIPSE))
         }
     };
     Some(Section { id: "pairs", heading: "Pairs of parameters", content, wide: true })
+}
+
+/// The parameters that are drawn, by their places: all, or those of the strongest correlations.
+fn shown(view: &View) -> Vec<usize> {
+    let mut strongest: Vec<usize> =
+        view.pairs.iter().flat_map(|pair| [pair.first, pair.second]).collect();
+    strongest.extend(0..view.solution.parameters.len());
+    let mut shown: Vec<usize> = Vec::new();
+    for place in strongest {
+        if shown.len() < DRAWN && !shown.contains(&place) {
+            shown.push(place);
+        }
+    }
+    shown.sort_unstable();
+    shown
 }
 
 fn table(view: &View, rows: &[Vec<Option<f64>>]) -> Markup {
@@ -85,45 +101,93 @@ fn shade(correlation: f64) -> &'static str {
     }
 }
 
-fn one(view: &View, pair: &Pair) -> Markup {
+/// Of each parameter, the pairs with those before it and its profile.
+fn matrix(view: &View, shown: &[usize]) -> Markup {
     let of = |k: usize| &view.solution.parameters[k];
-    let (across, up) = (of(pair.first), of(pair.second));
-    let Some(drawn) = drawing(view, pair) else { return html! {} };
-    let correlation = number(pair.correlation, 3);
-    let label = format!("{} across and {} up with their 95 % ellipse", across.name, up.name);
-    let caption = html! {
-        strong { (across.name) " and " (up.name) } ": correlation " (correlation) "."
+    let frames: Vec<[f64; 2]> = shown.iter().map(|k| frame(view, of(*k))).collect();
+    let pair = |row: usize, column: usize| {
+        let (across, up) = (shown[column], shown[row]);
+        let correlation = view.correlation(across, up).unwrap_or(0.0);
+        let pair = Pair { first: across, second: up, correlation };
+        drawing(view, &pair, [frames[column], frames[row]])
     };
-    small_figure(&drawn, &label, &caption)
+    let drawn = Matrix {
+        axes: shown.iter().zip(&frames).map(|(k, frame)| own_axis(of(*k), *frame)).collect(),
+        diagonal: shown.iter().zip(&frames).map(|(k, frame)| alone(view, of(*k), *frame)).collect(),
+        pairs: (0..shown.len())
+            .map(|row| (0..row).map(|column| pair(row, column)).collect())
+            .collect(),
+    };
+    let names: Vec<&str> = shown.iter().map(|k| of(*k).name.as_str()).collect();
+    let label = format!(
+        "Matrix of {}: each pair with its 95 % ellipse, on the diagonal how the sum of squares rises",
+        names.join(", ")
+    );
+    let with_profile = shown.iter().any(|k| view.solution.profile_of(of(*k)).is_some());
+    html! {
+        figure.matrix {
+            (scrolling("Pairs of parameters", &PreEscaped(drawn.inline(&label))))
+            figcaption {
+                "Below the diagonal: 95 % ellipse, individuals (orange: the best 10 %), and the result. \
+                 On the diagonal: the sum of squares of the linearized model (thin)"
+                @if with_profile { ", its profile" } " and the 95 % limit (dashed)."
+            }
+        }
+    }
 }
 
-/// `None` where a standard error is missing.
-fn drawing(view: &View, pair: &Pair) -> Option<Figure> {
+/// What an axis shows of a parameter: its ellipses with a margin.
+fn frame(view: &View, own: &SolvedParameter) -> [f64; 2] {
+    let radius = view.ellipse_radius_squared().sqrt();
+    let [low, high] = own
+        .deviation
+        .map_or(own.range, |error| [moved(own, error, -radius), moved(own, error, radius)]);
+    widened(own, low, high)
+}
+
+fn own_axis(own: &SolvedParameter, [low, high]: [f64; 2]) -> Axis {
+    axis(own, is_logarithmic(own, low, high))
+}
+
+/// The rise of the sum of squares over a parameter, in units of the 95 % limit: of the linearized model,
+/// and of the profile where there is one.
+fn alone(view: &View, own: &SolvedParameter, [low, high]: [f64; 2]) -> Vec<Series> {
+    let is_within = |x: f64| (low..=high).contains(&x);
+    let mut all = vec![series("", &[(low, 1.0), (high, 1.0)], Mark::Dashed, 2)];
+    if let (Some(error), Some(quantile)) = (own.deviation, view.solution.quantile()) {
+        let at = |k: usize| {
+            let away = SHOWN * (2.0 * k as f64 / CORNERS as f64 - 1.0);
+            (moved(own, error, away * quantile), away * away)
+        };
+        let curve: Vec<(f64, f64)> = (0..=CORNERS).map(at).filter(|at| is_within(at.0)).collect();
+        all.push(series("", &curve, Mark::Thin, 0));
+    }
+    if let Some(profile) = view.solution.profile_of(own) {
+        let least = profile.points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+        let rise = |point: &[f64; 2]| (point[0], (point[1] - least) / (profile.limit - least));
+        let shown = profile.points.iter().map(rise);
+        let shown: Vec<(f64, f64)> =
+            shown.filter(|(x, rise)| is_within(*x) && *rise <= SHOWN * SHOWN).collect();
+        all.push(series("", &shown, Mark::Line, 1));
+    }
+    all
+}
+
+/// A pair in its frame; without the ellipse where a standard error is missing.
+fn drawing(view: &View, pair: &Pair, [wide, high]: [[f64; 2]; 2]) -> Vec<Series> {
     let parameters = &view.solution.parameters;
     let (across, up) = (&parameters[pair.first], &parameters[pair.second]);
     let radius = view.ellipse_radius_squared().sqrt();
-    let edge = ellipse(across, up, pair.correlation, radius)?;
-    let frame = |values: fn(&(f64, f64)) -> f64, parameter| {
-        let low = edge.iter().map(values).fold(f64::INFINITY, f64::min);
-        let high = edge.iter().map(values).fold(f64::NEG_INFINITY, f64::max);
-        widened(parameter, low, high)
-    };
-    let (wide, high) = (frame(|at| at.0, across), frame(|at| at.1, up));
+    let mut all = Vec::new();
+    if let Some(edge) = ellipse(across, up, pair.correlation, radius) {
+        all.push(series("", &edge, Mark::Area, 1));
+        all.push(series("", &edge, Mark::Line, 1));
+    }
     let [good, others, failed] = individuals(view, pair, wide, high);
-    let logarithmic = |parameter, [low, high]: [f64; 2]| is_logarithmic(parameter, low, high);
-    let mut all =
-        vec![series("95 % ellipse", &edge, Mark::Area, 1), series("", &edge, Mark::Line, 1)];
-    let clouds = [
-        ("evaluated", &others, Mark::Dots, 3),
-        ("best 10 %", &good, Mark::Dots, 2),
-        ("failed", &failed, Mark::Crosses, 4),
-    ];
-    let shown = clouds.into_iter().filter(|cloud| !cloud.1.is_empty());
-    all.extend(shown.map(|(name, points, mark, colour)| series(name, points, mark, colour)));
-    all.push(series("result", &[(across.value, up.value)], Mark::Points, 0));
-    let x = axis(across, logarithmic(across, wide));
-    let y = axis(up, logarithmic(up, high));
-    Some(one_panel(x, y, 250.0, all))
+    let clouds = [(&others, Mark::Dots, 3), (&good, Mark::Dots, 2), (&failed, Mark::Crosses, 4)];
+    all.extend(clouds.map(|(points, mark, colour)| series("", points, mark, colour)));
+    all.push(series("", &[(across.value, up.value)], Mark::Points, 0));
+    all
 }
 
 /// The edge of the joint ellipse of two estimates, `radius` in standard errors. Where the logarithm
@@ -136,10 +200,6 @@ fn ellipse(
 ) -> Option<Vec<(f64, f64)>> {
     let (a, b) = (across.deviation?, up.deviation?);
     let rest = (1.0 - correlation * correlation).max(0.0).sqrt();
-    let moved = |parameter: &SolvedParameter, error: f64, by: f64| match parameter.logarithmic {
-        true => parameter.value * elementary::exp(by * error / parameter.value),
-        false => by.mul_add(error, parameter.value),
-    };
     let corner = |k: usize| {
         let (sine, cosine) = elementary::sin_cos(std::f64::consts::TAU * k as f64 / CORNERS as f64);
         let x = moved(across, a, radius * cosine);
@@ -150,13 +210,21 @@ fn ellipse(
     drawable.then_some(edge)
 }
 
-/// A quarter more on both sides, in the scale that is drawn.
+/// The value moved by so many standard errors; where its logarithm is estimated, that is moved.
+fn moved(parameter: &SolvedParameter, error: f64, by: f64) -> f64 {
+    match parameter.logarithmic {
+        true => parameter.value * elementary::exp(by * error / parameter.value),
+        false => by.mul_add(error, parameter.value),
+    }
+}
+
+/// A tenth more on both sides, in the scale that is drawn.
 fn widened(parameter: &SolvedParameter, low: f64, high: f64) -> [f64; 2] {
     if is_logarithmic(parameter, low, high) {
-        let more = elementary::powf(high / low, 0.25);
+        let more = elementary::powf(high / low, 0.1);
         return [low / more, high * more];
     }
-    let more = 0.25 * (high - low);
+    let more = 0.1 * (high - low);
     [low - more, high + more]
 }
 

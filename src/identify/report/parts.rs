@@ -1,6 +1,7 @@
 //! Pieces that several sections use.
 
 use super::explanations::Explanation;
+use crate::elementary;
 use crate::plot::{Axis, Figure, Mark, Panel, Scale, Series};
 use crate::problem::SolvedParameter;
 use crate::table::significant;
@@ -26,6 +27,11 @@ pub(crate) fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Ma
     }
 }
 
+/// The legend of figures that stand side by side.
+pub(super) fn legend(figure: &Figure) -> Markup {
+    html! { figure.legend { (PreEscaped(figure.legend())) } }
+}
+
 /// A table, or anything else that may be wider than the screen; `label` names it.
 pub(crate) fn scrolling(label: &str, content: &Markup) -> Markup {
     html! { div.scroll tabindex="0" role="region" aria-label=(label) { (content) } }
@@ -47,6 +53,18 @@ pub fn quantity(value: f64, digits: usize, unit: &str) -> String {
     match unit.is_empty() {
         true => number(value, digits),
         false => format!("{}\u{a0}{unit}", number(value, digits)),
+    }
+}
+
+/// A number with its unit as engineers write it: 0.42 mV for 4.2e-4 V.
+pub(super) fn engineering(value: f64, digits: usize, unit: &str) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        return quantity(value, digits, unit);
+    }
+    let power = 3 * (elementary::log10(value.abs()) / 3.0).floor() as i32;
+    match crate::plot::prefixed(unit, power) {
+        Some(prefixed) => quantity(value / elementary::powi(10.0, power), digits, &prefixed),
+        None => quantity(value, digits, unit),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::Section;
 use super::explanations::PROFILE;
-use super::parts::{axis, explained, number, one_panel, series, small_figure};
+use super::parts::{axis, explained, legend, number, one_panel, series, small_figure};
 use super::view::{View, is_logarithmic};
 use crate::elementary;
 use crate::plot::{Axis, Figure, Mark};
@@ -20,7 +20,7 @@ impl Solution {
     pub fn profile_figures(&self) -> Vec<(String, Figure)> {
         let titled = |parameter: &SolvedParameter| {
             let profile = self.profile_of(parameter)?;
-            let title = format!("{}: profile of {}", self.subject.model, profile.name);
+            let title = format!("{}: profile of {}", self.class_name(), profile.name);
             Some((profile.name.clone(), Figure { title, ..drawing(parameter, profile) }))
         };
         self.parameters.iter().filter_map(titled).collect()
@@ -33,6 +33,7 @@ pub fn section(view: &View) -> Option<Section> {
     let without: Vec<&str> =
         all().filter(|(_, found)| found.is_none()).map(|(own, _)| own.name.as_str()).collect();
     let content = html! {
+        @if let Some(first) = all().find_map(|(own, found)| Some(drawing(own, found?))) { (legend(&first)) }
         div.figures.small {
             @for (parameter, profile) in all() {
                 @if let Some(profile) = profile { (one(parameter, profile)) }

@@ -2,10 +2,19 @@
 
 use super::Section;
 use super::explanations::{AUTOCORRELATION, R_SQUARED, RMSE, RUNS};
-use super::parts::{explained, number, quantity, scrolling};
+use super::parts::{engineering, explained, number, one_panel, scrolling, series, small_figure};
 use super::view::View;
+use crate::elementary;
+use crate::plot::{Axis, MANY, Mark};
 use crate::problem::{Finding, FindingKind, Solution, SolvedSeries};
 use maud::{Markup, html};
+
+/// Bars of a histogram.
+const BINS: usize = 41;
+/// Points of the curve of the normal distribution.
+const CURVE: usize = 80;
+/// Lags of the autocorrelation.
+const LAGS: usize = 40;
 
 pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
@@ -15,11 +24,89 @@ pub fn section(view: &View) -> Option<Section> {
     let tested = solution.series.iter().any(|series| series.residual_test.is_some());
     let content = html! {
         (scrolling("Table of the residuals", &table(view)))
+        (distributions(solution))
         (explained(&RMSE))
         (explained(&R_SQUARED))
         @if tested { (explained(&RUNS)) (explained(&AUTOCORRELATION)) }
     };
     Some(Section { id: "residuals", heading: "Statistics of the residuals", content, wide: true })
+}
+
+/// Residuals of a long series as a histogram, and their correlation by lag: in the picture of the fit
+/// thousands of dots hide both.
+fn distributions(solution: &Solution) -> Markup {
+    let long = || solution.series.iter().filter(|own| own.points.len() > MANY);
+    html! {
+        @if long().next().is_some() {
+            div.figures.small {
+                @for own in long() { (histogram(own)) (correlogram(own)) }
+            }
+        }
+    }
+}
+
+/// Residuals by ascending X, without those of failed simulations.
+fn residuals(series: &SolvedSeries) -> Vec<f64> {
+    let mut points = series.points.clone();
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points.iter().map(|point| point[1] - point[2]).filter(|own| own.is_finite()).collect()
+}
+
+/// How often residuals occur, beside the normal distribution of the same standard deviation.
+fn histogram(own: &SolvedSeries) -> Markup {
+    let values = residuals(own);
+    let spread = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let width = 2.0 * spread / BINS as f64;
+    let mut counts = [0_usize; BINS];
+    for value in &values {
+        let bin = ((value + spread) / width) as usize;
+        counts[bin.min(BINS - 1)] += 1;
+    }
+    let edge = |bin: usize| (bin as f64).mul_add(width, -spread);
+    let bar = |(bin, count): (usize, &usize)| {
+        let height = *count as f64;
+        [(edge(bin), 0.0), (edge(bin), height), (edge(bin + 1), height), (edge(bin + 1), 0.0)]
+    };
+    let bars: Vec<(f64, f64)> = counts.iter().enumerate().flat_map(bar).collect();
+    let normal = |k: usize| {
+        let x = edge(1) + (edge(BINS - 1) - edge(1)) * k as f64 / CURVE as f64;
+        let exponent = -0.5 * elementary::powi(x / own.rmse, 2);
+        let density = elementary::exp(exponent) / (own.rmse * std::f64::consts::TAU.sqrt());
+        (x, density * width * values.len() as f64)
+    };
+    let curve: Vec<(f64, f64)> = (0..=CURVE).map(normal).collect();
+    let all = vec![
+        series("", &bars, Mark::Area, 1),
+        series("", &bars, Mark::Thin, 1),
+        series("", &curve, Mark::Line, 2),
+    ];
+    let x = Axis::linear("residual", &own.y[1]);
+    let drawn = one_panel(x, Axis::linear("count", ""), 150.0, all);
+    let label = format!("Histogram of the residuals of {}", own.y[0]);
+    let caption =
+        html! { strong { (own.y[0]) } ": residuals, and the normal distribution of their RMSE." };
+    small_figure(&drawn, &label, &caption)
+}
+
+/// The correlation of residuals that are 1, 2, ... points apart, with the limits ±2/√n.
+fn correlogram(own: &SolvedSeries) -> Markup {
+    let values = residuals(own);
+    let square: f64 = values.iter().map(|value| value * value).sum();
+    let at = |lag: usize| {
+        let products = values.iter().zip(&values[lag..]).map(|(a, b)| a * b);
+        (lag as f64, products.sum::<f64>() / square)
+    };
+    let all: Vec<(f64, f64)> = (1..=LAGS).map(at).collect();
+    let limit = 2.0 / (values.len() as f64).sqrt();
+    let last = LAGS as f64;
+    let limits = [(0.0, limit), (last, limit), (f64::NAN, f64::NAN), (0.0, -limit), (last, -limit)];
+    let all = vec![series("", &limits, Mark::Dashed, 2), series("", &all, Mark::Stems, 1)];
+    let x = Axis::linear("lag in points", "");
+    let mut drawn = one_panel(x, Axis::linear("autocorrelation", ""), 150.0, all);
+    drawn.panels[0].zero_line = true;
+    let label = format!("Autocorrelation of the residuals of {} up to lag {LAGS}", own.y[0]);
+    let caption = html! { strong { (own.y[0]) } ": autocorrelation; noise lies within ±2/√n." };
+    small_figure(&drawn, &label, &caption)
 }
 
 fn table(view: &View) -> Markup {
@@ -35,9 +122,9 @@ fn table(view: &View) -> Markup {
                     @if sigmas { th scope="col" { "σ of the data" } }
                     th scope="col" { "R²" }
                     th scope="col" { "Runs (expected)" }
-                    th scope="col" { "Probability" }
+                    th scope="col" { "p-value" }
                     th scope="col" { "Autocorrelation" }
-                    th scope="col" { "Findings" }
+                    th scope="col" { "Remarks" }
                 }
             }
             tbody {
@@ -56,10 +143,10 @@ fn row(solution: &Solution, series: &SolvedSeries, (kind, sigmas): (&str, bool))
                 (series.y[0]) (kind)
             }
             td { (series.points.len()) }
-            td { (quantity(series.rmse, 4, &series.y[1])) }
+            td { (engineering(series.rmse, 4, &series.y[1])) }
             @if sigmas {
                 td {
-                    @match series.sigma { Some(sigma) => (quantity(sigma, 4, &series.y[1])), None => "–" }
+                    @match series.sigma { Some(sigma) => (engineering(sigma, 4, &series.y[1])), None => "–" }
                     @if series.sigma_estimated { " (estimated)" }
                 }
             }
@@ -90,7 +177,7 @@ fn reading(solution: &Solution, series: &SolvedSeries) -> Markup {
     html! {
         @if !found.is_empty() { span.bad { (found.join(", ")) } }
         @else if series.residual_test.is_none() { "not tested" }
-        @else { span.good { "no finding" } }
+        @else { span.good { "no remark" } }
     }
 }
 

@@ -42,6 +42,13 @@ fn counts(solution: &Solution) -> Markup {
         .map_or_else(|| "-".to_owned(), |seed| seed.map(|entry| entry.to_string()).join(" "));
     html! {
         dl.facts {
+            div { dt { "Model" } dd { (solution.subject.model) } }
+            div { dt { "Method" } dd { (solution.subject.method) } }
+            @if !solution.subject.operators.is_empty() {
+                div { dt { "Operators" }
+                    dd { @for (kind, label) in &solution.subject.operators { (kind) " " (label) "; " } } }
+            }
+            div { dt { "Stopped" } dd { (solution.outcome.stop) } }
             div { dt { "Generations" } dd { (solution.effort.generations) } }
             div { dt { "Individuals" } dd { (solution.effort.evaluations) ", " (failed) " failed (" (number(share, 2)) "\u{a0}%)" } }
             div { dt { "Simulations" } dd { (solution.effort.simulations) " for the search, " (solution.effort.simulations_for_statistics) " for the standard errors"

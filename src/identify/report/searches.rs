@@ -1,4 +1,4 @@
-//! Where every search with another seed ended, sorted.
+//! Where every search with a different seed ended, sorted.
 
 use super::Section;
 use super::explanations::SEARCHES;

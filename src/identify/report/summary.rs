@@ -9,43 +9,36 @@ pub fn head(view: &View) -> Markup {
     let solution = view.solution;
     let points: usize = solution.series.iter().map(|series| series.points.len()).sum();
     html! {
-        h1 { (solution.subject.title) }
+        h1 { (view.title) }
         @if let Some(error) = solution.script_error() {
             p.lead { strong.bad { (error.sentence()) } }
         }
         p.lead { (verdict(view)) }
-        dl.facts {
-            div { dt { "Model" } dd { (solution.subject.model) } }
-            div { dt { "Objective (" (solution.subject.fitness_name) ")" } dd { (number(solution.fitness, 6)) } }
-            div { dt { "Measured points" } dd { (points) } }
+        p.facts {
+            (points) " data points; objective (" (solution.subject.fitness_name) ") "
+            (number(solution.fitness, 6))
             @if let Some(test) = &solution.likelihood.chi_square {
-                div { dt { "Chi-square (expected)" }
-                    dd { (number(test.value, 4)) " (" (number(test.freedom, 4)) "), probability " (number(test.probability, 2)) } }
+                "; chi-square " (number(test.value, 4)) " for " (number(test.freedom, 4))
+                " degrees of freedom, p-value " (number(test.probability, 2))
             }
-            div { dt { "Method" } dd { (solution.subject.method) } }
-            @if !solution.subject.operators.is_empty() {
-                div { dt { "Operators" }
-                    dd { @for (kind, label) in &solution.subject.operators { (kind) " " (label) "; " } } }
-            }
-            div { dt { "Stopped" } dd { (solution.outcome.stop) } }
         }
+    }
+}
+
+/// What must be known about the numbers.
+pub(super) fn remarks(view: &View) -> Markup {
+    html! {
         @if !view.notes.is_empty() {
-            section aria-labelledby="notes-heading" {
-                h2 #notes-heading { "Important remarks" }
-                ul.notes { @for note in &view.notes { li class=(note.weight) { (note.sentence) } } }
-            }
+            h3 #notes-heading { "Remarks" }
+            ul.notes { @for note in &view.notes { li class=(note.weight) { (note.sentence) } } }
         }
         @if !view.next.is_empty() {
-            section aria-labelledby="next-heading" {
-                h2 #next-heading { "The next measurement" }
-                ul.next { @for sentence in &view.next { li { (sentence) } } }
-            }
+            h3 #next-heading { "The next measurement" }
+            ul.next { @for sentence in &view.next { li { (sentence) } } }
         }
         @for (heading, sentences) in &view.intervals {
-            section {
-                h2 { (heading) }
-                ul.next { @for sentence in sentences { li { (sentence) } } }
-            }
+            h3 { (heading) }
+            ul.next { @for sentence in sentences { li { (sentence) } } }
         }
     }
 }

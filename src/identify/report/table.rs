@@ -3,22 +3,24 @@
 use super::Section;
 use super::explanations::{INTERVAL, STANDARD_ERROR};
 use super::parts::{explained, number, quantity, scrolling};
+use super::summary::remarks;
 use super::view::{View, fraction};
 use crate::problem::{SolvedParameter, Verdict};
 use crate::table::digits_of;
 use maud::{Markup, html};
 
 /// Headings. On a phone, where each row is a block, they stand before the values.
-const COLUMNS: [&str; 6] =
-    ["Parameter", "Value", "95 % interval", "Standard error", "Verdict", "Search range"];
+const COLUMNS: [&str; 5] =
+    ["Parameter", "Value", "95 % interval, search range", "Standard error", "Verdict"];
 
 pub fn section(view: &View) -> Option<Section> {
     let content = html! {
         (scrolling("Estimated parameters", &table(view)))
+        (remarks(view))
         (explained(&INTERVAL))
         (explained(&STANDARD_ERROR))
     };
-    Some(Section { id: "result", heading: "Result", content, wide: true })
+    Some(Section { id: "result", heading: "Result", content, wide: false })
 }
 
 fn table(view: &View) -> Markup {
@@ -42,6 +44,7 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
             Some(ends) => { (interval_in_words(parameter, ends)) }
             None => { "–" }
         }
+        (range(parameter, script.is_none()))
     };
     let cells = [
         html! {
@@ -53,7 +56,6 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
         interval,
         html! { (standard_error(parameter)) },
         verdict(parameter),
-        range(parameter),
     ];
     html! {
         tr role="row" {
@@ -108,13 +110,14 @@ fn verdict(parameter: &SolvedParameter) -> Markup {
 }
 
 /// The ends of the range, and between them where the interval and the value lie.
-fn range(parameter: &SolvedParameter) -> Markup {
+/// `says_scale`: whether the logarithm was searched where the estimate follows it; scripts do not.
+fn range(parameter: &SolvedParameter, says_scale: bool) -> Markup {
     let place = |value: f64| 4.0 + 112.0 * fraction(parameter, value);
     let [low, high] = parameter.interval.unwrap_or([parameter.value; 2]).map(place);
     let value = place(parameter.value);
     html! {
-        span.ends { (number(parameter.range[0], 4)) " to " (number(parameter.range[1], 4))
-            @if parameter.logarithmic { " (log)" }
+        span.ends { "in " (number(parameter.range[0], 4)) " to " (number(parameter.range[1], 4))
+            @if parameter.logarithmic && says_scale { " (log)" }
         }
         svg.strip viewBox="0 0 120 14" aria-hidden="true" {
             line x1="4" x2="116" y1="7" y2="7" stroke="var(--frame)" stroke-width="1.5" {}

@@ -1,9 +1,9 @@
 //! The best values so far over the generations, each within the range that was searched.
 
 use super::Section;
-use super::parts::{axis, number, one_panel, series, small_figure};
+use super::parts::{axis, legend, number, one_panel, series, small_figure};
 use super::view::View;
-use crate::plot::{Axis, Mark};
+use crate::plot::{Axis, Figure, Mark};
 use crate::problem::SolvedParameter;
 use maud::{Markup, html};
 
@@ -15,6 +15,7 @@ pub fn section(view: &View) -> Option<Section> {
     let content = html! {
         details {
             summary { "The best values so far, generation by generation" }
+            (legend(&drawing(&solution.parameters[0], 0, &solution.course.trace)))
             div.figures.small {
                 @for (k, parameter) in solution.parameters.iter().enumerate() {
                     (one(parameter, k, &solution.course.trace))
@@ -26,6 +27,14 @@ pub fn section(view: &View) -> Option<Section> {
 }
 
 fn one(parameter: &SolvedParameter, place: usize, trace: &[Vec<f64>]) -> Markup {
+    let label = format!("{} over the generations", parameter.name);
+    let last = trace.last().and_then(|values| values.get(place)).copied().unwrap_or(f64::NAN);
+    let caption =
+        html! { strong { (parameter.name) } ": the search ends at " (number(last, 5)) "." };
+    small_figure(&drawing(parameter, place, trace), &label, &caption)
+}
+
+fn drawing(parameter: &SolvedParameter, place: usize, trace: &[Vec<f64>]) -> Figure {
     let point = |(k, values): (usize, &Vec<f64>)| Some((k as f64 + 1.0, *values.get(place)?));
     let points: Vec<(f64, f64)> = trace.iter().enumerate().filter_map(point).collect();
     let [low, high] = parameter.range;
@@ -37,8 +46,5 @@ fn one(parameter: &SolvedParameter, place: usize, trace: &[Vec<f64>]) -> Markup 
         series("range", &limits, Mark::Dashed, 2),
         series("best so far", &points, Mark::Line, 1),
     ];
-    let label = format!("{} over the generations", parameter.name);
-    let caption =
-        html! { strong { (parameter.name) } " ends at " (number(parameter.value, 5)) "." };
-    small_figure(&one_panel(Axis::linear("generation", ""), y, 140.0, all), &label, &caption)
+    one_panel(Axis::linear("generation", ""), y, 140.0, all)
 }

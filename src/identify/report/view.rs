@@ -15,6 +15,8 @@ const CHI_SQUARE: f64 = 5.991_464_547_107_98;
 /// What the page shows.
 pub struct View<'a> {
     pub(super) solution: &'a Solution,
+    /// The heading, with the name of the model's class alone.
+    pub(super) title: String,
     /// How the search ended.
     pub(super) ending: Ending<'a>,
     /// What must be known about the numbers, most important first.
@@ -85,6 +87,7 @@ impl View<'_> {
     pub fn of(solution: &Solution) -> View<'_> {
         View {
             solution,
+            title: solution.short_title(),
             ending: ending(solution),
             notes: notes(solution),
             curves: solution
@@ -106,6 +109,11 @@ impl View<'_> {
             next: solution.inferred.next_measurement.iter().flat_map(|n| n.sentences()).collect(),
             intervals: solution.inferred.intervals(),
         }
+    }
+
+    /// The correlation of two estimates, where it is known.
+    pub(crate) fn correlation(&self, first: usize, second: usize) -> Option<f64> {
+        *self.solution.correlations.as_ref()?.get(first)?.get(second)?
     }
 
     /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors: the

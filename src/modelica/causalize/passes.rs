@@ -49,7 +49,7 @@ impl Pass {
 pub const PASSES: &[Pass] = &[
     pass(
         "build",
-        "scalarization: every variable a scalar, relations outside `noEvent` frozen between events",
+        "scalarization: arrays expanded to scalars, relations outside `noEvent` keep their value between events",
         |system| system.lower(),
     ),
     pass("order_parameters", "parameter bindings in order of dependence", |system| {

@@ -25,7 +25,8 @@ fn write_report(sorted: &CausalizedDae, out: &mut String) -> std::fmt::Result {
     writeln!(out, "  parameters {}", count(&|k| matches!(k, VariableKind::Parameter { .. })))?;
     writeln!(out, "  constants {}", count(&|k| matches!(k, VariableKind::Constant(_))))?;
     writeln!(out, "  relations {}", dae.relations.len())?;
-    writeln!(out, "  blocks {}, of these loops {loops}", sorted.blocks.len())?;
+    writeln!(out, "  blocks {}", sorted.blocks.len())?;
+    writeln!(out, "  algebraic loops {loops}")?;
     for (position, alias) in sorted.aliases.iter().enumerate() {
         if let Some(alias) = alias {
             let sign = if alias.negated { "-" } else { "" };

@@ -51,6 +51,12 @@ pub(super) fn report(
     if !parts.over_equations.is_empty() {
         fault = fault.help(over_determined(&parts, &names(&parts.over_unknowns)));
     }
+    if lacks_reference(&parts) {
+        fault = fault.help(
+            "if these are connected components, no potential is fixed: add a ground, or another \
+             component with a reference value, and connect it",
+        );
+    }
     let marked = |list: &[usize]| places(dae, list.iter().map(|e| equations[*e])).into_iter();
     let mut redundant = marked(&parts.over_equations);
     let undetermined = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
@@ -73,6 +79,17 @@ pub(super) fn report(
         diagnostic = diagnostic.related(span, text);
     }
     diagnostic
+}
+
+/// Whether as many equations are left without any unknown as are missing elsewhere: so do circuits
+/// without a ground, whose balance of currents follows from the others while every equation contains
+/// only differences of potentials.
+fn lacks_reference(parts: &DulmageMendelsohn) -> bool {
+    let missing = parts.under_unknowns.len() - parts.under_equations.len();
+    missing > 0
+        && !parts.under_equations.is_empty()
+        && parts.over_unknowns.is_empty()
+        && parts.over_equations.len() == missing
 }
 
 /// What to do about the part with fewer equations than unknowns.

@@ -28,7 +28,7 @@ crate::codes! {
          ## What to do\nGive the variables listed `start` values near the solution.",
     /// Equations that depend on each other and leave unknowns open.
     UNDETERMINED = "undetermined":
-        "## What it means\nThe model has as many equations as unknowns, but some equations follow from others, so they do not determine the unknowns listed. The equations are consistent, and the simulation continues. For a linear loop it uses the solution of minimum norm: in all unknowns of the loop (equal unknowns count once) if the loop is singular with the default parameters and not only temporarily, otherwise in its tearing variables. For a nonlinear loop at the start it uses the solution near the start values.\n\n\
+        "## What it means\nThe model has as many equations as unknowns, but some equations follow from others, so they do not determine the unknowns listed. The equations are consistent, and the simulation continues. Of the solutions of a linear loop, it uses the one with the smallest values (minimum norm); of those of a nonlinear loop at the start, one near the start values.\n\n\
          ## Example\n`a + b = 1; 2*a + 2*b = 2;` holds for any `a`.\n\n\
          ## What to do\nReplace the redundant equation by one that determines the unknowns: a ground, a reference value, another load path. Until then, the values of the unknowns listed, and all values that depend on them, are meaningless.",
     /// A variable that the model does not have.

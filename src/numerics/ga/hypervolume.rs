@@ -4,7 +4,7 @@
 //!
 //! Reference: [Deb et al. 2002](gapilib_base::bibliography#deb-2002) (the fronts).
 
-/// The hypervolume of points with `m` objectives each, all minimised; points beyond the reference
+/// The hypervolume of points with `m` objectives each, all minimized; points beyond the reference
 /// count nothing.
 pub fn hypervolume(objectives: &[f64], m: usize, reference: &[f64]) -> f64 {
     let points: Vec<&[f64]> = objectives

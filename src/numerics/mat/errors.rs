@@ -11,7 +11,7 @@ codes! {
         "## What it means\n\nThe file format is not supported: Octave's text or HDF5 format, or a version 4 file with VAX or Cray numbers. Nothing was read from it.\n\n## Example\n\nOctave's `save -text data.mat x y`\n\n## What to do\n\nSave the data in version 7: `save -v7 data.mat x y`, or as CSV.",
     /// A matrix that the file does not hold.
     UNKNOWN_MATRIX = "unknown-matrix":
-        "## What it means\n\nThe file does not contain a matrix (or, in a CSV file, a column) of this name.\n\n## Example\n\n`readMatrix(\"data.mat\", \"curent\")` of a file with `current` and `voltage`\n\n## What to do\n\nUse one of the names that the message lists. Names are case-sensitive; fields of a structure are written with dots, as in `run.current`.",
+        "## What it means\n\nThe file does not contain a matrix (or, in a CSV file, a column) of this name.\n\n## Example\n\n`readMatrix(\"data.mat\", \"curent\")` for a file with `current` and `voltage`\n\n## What to do\n\nUse one of the names that the message lists. Names are case-sensitive; fields of a structure are written with dots, as in `run.current`.",
     /// A variable that is there and cannot be a matrix.
     UNREADABLE_MATRIX = "unreadable-matrix":
         "## What it means\n\nThe file contains a variable of this name, but it is not a real matrix: complex, sparse, an object, an array of more than two dimensions, or a cell array or an array of structures as a whole.\n\n## Example\n\n`save -v7 data.mat z` with `z = 1 + 2i`\n\n## What to do\n\nConvert the variable before saving: `real(z)` and `imag(z)`, `full(s)`, or `squeeze(a(:, :, 1))`. Name an element of a cell array, `c{1}`, or of an array of structures, `run(1).t`.",

@@ -1,7 +1,7 @@
 //! Matrices in files: MAT versions 4, 5, 7 and 7.3, text in the `#1` format, tables (CSV and what
 //! instruments write), XLSX.
 //!
-//! [`read`] recognises the format by content, [`read_named`] also tables, of which [`read_csv`]
+//! [`read`] recognizes the format by content, [`read_named`] also tables, of which [`read_csv`]
 //! reads those that hold numbers alone; all return a [`MatFile`] of real matrices by name. [`write_v4`] and [`write_v5`] make files.
 //!
 //! What cannot be a real matrix is skipped, with a warning that names it, and asking for it is a

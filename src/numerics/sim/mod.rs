@@ -2,7 +2,7 @@
 //! Knows nothing of Modelica.
 //!
 //! ```text
-//! initialise, record
+//! initialize, record
 //! until the end:
 //!     make a step of the integrator, not beyond the next time event
 //!     find the first change of sign of a crossing function within the step

@@ -73,7 +73,7 @@ mod tests {
     use crate::lessons::all;
 
     #[test]
-    fn what_is_written_in_other_ways_is_recognised() {
+    fn what_is_written_in_other_ways_is_recognized() {
         let of = |number: usize, old: &str, new: &str| {
             let lesson = &all()[number - 1];
             assert!(lesson.text.contains(old), "{old}");

@@ -22,11 +22,19 @@ pub fn report(session: &mut Session, model: &Translated) -> String {
     format!("{name}\n  classes read {classes}\n  unknowns {unknowns}\n{rest}")
 }
 
-/// The counts of a report in one line.
+/// The counts of a report in one line: `2 unknowns, 1 state, 2 equations, 2 blocks, no algebraic loops`.
+/// What there is none of is left out, but for the loops.
 pub fn summary(session: &mut Session, model: &Translated) -> String {
     let report = report(session, model);
     let counts = report.lines().skip(2).take_while(|line| line.starts_with("  "));
-    counts.map(str::trim).collect::<Vec<_>>().join(", ")
+    let counts = counts.filter_map(|line| match line.trim().rsplit_once(' ')? {
+        (what @ "algebraic loops", "0") => Some(format!("no {what}")),
+        (_, "0") => None,
+        ("aliases", "1") => Some("1 alias".to_owned()),
+        (what, "1") => Some(format!("1 {}", what.trim_end_matches('s'))),
+        (what, count) => Some(format!("{count} {what}")),
+    });
+    counts.collect::<Vec<_>>().join(", ")
 }
 
 /// The flat model of a class, which may carry a modification.

@@ -65,7 +65,7 @@ pub struct Simulated {
     pub table: ResultTable,
     /// What it cost.
     pub statistics: Statistics,
-    /// What made it work, if that was asked for.
+    /// What cost the most effort, if that was asked for.
     pub hardest: Option<Hardest>,
 }
 

@@ -39,7 +39,8 @@ fn systems_and_functions_give_the_same_bytes_as_the_interpreter() {
         let text = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(done.status.success(), "{text}");
         let said = format!("{text}{}", String::from_utf8_lossy(&done.stdout));
-        let evaluations = said.split(", ").find_map(|part| part.strip_suffix(" right-hand sides"));
+        let evaluations =
+            said.split(", ").find_map(|part| part.strip_suffix(" right-hand side evaluations"));
         // Machine code is made after a thousand.
         let evaluations: u32 = evaluations.and_then(|n| n.parse().ok()).expect("a count");
         assert!(evaluations > 3000, "{said}");

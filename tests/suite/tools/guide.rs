@@ -114,6 +114,11 @@ fn every_example_of_the_guide_does_what_it_says() {
         .filter_map(|line| Some(line.split_once("](")?.1.trim_end_matches(')')))
         .collect();
     assert!(chapters.len() >= 20, "{chapters:?}");
+    let with_pictures = chapters.iter().filter(|chapter| {
+        let text = std::fs::read_to_string(project("docs/src").join(chapter)).unwrap();
+        text.lines().any(|line| line.starts_with("!["))
+    });
+    assert!(with_pictures.count() >= 20, "a chapter that shows something has a picture");
     for chapter in chapters {
         let mut text = std::fs::read_to_string(project("docs/src").join(chapter)).unwrap();
         let here = folder(&[]);
@@ -246,6 +251,29 @@ fn the_example_of_the_readme_is_true() {
     if is_update() {
         std::fs::write(project("README.md"), readme.replace(&shown, &anew)).unwrap();
     }
+}
+
+/// The first picture of the README is that of the problem whose data it shows; the second is compared
+/// with the chapter that makes it.
+#[test]
+fn the_pictures_of_the_readme_are_those_of_the_program() {
+    let here = folder(&[]);
+    let problem = project("scripts/problems/polarization.toml");
+    let data = format!("--allow-read={}", project("scripts").display());
+    let problem = problem.to_str().unwrap();
+    let arguments = ["identify", problem, &data, "--plain", "--out", "results"];
+    let (code, _, errors) = gapi(&here, &arguments);
+    assert_eq!(code, 0, "{errors}");
+    let made = std::fs::read_to_string(here.path().join("results/fit.svg")).unwrap();
+    if is_update() {
+        std::fs::write(project("docs/fit.svg"), &made).unwrap();
+    }
+    let shown = std::fs::read_to_string(project("docs/fit.svg")).unwrap();
+    assert!(shown == made, "docs/fit.svg is not what `gapi identify` makes");
+    let readme = std::fs::read_to_string(project("README.md")).unwrap();
+    let chapter = std::fs::read_to_string(project("docs/src/genetic_algorithm.md")).unwrap();
+    assert!(readme.contains("(docs/src/figures/population.svg)"));
+    assert!(chapter.contains("(figures/population.svg \""));
 }
 
 #[test]

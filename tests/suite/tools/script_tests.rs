@@ -184,7 +184,7 @@ fn scripts_are_read_without_being_run() {
         ("data.mos", "#1\ndouble dat(2,2)\n1 2\n3 4\n"),
     ]);
     let (code, out, errors) = gapi(&here, &["run", "--parse-only", "."]);
-    assert_eq!((code, out.trim()), (1, "1 accepted, 1 rejected, 1 recognised as data"));
+    assert_eq!((code, out.trim()), (1, "1 accepted, 1 rejected, 1 recognized as data"));
     assert!(errors.contains("unclosed-bracket"), "{errors}");
 }
 

@@ -83,7 +83,7 @@ fn nothing_is_echoed_where_nothing_is_wanted() {
 }
 
 #[test]
-fn the_dialect_is_recognised_or_given() {
+fn the_dialect_is_recognized_or_given() {
     let dialect = |options, script| run(MemoryWorld::new(), options, script).2.dialect();
     let usual = Options::default();
     assert_eq!(dialect(usual, "x = 1"), Dialect::Dymola);

@@ -1,6 +1,8 @@
 //! The prompt, as a user meets it at a terminal: what is pasted and typed ahead, Ctrl-C and Ctrl-D.
 
+use crate::support::guide::blocks;
 use crate::support::program::{command, folder};
+use crate::support::shipped::project;
 use rexpect::session::{PtySession, spawn_command};
 use tempfile::TempDir;
 
@@ -80,7 +82,7 @@ fn the_banner_names_help_and_the_dialect() {
 }
 
 #[test]
-fn a_call_of_the_other_dialect_is_recognised() {
+fn a_call_of_the_other_dialect_is_recognized() {
     let mut prompt = Prompt::new();
     prompt.line("loadString(\"model A end A;\")");
     prompt.expect("this looks like OpenModelica; `:dialect openmodelica`");
@@ -191,6 +193,80 @@ fn shown(here: &TempDir, arguments: &[&str]) -> String {
     // It gives every byte as a character.
     let shown = shown.chars().map(|c| u8::try_from(u32::from(c)).expect("a byte")).collect();
     String::from_utf8(shown).expect("UTF-8")
+}
+
+/// The files of the guide's first fit, whose lines are longer than a terminal's.
+fn first_fit() -> TempDir {
+    let chapter = std::fs::read_to_string(project("docs/src/first_fit.md")).unwrap();
+    let toml = std::fs::read_to_string(project("docs/src/every_number.md")).unwrap();
+    let all = blocks(&chapter).into_iter().chain(blocks(&toml));
+    let here = folder(&[]);
+    for (kind, text) in all {
+        if let Some((_, name)) = kind.split_once(",file=") {
+            std::fs::write(here.path().join(name), text).unwrap();
+        }
+    }
+    here
+}
+
+/// The lines as they stand at last, without colours and movements of the cursor.
+fn lines(shown: &str) -> Vec<String> {
+    let erased = regex::Regex::new("\u{1b}\\[[0-9]*K").unwrap().replace_all(shown, "\r");
+    let sequence = regex::Regex::new("\u{1b}\\[[0-9;?]*[A-Za-z]").unwrap();
+    let plain = sequence.replace_all(&erased, "").replace("\r\n", "\n");
+    plain.lines().map(|line| line.rsplit('\r').next().unwrap_or_default().to_owned()).collect()
+}
+
+/// A terminal breaks longer lines where they end, in the middle of a number.
+#[test]
+fn what_the_program_says_fits_into_eighty_columns() {
+    let here = first_fit();
+    let reference = "time,v\n0,10\n8,2\n";
+    std::fs::create_dir_all(here.path().join("references/Discharge")).unwrap();
+    std::fs::write(here.path().join("references/Discharge/Discharge.csv"), reference).unwrap();
+    for (arguments, code) in [
+        (&["identify", "discharge.toml", "--plain", "--profile"][..], 0),
+        (&["run", "fit.mos", "--plain"], 0),
+        (&["check", "Discharge.mo", "--model", "Discharge"], 0),
+        (&["simulate", "Discharge.mo", "--stats", "--set", "tau=4"], 0),
+        (&["teach", "fit.mos", "--plain", "--generation", "2"], 0),
+        (&["verify", "Discharge.mo", "--references", "references"], 1),
+        (&["compare", "--help"], 0),
+        (&["identify", "a_file_that_is_missing_and_has_a_long_name.toml"], 1),
+    ] {
+        let long = lines(&shown(&here, arguments));
+        let long: Vec<&String> = long.iter().filter(|line| line.chars().count() > 80).collect();
+        assert_eq!(long, Vec::<&String>::new(), "{arguments:?}");
+        let output = command(here.path(), arguments).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+    }
+}
+
+/// On a terminal the words are those of a file, in other lines.
+#[test]
+fn a_report_has_all_its_words_on_a_terminal() {
+    let here = first_fit();
+    let arguments = &["identify", "discharge.toml", "--plain", "--profile"];
+    let words = |lines: &[String]| {
+        let mut words: Vec<String> =
+            lines.iter().flat_map(|line| line.split_whitespace()).map(str::to_owned).collect();
+        words.sort_unstable();
+        words
+    };
+    let on_terminal = lines(&shown(&here, arguments));
+    assert!(
+        on_terminal.iter().any(
+            |line| line == "  parameter  value   unit  standard error  95 % interval     range"
+        )
+    );
+    let output = command(here.path(), arguments).output().expect("it runs").stdout;
+    let kept = String::from_utf8(output).expect("UTF-8");
+    assert!(
+        kept.lines().any(|line| line.chars().count() > 80),
+        "nothing was to be laid out: {kept}"
+    );
+    let kept: Vec<String> = kept.lines().map(str::to_owned).collect();
+    assert_eq!(words(&on_terminal), words(&kept));
 }
 
 /// What a script prints is text for a terminal, not commands; elsewhere it is kept as it is.

@@ -95,7 +95,7 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
     }
     if !weighed.is_empty() && problem.objectives[0].0 != "sum_of_squares" {
         bail!(BAD_OPTION, "`{}` cannot be weighted against a \
-                           prior", problem.objectives[0].0; help: "minimise `sum_of_squares`");
+                           prior", problem.objectives[0].0; help: "minimize `sum_of_squares`");
     }
     for prior in &weighed {
         problem.series.push(pseudo_series(problem, prior)?);

@@ -292,7 +292,7 @@ impl Bootstrap {
             }
             let [low, high] = p.interval.map(|end| significant(end, 4));
             format!(
-                "{} in {low} .. {high}, standard deviation {}, bias {}",
+                "{} in {low} to {high}, standard deviation {}, bias {}",
                 p.name,
                 significant(p.sd, 2),
                 significant(p.bias, 2)

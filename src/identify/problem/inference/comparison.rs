@@ -93,7 +93,7 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
     let mut models = Vec::new();
     for (name, solution) in solutions {
         let likelihood = solution.inferred.likelihood.ok_or_else(|| {
-            fault!(BAD_OPTION, "`{name}` minimises `{}`, which is not the likelihood of normal errors", solution.subject.fitness_name; help: "minimise `sum_of_squares`")
+            fault!(BAD_OPTION, "`{name}` minimizes `{}`, which is not the likelihood of normal errors", solution.subject.fitness_name; help: "minimize `sum_of_squares`")
         })?;
         let ending = &solution.outcome.ending;
         let no_minimum =

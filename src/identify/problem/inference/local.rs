@@ -46,7 +46,7 @@ pub struct Local {
     pub freedom: f64,
     /// Whether the standard deviations of the measurements are known, so that the variance is 1.
     pub known: bool,
-    /// Whether the fit minimises a robust loss: the variance is then that of its estimates, and not
+    /// Whether the fit minimizes a robust loss: the variance is then that of its estimates, and not
     /// that of a measurement.
     pub(crate) robust: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.

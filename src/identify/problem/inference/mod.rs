@@ -133,7 +133,7 @@ impl Inferred {
         if local.robust {
             if requested.bootstrap.is_some() || requested.posterior.is_some() {
                 parts.refusals.push(format!(
-                    "There is no bootstrap and no posterior for the robust loss `{}`: minimise \
+                    "There is no bootstrap and no posterior for the robust loss `{}`: minimize \
                      `sum_of_squares` instead.",
                     run.problem.objectives[0].0
                 ));
@@ -228,7 +228,10 @@ impl Solution {
         }
         let steps = self.parameters.iter().find(|own| own.in_steps);
         if let Some(own) = steps {
-            return Some(format!("{} acts in steps, or its derivative vanishes", own.name));
+            return Some(format!(
+                "{} has a step-wise effect, or its derivative vanishes",
+                own.name
+            ));
         }
         let mut all = self.parameters.iter().zip(&self.grounds.flat);
         let flat = all.find(|(own, is_flat)| own.by_profile && !own.at_bound && **is_flat);

@@ -1,4 +1,4 @@
-//! Outliers: externally studentised residuals of the linearised problem, one point after the other
+//! Outliers: externally studentized residuals of the linearized problem, one point after the other
 //! left out, so that two outliers do not hide each other.
 //!
 //! ```text
@@ -21,8 +21,8 @@ const PART: f64 = 0.2;
 pub(in super::super) struct Outlier {
     /// Its place.
     pub point: usize,
-    /// Its studentised residual without it.
-    pub(crate) studentised: f64,
+    /// Its studentized residual without it.
+    pub(crate) studentized: f64,
     /// Probability of one as large by chance among all points.
     pub probability: f64,
 }
@@ -49,14 +49,14 @@ pub(in super::super) fn outliers(
     found
 }
 
-/// The largest studentised residual of the points in `kept`.
+/// The largest studentized residual of the points in `kept`.
 fn largest(jacobian: &[Vec<f64>], residuals: &[f64], kept: &[usize]) -> Option<Outlier> {
     let basis = basis(jacobian, kept);
     let rank = basis.ncols();
     let freedom = kept.len().checked_sub(rank + 1).filter(|freedom| *freedom >= 2)? as f64;
     let rest = beside(&basis, residuals, kept);
     let square = rest.norm_squared();
-    let studentised = |j: usize| {
+    let studentized = |j: usize| {
         let free = 1.0 - basis.row(j).norm_squared();
         if free < 1e-8 {
             return 0.0;
@@ -64,10 +64,10 @@ fn largest(jacobian: &[Vec<f64>], residuals: &[f64], kept: &[usize]) -> Option<O
         let without = (square - rest[j] * rest[j] / free).max(0.0) / freedom;
         if without > 0.0 { rest[j] / (without * free).sqrt() } else { 0.0 }
     };
-    let all: Vec<f64> = (0..kept.len()).map(studentised).collect();
+    let all: Vec<f64> = (0..kept.len()).map(studentized).collect();
     let worst = (0..all.len()).max_by(|a, b| all[*a].abs().total_cmp(&all[*b].abs()))?;
     let probability = (kept.len() as f64 * student_two_sided(all[worst], freedom)).min(1.0);
-    Some(Outlier { point: kept[worst], studentised: all[worst], probability })
+    Some(Outlier { point: kept[worst], studentized: all[worst], probability })
 }
 
 /// The residuals of the points in `kept` when the parameters are fitted to these alone.
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(found, [5, 6]);
     }
 
-    /// The studentised residual of the textbook: the shift of a mean with a dummy for the point.
+    /// The studentized residual of the textbook: the shift of a mean with a dummy for the point.
     #[test]
     fn one_outlier_has_the_t_value_of_its_dummy_variable() {
         let (mut jacobian, mut r) = line();
@@ -155,7 +155,7 @@ mod tests {
         let last = basis.column(2);
         let shift = last.dot(&own) / last[39];
         assert_eq!(found.point, 39);
-        assert!((found.studentised - shift / se).abs() < 1e-9, "{found:?} {}", shift / se);
+        assert!((found.studentized - shift / se).abs() < 1e-9, "{found:?} {}", shift / se);
     }
 
     #[test]

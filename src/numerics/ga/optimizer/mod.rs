@@ -87,7 +87,7 @@ pub struct Answers<'a> {
     pub objectives: &'a [f64],
     /// Objectives of one individual, at least 1.
     pub n_objectives: usize,
-    /// Residuals, individual by individual, whose sum of squares is minimised; empty unless asked
+    /// Residuals, individual by individual, whose sum of squares is minimized; empty unless asked
     /// for. NaN for a failed individual.
     pub residuals: &'a [f64],
     /// Derivatives of the residuals by the genes, individual by individual, residuals × genes;
@@ -149,7 +149,7 @@ pub trait Method: Send + Sync {
     fn in_natural_units(&self) -> bool {
         false
     }
-    /// Whether it needs residuals, so that only sums of squares can be minimised.
+    /// Whether it needs residuals, so that only sums of squares can be minimized.
     fn needs_residuals(&self) -> bool {
         false
     }

@@ -53,7 +53,7 @@ pub(crate) const SELECTIONS: &[&Entry<dyn Selection>] = &[
 /// Probabilities in proportion to how much better than the worst an individual is; where all are
 /// equal, or have failed, each is as likely as the others.
 ///
-/// Fitness is minimised, so that it cannot be the probability itself. The worst that has not failed
+/// Fitness is minimized, so that it cannot be the probability itself. The worst that has not failed
 /// is the reference (windowing, [Goldberg 1989](gapilib_base::bibliography#goldberg-1989)).
 fn proportionate(fitness: &[f64]) -> Vec<f64> {
     let succeeded = || fitness.iter().copied().filter(|&fitness| !has_failed(fitness));

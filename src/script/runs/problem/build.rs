@@ -274,7 +274,7 @@ fn likelihood_alone(
     if !allowed {
         bail!(
             BAD_OPTION,
-            "`sigma = \"estimate\"` minimises the negative log-likelihood and cannot be combined \
+            "`sigma = \"estimate\"` minimizes the negative log-likelihood and cannot be combined \
              with another fitness";
             help: "remove `fitness`, or give sigmas as numbers"
         );

@@ -2,7 +2,7 @@
 //! ([`matching`](super::matching)), ranges are guessed from the model and the data.
 
 use super::matching::{self, DataColumn, Meaning};
-use super::{build, file};
+use super::{build, fault_codes, file};
 use crate::Session;
 use crate::bail;
 use crate::codegen::ParameterInfo;
@@ -28,6 +28,8 @@ pub struct DraftOptions {
     pub models: String,
     /// The class; empty for the only one of the file.
     pub class: String,
+    /// The answer to the question that a draft without it leaves open.
+    pub output: Option<String>,
 }
 
 /// A draft and what is left to do.
@@ -37,6 +39,17 @@ pub struct Draft {
     pub text: String,
     /// Why it cannot be run as it is; none where it can.
     pub incomplete: Option<String>,
+    /// What only the user can know.
+    pub question: Option<Question>,
+}
+
+/// Which of several variables a column holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Question {
+    /// The column.
+    pub column: String,
+    /// The variables that come into question, the one that was taken first.
+    pub candidates: Vec<String>,
 }
 
 /// Which columns mean what.
@@ -73,9 +86,13 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
         "" => build::only_class(&loaded).map_err(one)?,
         class => class.to_owned(),
     };
-    let translated = simulation::translated(session, &class)?;
+    // Its warnings come once more with the data, without those about inputs that have data then.
+    let is_quiet = std::mem::replace(&mut session.options.quiet, true);
+    let translated = simulation::translated(session, &class);
+    session.options.quiet = is_quiet;
+    let translated = translated?;
     let flat = simulation::flat_model_of(session, &translated)?;
-    let roles = roles(&columns, &translated, flat);
+    let (roles, question) = roles(&columns, &translated, flat, options.output.as_deref());
     let mut text = head(options, &class);
     parameters(&mut text, &translated, flat, &roles);
     experiment(&mut text, options, flat, &roles);
@@ -85,7 +102,7 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
          stagnation = 500             # generations without improvement\n",
     );
     let incomplete = check(session, &text);
-    Ok(Draft { text, incomplete })
+    Ok(Draft { text, incomplete, question })
 }
 
 /// The columns of numbers by their shortest names.
@@ -96,7 +113,8 @@ fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
         for name in parts(name, matrix) {
             let column = table.column(&name)?;
             let name = table.short_name(&name).to_owned();
-            found.push(DataColumn { name, unit: column.about.unit, values: column.values });
+            let codes = fault_codes::of(&column);
+            found.push(DataColumn { name, unit: column.about.unit, values: column.values, codes });
         }
     }
     if found.len() < 2 {
@@ -122,7 +140,13 @@ fn parts(name: &str, matrix: &Matrix) -> Vec<String> {
     }
 }
 
-fn roles<'c>(columns: &'c [DataColumn], model: &Translated, flat: &FlatModel) -> Roles<'c> {
+/// The columns by what they mean, and what remains to be asked; `output` is what was answered.
+fn roles<'c>(
+    columns: &'c [DataColumn],
+    model: &Translated,
+    flat: &FlatModel,
+    output: Option<&str>,
+) -> (Roles<'c>, Option<Question>) {
     let states: Vec<&str> = model.state_names().map(|name| &**name).collect();
     let meanings = matching::meanings(columns, flat, &states);
     let pairs = || columns.iter().zip(&meanings);
@@ -151,27 +175,38 @@ fn roles<'c>(columns: &'c [DataColumn], model: &Translated, flat: &FlatModel) ->
         let assigned = Assigned { variable, column, doubt };
         if is_input { &mut roles.inputs } else { &mut roles.outputs }.push(assigned);
     }
-    if roles.outputs.is_empty() {
-        guess_output(&mut roles, flat, &states);
-    }
-    roles
+    let question = match roles.outputs.is_empty() {
+        true => guess_output(&mut roles, flat, &states, output),
+        false => None,
+    };
+    (roles, question)
 }
 
-/// Where no column means an output: the output or state that begins nearest to a column.
-fn guess_output(roles: &mut Roles<'_>, flat: &FlatModel, states: &[&str]) {
+/// Where no column means an output: the output or state that begins nearest to a column, or the one
+/// that was chosen; and the question where several come into question.
+fn guess_output(
+    roles: &mut Roles<'_>,
+    flat: &FlatModel,
+    states: &[&str],
+    chosen: Option<&str>,
+) -> Option<Question> {
     let candidates: Vec<&DataColumn> =
         roles.unused.iter().copied().filter(|column| !column.is_time(flat)).collect();
-    let Some((names, at)) = matching::output_by_start(&candidates, flat, states) else { return };
-    let Some(column) = candidates.get(at).copied() else { return };
+    let (names, at) = matching::output_by_start(&candidates, flat, states)?;
+    let column = candidates.get(at).copied()?;
+    roles.unused.retain(|unused| unused.name != column.name);
+    if let Some(chosen) = names.iter().find(|name| Some(name.as_str()) == chosen) {
+        roles.outputs.push(Assigned { variable: chosen.clone(), column, doubt: None });
+        return None;
+    }
     let mut doubt = "a guess: its start value is the nearest to the first value".to_owned();
-    if let [_, others @ ..] = names.as_slice()
-        && !others.is_empty()
-    {
-        let others: Vec<&str> = others.iter().map(String::as_str).collect();
+    let others: Vec<&str> = names[1..].iter().map(String::as_str).collect();
+    if !others.is_empty() {
         _ = write!(doubt, "; it may also be {}", listed(&others));
     }
-    roles.unused.retain(|unused| unused.name != column.name);
     roles.outputs.push(Assigned { variable: names[0].clone(), column, doubt: Some(doubt) });
+    let question = Question { column: column.name.clone(), candidates: names.clone() };
+    (names.len() > 1).then_some(question)
 }
 
 fn head(options: &DraftOptions, class: &str) -> String {
@@ -366,11 +401,15 @@ fn columns_of(text: &mut String, table: &str, columns: &[Assigned<'_>], flat: &F
 /// The range of a column with its unit, and how many values are missing.
 fn span(column: &DataColumn) -> String {
     let finite = || column.values.iter().copied().filter(|value| value.is_finite());
+    let known = || column.known();
     let (low, high) =
-        (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
     let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
     let missing = column.values.len() - finite().count();
-    let gaps = if missing > 0 { format!(", {missing} missing") } else { String::new() };
+    let mut gaps = if missing > 0 { format!(", {missing} missing") } else { String::new() };
+    for code in &column.codes {
+        _ = write!(gaps, ", {code} like the fault code of an instrument");
+    }
     match finite().next() {
         Some(_) => {
             format!("{} values from {low} to {high}{unit}{gaps}", column.values.len() - missing)

@@ -23,22 +23,27 @@ const ABRUPT: f64 = 0.5;
 
 /// Sentences about codes that are used as numbers, in the rows of a column.
 pub(in crate::runs) fn codes(name: &str, column: &Column) -> Vec<String> {
+    let others: Vec<_> = column.known().filter(|(_, v)| !CODES.contains(v)).collect();
+    let Some([low, high]) = ends(&others) else { return Vec::new() };
+    let sentence = |code: f64| {
+        let coded: Vec<_> = column.known().filter(|(_, v)| *v == code).collect();
+        format!(
+            "{code} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
+             the fault code of an instrument, leave the cells empty; it is used as a value",
+            places(column, &coded)
+        )
+    };
+    of(column).into_iter().map(sentence).collect()
+}
+
+/// The codes among the values of a column: those that are far from all values that are none.
+pub(in crate::runs) fn of(column: &Column) -> Vec<f64> {
     // One code must not hide another: 9999 for a short circuit beside -9999 for an open one.
     let (suspects, others): (Vec<_>, Vec<_>) = column.known().partition(|(_, v)| CODES.contains(v));
-    let sentence = |code: f64| {
-        let coded: Vec<_> = suspects.iter().copied().filter(|(_, v)| *v == code).collect();
-        let [low, high] = ends(&others)?;
-        let distance = (code - high).max(low - code);
-        let is_far = !coded.is_empty() && others.len() > 1 && distance > BEYOND * (high - low);
-        is_far.then(|| {
-            format!(
-                "{code} in {} of `{name}` is far from the other values, {low} to {high}: if it is \
-                 the fault code of an instrument, leave the cells empty; it is used as a value",
-                places(column, &coded)
-            )
-        })
-    };
-    CODES.iter().filter_map(|code| sentence(*code)).collect()
+    let Some([low, high]) = ends(&others).filter(|_| others.len() > 1) else { return Vec::new() };
+    let is_far = |code: f64| (code - high).max(low - code) > BEYOND * (high - low);
+    let occurs = |code: f64| suspects.iter().any(|(_, value)| *value == code);
+    CODES.into_iter().filter(|code| is_far(*code) && occurs(*code)).collect()
 }
 
 /// A sentence about each end of the values at which a measured signal may have been cut off.

@@ -30,7 +30,7 @@ pub(super) struct ProblemFile {
     #[serde(default)]
     pub stop: StopEntry,
     pub seed: Option<[f64; 6]>,
-    /// How often to search, each time with another seed.
+    /// Number of searches with different seeds.
     pub searches: Option<usize>,
     #[serde(default)]
     pub checkpoint: CheckpointEntry,

@@ -11,6 +11,8 @@ pub(super) struct DataColumn {
     pub name: String,
     pub unit: Option<String>,
     pub values: Vec<f64>,
+    /// Values that are like the fault codes of instruments.
+    pub codes: Vec<f64>,
 }
 
 /// What a column means.
@@ -75,8 +77,10 @@ const TIME: [&str; 11] = [
 ];
 
 impl DataColumn {
-    fn known(&self) -> impl Iterator<Item = f64> {
-        self.values.iter().copied().filter(|value| value.is_finite())
+    /// Its values, without missing ones and fault codes.
+    pub(super) fn known(&self) -> impl Iterator<Item = f64> {
+        let is_known = |value: &f64| value.is_finite() && !self.codes.contains(value);
+        self.values.iter().copied().filter(is_known)
     }
 
     /// The first value and the range of all.

@@ -56,7 +56,7 @@ use crate::sim::TimeBudget;
 use crate::source::Span;
 use crate::value::RecordValue;
 use crate::{bail, fault};
-pub use draft::{Draft, DraftOptions, draft};
+pub use draft::{Draft, DraftOptions, Question, draft};
 pub use driven::{Driven, driven};
 pub use shards::{Division, read_shards};
 
@@ -100,7 +100,7 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
-    /// How often to search, each time with another seed; the best counts.
+    /// Number of searches with different seeds; the best result is kept.
     pub searches: Option<usize>,
     /// Whether the study is divided into shards.
     pub division: Division,

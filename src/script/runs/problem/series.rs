@@ -269,6 +269,9 @@ fn note_unit_of_sigma(
     notes: &mut Notes,
 ) {
     if let (true, Some(SigmaEntry::Number(sigma))) = (measured.factor != 1.0, &requested.sigma) {
-        notes.add(format!("the sigma column {sigma} of `{y_name}` is in {}", in_words(unit)));
+        notes.add(format!(
+            "`sigma = {sigma}` of `{y_name}` is in {}, the unit of the model",
+            in_words(unit)
+        ));
     }
 }

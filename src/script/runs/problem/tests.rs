@@ -155,7 +155,7 @@ fn what_is_wrong_is_told() {
     assert!(refusal(&slow, data).contains("populatin"));
     let two = SIMPLE.replace("[stop]", "[method]\nname = \"lshade\"\n[stop]");
     let two = format!("fitness = [\"sse\", \"mae\"]\n{two}");
-    assert!(refusal(&two, data).contains("minimises one fitness function"));
+    assert!(refusal(&two, data).contains("minimizes one fitness function"));
 }
 
 #[test]

@@ -373,7 +373,7 @@ impl Posterior {
         sentences.extend(self.parameters.iter().map(|p| {
             let [low, _, median, _, high] = p.quantiles.map(|q| significant(q, 4));
             format!(
-                "{} = {median} in {low} .. {high}, R-hat {}, bulk ESS {}, tail ESS {}",
+                "{} = {median} in {low} to {high}, R-hat {}, bulk ESS {}, tail ESS {}",
                 p.name,
                 number(p.r_hat, 4),
                 number(p.bulk_ess, 3),
