@@ -156,8 +156,8 @@ mod tests {
     #[test]
     fn values_wrap_below_themselves() {
         let text = "  model    Decay\n  ending   Minimum found, reached by 5 of 5 descents.\n";
-        let expected = "  model    Decay\n  ending   Minimum found,\n           reached by 5 of\n           \
-                        5 descents.\n";
+        let expected = "  model    Decay\n  ending   Minimum found,\n           reached by 5 of 5\n           \
+                        descents.\n";
         assert_eq!(fitted(text, 28), expected);
     }
 

@@ -191,6 +191,7 @@ fn recorded(
         return Err(Trouble::Reported(session::failed(&mut session, vec![error])));
     }
     let status = session.run_file(&arguments.input);
+    session.world.end_view();
     if status.code != 0 && !status.interrupted {
         return Err(Trouble::Reported(status.code.into()));
     }

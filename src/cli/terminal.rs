@@ -115,6 +115,7 @@ impl Screen for Terminal {
     }
 
     fn end_view(&mut self) {
+        self.finish_progress();
         self.live.close();
         for (out, text) in std::mem::take(&mut self.kept) {
             if out { self.print_of_script(&text) } else { self.eprint(&text) }
@@ -193,7 +194,6 @@ impl Screen for Terminal {
 /// What was said while a run was drawn is said although the run ended otherwise.
 impl Drop for Terminal {
     fn drop(&mut self) {
-        self.finish_progress();
         self.end_view();
     }
 }

@@ -22,5 +22,5 @@ pub use draw::{power, prefixed, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
 pub use matrix::Matrix;
 pub use picture::Picture;
-pub use ready::{Comparison, MANY, convergence, fit, most, of_points, of_residuals};
+pub use ready::{Comparison, MANY, convergence, fit, of_points, of_residuals, undrowned};
 pub use svg::{Anchor, Letters, Svg, Writing};

@@ -84,9 +84,13 @@ pub fn fit(data: &Comparison) -> Figure {
     }
 }
 
-/// The largest fitness that is drawn where the search began with this best one.
-pub fn most(first: f64) -> f64 {
-    if first > 0.0 { (DROWNING * first).min(FAILED) } else { FAILED }
+/// The values of generations without those that would leave a few pixels to the best one, where the
+/// search began with this best value; none where these are most of them.
+pub fn undrowned(values: &[f64], first: f64) -> Vec<f64> {
+    let most = if first > 0.0 { (DROWNING * first).min(FAILED) } else { FAILED };
+    let is_kept = |value: &&f64| **value < most;
+    let some = 2 * values.iter().filter(is_kept).count() >= values.len();
+    values.iter().map(|value| if some && *value < most { *value } else { f64::NAN }).collect()
 }
 
 /// Best and mean fitness over the generations, counted from 1, on a logarithmic axis. Means that
@@ -96,10 +100,15 @@ pub fn convergence(title: &str, best: &[f64], mean: &[f64]) -> Figure {
     let series = |name: &str, values: &[f64], mark, colour| Series {
         name: name.to_owned(),
         x: (1..=values.len()).map(|generation| generation as f64).collect(),
-        y: values.iter().map(|v| if *v < most(first) { *v } else { f64::NAN }).collect(),
+        y: values.iter().map(|v| if *v < FAILED { *v } else { f64::NAN }).collect(),
         mark,
         colour,
     };
+    let mean = undrowned(mean, first);
+    let mut all = vec![series("best individual", best, Mark::Line, 1)];
+    if mean.iter().any(|mean| mean.is_finite()) {
+        all.insert(0, series("mean of the generation", &mean, Mark::Thin, 2));
+    }
     Figure {
         title: title.to_owned(),
         panels: vec![Panel {
@@ -107,10 +116,7 @@ pub fn convergence(title: &str, best: &[f64], mean: &[f64]) -> Figure {
             y: Axis::logarithmic("fitness (smaller is better)", ""),
             height: 330.0,
             zero_line: false,
-            series: vec![
-                series("mean of the generation", mean, Mark::Thin, 2),
-                series("best individual", best, Mark::Line, 1),
-            ],
+            series: all,
         }],
     }
 }

@@ -335,7 +335,7 @@ fn what_the_data_determine_of_open_parameters_is_named() {
     assert!(text.contains("Of Vm and K, these data determine Vm/K"), "{text}");
     let interval = text.split("its 95 % interval is ").nth(1).unwrap().split(".\n").next().unwrap();
     let ends: Vec<f64> =
-        interval.trim_end_matches('.').split(" .. ").map(|end| end.parse().unwrap()).collect();
+        interval.trim_end_matches('.').split(" to ").map(|end| end.parse().unwrap()).collect();
     let x: Vec<f64> = (0..NOISE.len()).map(|j| j as f64 / 4.0).collect();
     let y: Vec<f64> = x.iter().zip(NOISE).map(|(x, e)| data(*x) + e).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -373,7 +373,7 @@ fn a_function_has_the_interval_of_a_regression() {
         * (rest / 14.0 * (1.0 / 16.0 + (1.0f64 - mean).powi(2) / sxx)).sqrt();
     let text = sentences(&solution);
     let interval = text.split("(95 % interval ").nth(1).unwrap().split(')').next().unwrap();
-    let ends: Vec<f64> = interval.split(" .. ").map(|end| end.parse().unwrap()).collect();
+    let ends: Vec<f64> = interval.split(" to ").map(|end| end.parse().unwrap()).collect();
     // Four digits are printed; with a degree of freedom less the width is larger by 0.0011.
     near(ends[1] - ends[0], 2.0 * half, 5.5e-4);
 }

@@ -5,7 +5,7 @@ use super::explanations::CONVERGENCE;
 use super::parts::{explained, figure, number, one_panel, series};
 use super::view::View;
 use crate::ga::has_failed;
-use crate::plot::{Axis, Figure, Mark, most};
+use crate::plot::{Axis, Figure, Mark, undrowned};
 use maud::html;
 
 pub fn section(view: &View) -> Option<Section> {
@@ -47,19 +47,17 @@ fn drawing(best: &[f64], mean: &[f64]) -> Figure {
         .collect();
     // What lies far above the best of the first generation would leave it a few pixels.
     let first = best.iter().copied().find(|best| !has_failed(*best)).unwrap_or(f64::INFINITY);
-    let low = |values: &[f64]| -> Vec<(f64, f64)> {
-        let all = numbered(values).into_iter();
-        all.map(|(k, value)| (k, if value < most(first) { value } else { f64::NAN })).collect()
-    };
+    let low = |values: &[f64]| numbered(&undrowned(values, first));
     let objective = "objective (smaller is better)";
     let y = match best.iter().filter(|value| value.is_finite()).all(|value| *value > 0.0) {
         true => Axis::logarithmic(objective, ""),
         false => Axis::linear(objective, ""),
     };
-    let all = vec![
+    let mut all = vec![
         series("mean", &low(mean), Mark::Thin, 3),
         series("best of the generation", &low(best), Mark::Thin, 2),
         series("best so far", &numbered(&falling), Mark::Line, 1),
     ];
+    all.retain(|series| series.y.iter().any(|value| value.is_finite()));
     one_panel(Axis::linear("generation", ""), y, 230.0, all)
 }

@@ -37,7 +37,7 @@ fn problems(folder: &Path) -> Vec<String> {
     let expected = fs::read_to_string(folder.join("expected.txt")).expect("expected values");
     for line in expected.lines() {
         let (key, range) = line.split_once(" = ").expect("key = low .. high");
-        let (low, high) = range.split_once(" to ").expect("low to high");
+        let (low, high) = range.split_once(" .. ").expect("low .. high");
         let (low, high): (f64, f64) = (low.parse().expect("low"), high.parse().expect("high"));
         match printed(&transcript, key) {
             Some(value) if (low..=high).contains(&value) => {}
