@@ -231,7 +231,6 @@ fn what_the_program_says_fits_into_eighty_columns() {
         (&["simulate", "Discharge.mo", "--stats", "--set", "tau=4"], 0),
         (&["teach", "fit.mos", "--plain", "--generation", "2"], 0),
         (&["verify", "Discharge.mo", "--references", "references"], 1),
-        (&["compare", "--help"], 0),
         (&["identify", "a_file_that_is_missing_and_has_a_long_name.toml"], 1),
     ] {
         let long = lines(&shown(&here, arguments));
