@@ -41,7 +41,6 @@ pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, RunCompiled, ScriptHost};
 pub use scalar_function::Compiled;
 pub use scope::Scope;
-pub use statement::targets;
 
 use crate::diag::Diagnostic;
 pub use crate::execute::Flow;

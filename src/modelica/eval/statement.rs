@@ -12,7 +12,7 @@ use crate::execute::{
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, simple_statements, targets,
 };
 use crate::value::Value;
 use std::convert::Infallible;
@@ -126,7 +126,8 @@ impl Domain for Evaluator<'_> {
         if !self.loses_failed() {
             return;
         }
-        for call in calls(statements) {
+        // As a statement, or as the value that it assigns.
+        for call in simple_statements(statements).into_iter().filter_map(Statement::value) {
             let ExpressionKind::Call { function, arguments } = &call.kind else { continue };
             let name = function.parts.last().map(|part| part.name);
             let mut is_looked_at =
@@ -224,53 +225,4 @@ fn count(outputs: usize) -> String {
         1 => "one output".into(),
         n => format!("{n} outputs"),
     }
-}
-
-/// What statements assign to, in loops and branches too.
-pub fn targets(statements: &[Statement]) -> Vec<&ComponentReference> {
-    let mut all = Vec::new();
-    for statement in simple_statements(statements) {
-        match &statement.kind {
-            StatementKind::Assign { target, .. } => all.push(target),
-            StatementKind::MultiAssign { targets, .. } => all.extend(targets.iter().flatten()),
-            _ => {}
-        }
-    }
-    all
-}
-
-/// What statements call, as a statement or as the value that they assign.
-fn calls(statements: &[Statement]) -> Vec<&Expression> {
-    let mut all = Vec::new();
-    for statement in simple_statements(statements) {
-        match &statement.kind {
-            StatementKind::Assign { value, .. } | StatementKind::MultiAssign { value, .. } => {
-                all.push(value);
-            }
-            StatementKind::Call(call) => all.push(call),
-            _ => {}
-        }
-    }
-    all
-}
-
-/// The statements that are not loops or branches, in these too.
-fn simple_statements(statements: &[Statement]) -> Vec<&Statement> {
-    let mut all = Vec::new();
-    for statement in statements {
-        match &statement.kind {
-            StatementKind::If { branches, otherwise } => {
-                let bodies = branches.iter().map(|(_, body)| body).chain([otherwise]);
-                all.extend(bodies.flat_map(|body| simple_statements(body)));
-            }
-            StatementKind::When { branches } => {
-                all.extend(branches.iter().flat_map(|(_, body)| simple_statements(body)));
-            }
-            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-                all.extend(simple_statements(body));
-            }
-            _ => all.push(statement),
-        }
-    }
-    all
 }

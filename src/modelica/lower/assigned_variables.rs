@@ -36,22 +36,13 @@ impl Builder<'_> {
     ) {
         for statement in statements {
             match &statement.kind {
-                StatementKind::Assign { target, .. } => self.add_target(target, loops, found),
-                StatementKind::MultiAssign { targets, .. } => {
-                    targets.iter().flatten().for_each(|t| self.add_target(t, loops, found));
-                }
-                StatementKind::If { branches, otherwise } => {
-                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
-                    self.targets(otherwise, loops, found);
-                }
-                StatementKind::When { branches } => {
-                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
-                }
                 StatementKind::For { indices, body } => {
                     self.targets_of_loop(indices, body, loops, found);
                 }
-                StatementKind::While { body, .. } => self.targets(body, loops, found),
-                StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
+                _ => {
+                    statement.targets().for_each(|t| self.add_target(t, loops, found));
+                    statement.bodies().for_each(|body| self.targets(body, loops, found));
+                }
             }
         }
     }

@@ -14,7 +14,7 @@ impl Builder<'_> {
         let unclocked = flat.equations.iter().filter(|e| !self.is_clocked_equation(e));
         unclocked.for_each(|e| equation_targets(e, false, &mut targets));
         for statements in &flat.algorithms {
-            statements.iter().for_each(|s| statement_targets(s, false, &mut targets));
+            statement_targets(statements, &mut targets);
         }
         for target in targets {
             for variable in self.target_scalars(target) {
@@ -80,28 +80,15 @@ fn named_targets<'a>(left: &'a ast::Expression, targets: &mut Vec<&'a ComponentR
 }
 
 fn statement_targets<'a>(
-    statement: &'a ast::Statement,
-    in_when: bool,
+    statements: &'a [ast::Statement],
     targets: &mut Vec<&'a ComponentReference>,
 ) {
-    let each = |body: &'a [ast::Statement], in_when, targets: &mut Vec<&'a ComponentReference>| {
-        body.iter().for_each(|s| statement_targets(s, in_when, targets));
-    };
-    match &statement.kind {
-        StatementKind::Assign { target, .. } if in_when => targets.push(target),
-        StatementKind::MultiAssign { targets: several, .. } if in_when => {
-            targets.extend(several.iter().flatten());
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::When { branches } => {
+                targets.extend(branches.iter().flat_map(|(_, body)| ast::targets(body)));
+            }
+            _ => statement.bodies().for_each(|body| statement_targets(body, targets)),
         }
-        StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-            each(body, in_when, targets);
-        }
-        StatementKind::If { branches, otherwise } => {
-            branches.iter().for_each(|(_, body)| each(body, in_when, targets));
-            each(otherwise, in_when, targets);
-        }
-        StatementKind::When { branches } => {
-            branches.iter().for_each(|(_, body)| each(body, true, targets));
-        }
-        _ => {}
     }
 }

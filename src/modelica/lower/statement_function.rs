@@ -9,14 +9,14 @@ use super::expressions::{Array, Lowered, Lowering, VariableReferences};
 use super::function::call_of_any_size;
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType, targets};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
-    StatementKind, Subscript,
+    StatementKind, Subscript, targets,
 };
 use crate::syntax::visit::{
     Rewrite, Visit, rewrite_expression, rewrite_reference, walk_expression, walk_statement,

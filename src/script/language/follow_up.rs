@@ -1,10 +1,10 @@
 //! One cause, one error: what cannot be done because an earlier statement failed is noted once.
 
-use crate::eval;
 use crate::name::Ident;
 use crate::syntax::RUN_COMMAND;
 use crate::syntax::ast::{
-    Expression, ExpressionKind, InteractiveKind, InteractiveStatement, Statement, StatementKind,
+    Expression, ExpressionKind, InteractiveKind, InteractiveStatement, Statement,
+    simple_statements, targets,
 };
 use std::collections::HashSet;
 
@@ -53,10 +53,12 @@ impl FollowUps {
         for statement in statements {
             match &statement.kind {
                 InteractiveKind::Statement(statement) => {
-                    let targets = eval::targets(std::slice::from_ref(statement)).into_iter();
-                    let names = targets.filter(|target| target.parts.len() == 1);
+                    let statements = std::slice::from_ref(statement);
+                    let named = targets(statements).into_iter();
+                    let names = named.filter(|target| target.parts.len() == 1);
                     self.missing.extend(names.map(|target| target.parts[0].name));
-                    self.statement(statement);
+                    let values = simple_statements(statements).into_iter();
+                    values.filter_map(Statement::value).for_each(|value| self.expression(value));
                 }
                 InteractiveKind::Expression(expression) => self.expression(expression),
                 InteractiveKind::Declaration(clause) => {
@@ -68,30 +70,6 @@ impl FollowUps {
                 InteractiveKind::Class(_) | InteractiveKind::Import(_) => {}
             }
         }
-    }
-
-    fn statement(&mut self, statement: &Statement) {
-        match &statement.kind {
-            StatementKind::Assign { value, .. } | StatementKind::MultiAssign { value, .. } => {
-                self.expression(value);
-            }
-            StatementKind::Call(call) => self.expression(call),
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| self.statements(body));
-                self.statements(otherwise);
-            }
-            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-                self.statements(body);
-            }
-            StatementKind::When { branches } => {
-                branches.iter().for_each(|(_, body)| self.statements(body));
-            }
-            StatementKind::Break | StatementKind::Return => {}
-        }
-    }
-
-    fn statements(&mut self, statements: &[Statement]) {
-        statements.iter().for_each(|statement| self.statement(statement));
     }
 
     fn expression(&mut self, expression: &Expression) {

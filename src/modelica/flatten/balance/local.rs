@@ -12,7 +12,7 @@ use super::super::instantiate::instance::Leaf;
 use super::super::instantiate::instance::MemberState;
 use super::super::instantiate::instance::NodeKind;
 use super::super::{BaseType, FlatModel, Part, Variability};
-use super::{path, plural, scalars_of, size, targets};
+use super::{path, plural, scalars_of, size};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
@@ -26,6 +26,7 @@ use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ConnectionPrefix, EquationKind, Expression, ExpressionKind, Restriction,
+    targets,
 };
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
@@ -165,9 +166,7 @@ impl Instantiation<'_> {
             };
         }
         for statements in &model.algorithms[part.algorithms.clone()] {
-            let mut assigned = BTreeSet::new();
-            targets(statements, &mut assigned);
-            count += scalars_of(&assigned, model);
+            count += scalars_of(targets(statements).into_iter(), model);
         }
         Some(count)
     }

@@ -14,7 +14,7 @@ use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
-    Statement, StatementKind,
+    targets,
 };
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -50,11 +50,8 @@ pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnost
             None => return Ok(()),
         }
     }
-    let mut assigned = BTreeSet::new();
-    for statements in &model.algorithms {
-        targets(statements, &mut assigned);
-    }
-    equations += scalars_of(&assigned, model);
+    let assigned = model.algorithms.iter().flat_map(|statements| targets(statements));
+    equations += scalars_of(assigned, model);
     if equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns {
         return Ok(());
     }
@@ -209,9 +206,10 @@ pub fn path(reference: &ComponentReference) -> Cow<'static, str> {
 }
 
 /// Number of scalars of variables, and of records, whose components begin with their names.
-fn scalars_of(names: &BTreeSet<String>, model: &FlatModel) -> usize {
+fn scalars_of<'a>(named: impl Iterator<Item = &'a ComponentReference>, model: &FlatModel) -> usize {
+    let names: BTreeSet<String> = named.map(|target| path(target).into_owned()).collect();
     let mut variables: BTreeSet<&str> = BTreeSet::new();
-    for name in names {
+    for name in &names {
         match model.variables.get_key_value(name.as_str()) {
             Some((name, _)) => variables.extend([&**name]),
             None => {
@@ -223,28 +221,4 @@ fn scalars_of(names: &BTreeSet<String>, model: &FlatModel) -> usize {
         }
     }
     variables.into_iter().map(|name| model.variables[name].len()).sum()
-}
-
-fn targets(statements: &[Statement], out: &mut BTreeSet<String>) {
-    for statement in statements {
-        match &statement.kind {
-            StatementKind::Assign { target, .. } => {
-                out.insert(path(target).into_owned());
-            }
-            StatementKind::MultiAssign { targets, .. } => {
-                out.extend(targets.iter().flatten().map(|target| path(target).into_owned()));
-            }
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| targets(body, out));
-                targets(otherwise, out);
-            }
-            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
-                targets(body, out);
-            }
-            StatementKind::When { branches } => {
-                branches.iter().for_each(|(_, body)| targets(body, out));
-            }
-            StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
-        }
-    }
 }

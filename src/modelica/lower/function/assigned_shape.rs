@@ -113,21 +113,13 @@ fn collect<'s>(list: &'s [Statement], loops: &mut Vec<Ident>, found: &mut Vec<As
                     }));
                 }
             }
-            StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| collect(body, loops, found));
-                collect(otherwise, loops, found);
-            }
             StatementKind::For { indices, body } => {
                 let outside = loops.len();
                 loops.extend(indices.iter().map(|index| index.name.node));
                 collect(body, loops, found);
                 loops.truncate(outside);
             }
-            StatementKind::While { body, .. } => collect(body, loops, found),
-            StatementKind::When { branches } => {
-                branches.iter().for_each(|(_, body)| collect(body, loops, found));
-            }
-            StatementKind::Break | StatementKind::Return | StatementKind::Call(_) => {}
+            _ => statement.bodies().for_each(|body| collect(body, loops, found)),
         }
     }
 }

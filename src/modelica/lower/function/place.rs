@@ -5,7 +5,7 @@ use super::instances::Argument;
 use super::statements::{Body, elements};
 use crate::bytecode::{Instruction, Register};
 use crate::diag::Diagnostic;
-use crate::eval::{FunctionBody, FunctionComponent, targets};
+use crate::eval::{FunctionBody, FunctionComponent};
 use crate::fault;
 use crate::lower::component_shape::{Declared, declared};
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
@@ -13,7 +13,7 @@ use crate::lower::expressions::{Array, Choice, Lowered, Lowering, size_fault};
 use crate::lower::shape::Shape;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Statement, Subscript};
+use crate::syntax::ast::{ComponentReference, Statement, Subscript, targets};
 use rustc_hash::FxHashSet;
 
 impl Body<'_, '_> {

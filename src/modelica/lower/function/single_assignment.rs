@@ -1,8 +1,7 @@
 //! Local variables with one value: what is assigned to them is known wherever it is a number.
 
-use crate::eval::targets;
 use crate::name::Ident;
-use crate::syntax::ast::{Statement, StatementKind};
+use crate::syntax::ast::{Statement, StatementKind, targets};
 use rustc_hash::FxHashMap;
 
 /// The variables that one statement assigns to as a whole, which is executed exactly once: it is in
@@ -21,19 +20,5 @@ pub(super) fn assigned_once(statements: &[Statement]) -> Vec<Ident> {
 
 fn may_return(statement: &Statement) -> bool {
     matches!(statement.kind, StatementKind::Return)
-        || bodies(statement).iter().any(|body| body.iter().any(may_return))
-}
-
-/// The statements inside a statement.
-fn bodies(statement: &Statement) -> Vec<&[Statement]> {
-    match &statement.kind {
-        StatementKind::If { branches, otherwise } => {
-            branches.iter().map(|(_, body)| body.as_slice()).chain([otherwise.as_slice()]).collect()
-        }
-        StatementKind::For { body, .. } | StatementKind::While { body, .. } => vec![body],
-        StatementKind::When { branches } => {
-            branches.iter().map(|(_, body)| body.as_slice()).collect()
-        }
-        _ => Vec::new(),
-    }
+        || statement.bodies().any(|body| body.iter().any(may_return))
 }

@@ -6,8 +6,10 @@ mod chain;
 mod class;
 mod expression;
 mod script;
+mod statements;
 
 pub use chain::{LeftOperand, Operation};
 pub use class::*;
 pub use expression::*;
 pub use script::*;
+pub use statements::{simple_statements, targets};
