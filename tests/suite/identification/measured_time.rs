@@ -158,18 +158,7 @@ fn the_value_before_a_step_at_the_start_is_not_compared() {
 }
 
 /// The ball leaves the ground with a part of its velocity, at times that depend on it.
-const BALL: &str = "model Ball
-  parameter Real e = 0.7;
-  Real h(start = 1, fixed = true);
-  Real v(start = 0, fixed = true);
-equation
-  der(h) = v;
-  der(v) = -9.81;
-  when h < 0 then
-    reinit(v, -e*pre(v));
-  end when;
-end Ball;
-";
+const BALL: &str = include_str!("../../data/models/measured_time_ball.mo");
 
 #[test]
 fn a_result_file_with_events_gives_the_parameter_back() {

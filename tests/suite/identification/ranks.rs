@@ -16,20 +16,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// A bouncing ball: events, so that the time of a simulation depends on its parameters.
-const MODEL: &str = "model Ball
-  parameter Real e(min = 0, max = 1) = 0.7;
-  parameter Real g = 9.81;
-  Real h(start = 1, fixed = true);
-  Real v(start = 0, fixed = true);
-equation
-  der(h) = v;
-  der(v) = -g;
-  assert(g > 0, \"no gravity\");
-  when h <= 0 then
-    reinit(v, -e*pre(v));
-  end when;
-  annotation(experiment(StopTime = 3, Tolerance = 1e-8));
-end Ball;";
+const MODEL: &str = include_str!("../../data/models/ranks_model.mo");
 
 /// Without end: a counter of very many steps.
 const ENDLESS: &str = "model Endless

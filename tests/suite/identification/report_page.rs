@@ -10,18 +10,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-const MODEL: &str = "model Tank
-  parameter Real k(unit = \"1/s\") = 1;
-  parameter Real h0(unit = \"m\") = 1;
-  parameter Real offset = 0;
-  parameter Real idle = 1;
-  Real h(start = h0, fixed = true, unit = \"m\");
-  Real q = k*h;
-  Real doubled = 2*h + offset;
-equation
-  der(h) = -k*h;
-end Tank;
-";
+const MODEL: &str = include_str!("../../data/models/report_page_model.mo");
 
 /// A problem with these parameters and experiments, and the data of height and flow.
 fn solved(problem: &str, arguments: &[&str]) -> (TempDir, String) {

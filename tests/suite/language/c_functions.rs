@@ -113,53 +113,7 @@ fn check_executes_nothing() {
 }
 
 /// Functions that read and write as many elements as they declare, and what they are called with.
-const DECLARED_SIZES: &str = "package Sizes
-  function three input Real u[3]; output Real y; external \"C\" y = three(u) annotation(Include =
-    \"static double three(double *u) { return u[0] + u[1] + u[2]; }\"); end three;
-  function first input Integer n; input Real u[n]; output Real y; external \"C\" y = first(n, u)
-    annotation(Include = \"static double first(int n, double *u) { double s = 0; int i;
-    for (i = 0; i < n; i++) s += u[i]; return s; }\"); end first;
-  function lengths input String s[2]; output Integer y; external \"C\" y = lengths(s) annotation(
-    Include = \"#include <string.h>\nstatic int lengths(const char **s) {
-    return (int)(strlen(s[0]) + strlen(s[1])); }\"); end lengths;
-  record Pair Real a[2]; end Pair;
-  record Row Integer n; Real a[n]; end Row;
-  function pair input Pair r; output Real y; external \"C\" y = pair(r.a) annotation(Include =
-    \"static double pair(double *a) { return a[0] + a[1]; }\"); end pair;
-  function row input Row r; output Real y; external \"C\" y = row(r.n, r.a) annotation(Include =
-    \"static double row(int n, double *a) { return n > 1 ? a[n - 1] : a[0]; }\"); end row;
-  function all_rows input Row r[2]; output Real y; external \"C\" y = all_rows(r) annotation(Include =
-    \"static double all_rows(double *a) { return a[0]; }\"); end all_rows;
-  function in_rows input Row r[2]; output Real y; external \"C\" y = in_rows(r.a) annotation(Include =
-    \"static double in_rows(double *a) { return a[3]; }\"); end in_rows;
-  function one_row input Row r[2]; output Real y; external \"C\" y = one_row(r[1].a) annotation(Include =
-    \"static double one_row(double *a) { return a[1]; }\"); end one_row;
-  function each_row input Row r[:]; output Real y;
-    algorithm y := sum(i*row(r[i]) for i in 1:size(r, 1)); end each_row;
-  function open_output input Real u; output Real y[:]; external \"C\" fill(u, y) annotation(Include =
-    \"static void fill(double u, double *y) { int i; for (i = 0; i < 9999; i++) y[i] = u; }\");
-    end open_output;
-  function open_local input Real u; output Real y; protected Real w[:]; external \"C\" y = work(u, w)
-    annotation(Include = \"static double work(double u, double *w) { int i;
-    for (i = 0; i < 9999; i++) w[i] = u; return w[0]; }\"); end open_local;
-  class Small extends ExternalObject;
-    function constructor input Real x; output Small o; external \"C\" o = small(x) annotation(
-      Include = \"#include <stdlib.h>\nstatic void *small(double x) { double *p = malloc(8); *p = x; return p; }\");
-      end constructor;
-    function destructor input Small o; external \"C\" small_free(o) annotation(
-      Include = \"#include <stdlib.h>\nstatic void small_free(void *o) { free(o); }\"); end destructor;
-  end Small;
-  class Large extends ExternalObject;
-    function constructor input Real x; output Large o; external \"C\" o = large(x) annotation(
-      Include = \"#include <stdlib.h>\nstatic void *large(double x) { double *p = calloc(1 << 20, 8); p[1 << 19] = x; return p; }\");
-      end constructor;
-    function destructor input Large o; external \"C\" large_free(o) annotation(
-      Include = \"#include <stdlib.h>\nstatic void large_free(void *o) { free(o); }\"); end destructor;
-  end Large;
-  function of_large input Large o; output Real y; external \"C\" y = of_large(o) annotation(
-    Include = \"static double of_large(void *o) { return ((double *)o)[1 << 19]; }\"); end of_large;
-end Sizes;
-";
+const DECLARED_SIZES: &str = include_str!("../../data/models/c_functions_declared_sizes.mo");
 
 /// C reads and writes beyond no array, whatever a model or a script passes.
 #[test]
@@ -540,83 +494,7 @@ fn functions_that_change_an_object_have_values() {
 /// Counters that `out.c = Counter(start)` makes and that connections pass on: 13 and 15 after three events
 /// of two counts each from 3, one after the other. `late` counts from a value that is known when the
 /// simulation starts.
-const COUNTERS: &str = "package E
-  class Counter
-    extends ExternalObject;
-    function constructor
-      input Real start;
-      output Counter c;
-      external \"C\" c = make_counter(start) {code};
-    end constructor;
-    function destructor
-      input Counter c;
-      external \"C\" free_counter(c) {code};
-    end destructor;
-  end Counter;
-  impure function count
-    input Counter c;
-    input Real by;
-    input Real before;
-    output Real y;
-    external \"C\" y = count(c, by) {code};
-  end count;
-  connector Out
-    output Counter c;
-    output Real before;
-  end Out;
-  connector In
-    input Counter c;
-    input Real before;
-  end In;
-  block Source
-    parameter Real start = 3;
-    Out out;
-  equation
-    out.c = Counter(start);
-    out.before = 0;
-  end Source;
-  block Through
-    parameter Integer n = 0;
-    In inp;
-    Out out[n];
-    discrete Real y(start = 0, fixed = true);
-  equation
-    if n == 1 then
-      out.c = fill(inp.c, n);
-      out.before = fill(y, n);
-    end if;
-    when sample(1, 1) then
-      y = count(inp.c, 2, inp.before);
-    end when;
-  end Through;
-  model Connected
-    Source s;
-    Through a(n = 1);
-    Through b;
-  equation
-    connect(s.out, a.inp);
-    connect(a.out[1], b.inp);
-  end Connected;
-  model Late
-    Integer size;
-    Counter c = Counter(size);
-    discrete Real y(start = 0, fixed = true);
-  equation
-    when initial() then
-      size = 5;
-    end when;
-    when sample(1, 1) then
-      y = count(c, 2, 0);
-    end when;
-  end Late;
-  model Twice
-    Source s;
-    Source t;
-  equation
-    s.out.c = t.out.c;
-  end Twice;
-end E;
-";
+const COUNTERS: &str = include_str!("../../data/models/c_functions_counters.mo");
 
 #[test]
 fn objects_are_passed_through_connections_and_made_when_the_simulation_starts() {

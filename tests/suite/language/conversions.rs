@@ -11,20 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Version 2 of a library.
-const PUMPS: &str = "package Pumps
-  package Units type Flow = Real(unit = \"m3/s\"); package Icons type Length = Real; end Icons; end Units;
-  package Machines
-    model Pump parameter Real nominal = 1; parameter Real gain = 1; Real rate = gain*nominal; end Pump;
-    model FastPump extends Pump; parameter Boolean quick = true; end FastPump;
-    model Base parameter Real size = 1; Real level = size; end Base;
-    function scaled input Real x; input Real factor = 1; output Real y; algorithm y := x*factor; end scaled;
-    type Kind = enumeration(slow, swift);
-    package Medium replaceable model State Real level(start = 1); Real size; end State; end Medium;
-    package Fluid extends Medium; end Fluid;
-  end Machines;
-  annotation(version = \"2.0\", conversion(noneFromVersion = \"1.9\", from(version = {\"1.0\", \"1.1\"},
-    script = \"modelica://Pumps/Scripts/to2.mos\")));
-end Pumps;";
+const PUMPS: &str = include_str!("../../data/models/conversions_pumps.mo");
 
 const SCRIPT: &str = r#"// Rules in any order
 convertClear();
@@ -250,25 +237,7 @@ fn nothing_else_is_converted() {
 
 /// A library that was renamed twice: 1.0 to 1.5 by rules in its annotation, 1.5 to 2.0 by others;
 /// 1.6 needs none to become 2.0.
-const TANKS: &str = "package Tanks
-  model Tank parameter Real height = 1; parameter Real area = 1; end Tank;
-  model OpenTank extends Tank; end OpenTank;
-  function cube input Real x; output Real y; algorithm y := x^3; end cube;
-  function cubeSlope input Real x; input Real dx; output Real y; algorithm y := 3*x^2*dx; end cubeSlope;
-  annotation(version = \"2.0\", conversion(noneFromVersion = \"1.6\",
-    from(version = {\"0.9\", \"1.0\"}, to = \"1.5\", change = {
-      convertClass(\"Tanks.Box\", \"Tanks.Vessel\"),
-      convertElement(\"Tanks.Box\", {\"high\", \"s\"}, {\"level\", \"size.area\"}),
-      convertModifiers(\"Tanks.Box\", {\"double=1\"}, {\"level=2*%double%\"})}),
-    from(version = \"1.5\", to = \"1.6\", change = {
-      convertClass({\"Tanks.Vessel\", \"Tanks.third\", \"Tanks.thirdSlope\"}, {\"Tanks.Tank\", \"Tanks.cube\", \"Tanks.cubeSlope\"}),
-      convertClassIf(\"Tanks.Vessel\", \"lid\", \"false\", \"Tanks.OpenTank\"),
-      convertElement(\"Tanks.Vessel\", {\"level\", \"size.area\"}, {\"height\", \"area\"}),
-      convertMessage(\"Tanks.Vessel\", \"tanks have no colour\", \"colour\")}),
-    from(version = \"0.1\", to = \"0.2\", change = {convertClass(\"Tanks.Box\", \"Tanks.Tub\")}),
-    from(version = \"0.3\", to = \"0.3\", change = {convertClass(\"Tanks.Box\", \"Tanks.Tub\")}),
-    from(version = \"0.4\", change = {convertTanks(\"Tanks.Box\")})));
-end Tanks;";
+const TANKS: &str = include_str!("../../data/models/conversions_tanks.mo");
 
 fn tanks_and(body: &str, version: &str) -> Library {
     let mut library = Library::new();

@@ -428,21 +428,7 @@ fn the_second_derivative_function_is_used() {
 }
 
 /// A table as an external object, with the derivative that its library declares.
-const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
-    input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
-    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(\"NoName\", name, table, \
-    size(table, 1), size(table, 2), {2}, 1, smoothness, 2, false); end constructor; \
-    function destructor input Table id; \
-    external \"C\" ModelicaStandardTables_CombiTable1D_close(id); end destructor; end Table; \
-    function value input Table id; input Real u; output Real y; \
-    external \"C\" y = ModelicaStandardTables_CombiTable1D_getValue(id, 1, u); \
-    annotation(derivative = slope); end value; \
-    function slope input Table id; input Real u; input Real du; output Real dy; \
-    external \"C\" dy = ModelicaStandardTables_CombiTable1D_getDerValue(id, 1, u, du); \
-    end slope; \
-    model Main parameter Real k = 3; parameter String name = \"NoName\"; \
-    parameter Table t = Table(if name == \"\" then \"empty\" else name, [0, 0; 1, k; 2, 4], 1); \
-    Real x(start = 1, fixed = true); equation der(x) = value(t, x); end Main; end P;";
+const TABLE: &str = include_str!("../../data/models/functions_table.mo");
 
 #[test]
 fn a_table_is_an_object_that_parameters_make_anew() {

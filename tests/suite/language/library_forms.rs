@@ -806,17 +806,7 @@ fn what_a_condition_excludes_is_not_evaluated() {
 
 /// LinearSystems2: the sizes of a redeclaration name what the function around it declares, not what
 /// the record has under the same names (MLS §7.3).
-const STATE_SPACE: &str = "operator record S Real A[:, size(A, 1)]; Real B[size(A, 1), :]; \
-    encapsulated operator 'constructor' \
-    function fromMatrices import P.S; input Real A[:, size(A, 1)]; input Real B[size(A, 1), :]; \
-    output S s(redeclare Real A[size(A, 1), size(A, 2)], \
-    redeclare Real B[size(B, 1), size(B, 2)]); algorithm s.A := A; \
-    for i in 1:size(B, 1) loop s.B[i, :] := 2*B[i, :]; end for; end fromMatrices; \
-    function numbered import P.S; input Real A[:, size(A, 1)]; input Integer m; \
-    output S s(redeclare Real A[n, n], redeclare Real B[n, m]); \
-    protected Integer n = size(A, 1); algorithm s.A := A; \
-    for i in 1:n loop for j in 1:m loop s.B[i, j] := 10*i + j; end for; end for; end numbered; \
-    end 'constructor'; end S; ";
+const STATE_SPACE: &str = include_str!("../../data/models/library_forms_state_space.mo");
 
 #[test]
 fn sizes_of_redeclared_components_name_the_function() {

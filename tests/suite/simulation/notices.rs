@@ -3,32 +3,7 @@
 use gapilib::Session;
 use gapilib::world::MemoryWorld;
 
-const MODEL: &str = "model P
-  impure function tell
-    input String text;
-    input String file = \"\";
-    external \"C\" ModelicaInternal_print(text, file);
-  end tell;
-  Real x(start = 0, fixed = true);
-  Boolean up(start = false, fixed = true);
-  Integer n(start = 0, fixed = true);
-equation
-  der(x) = 1;
-  assert(x < 0.3 or x > 0.6, \"x is between\", AssertionLevel.warning);
-  when initial() then
-    tell(\"start\");
-  end when;
-  when {x > 0.5, x > 0.8} then
-    up = true;
-    n = pre(n) + 1;
-    tell(\"event \" + String(n) + \" at \" + String(time) + \", up \" + String(up));
-    assert(x < 0.7, \"late: \" + String(n), AssertionLevel.warning);
-  end when;
-algorithm
-  when sample(0.25, 0.5) then
-    tell(\"tick\");
-  end when;
-end P;";
+const MODEL: &str = include_str!("../../data/models/notices_model.mo");
 
 fn run(model: &str, script: &str) -> (u8, String, String) {
     let world = MemoryWorld::new().with_file("P.mo", model);
@@ -56,42 +31,7 @@ fn what_models_print_and_warn_of_is_told_in_its_order() {
     assert!(!errors.contains("late: 1"), "{errors}");
 }
 
-const WRITER: &str = "model W
-  impure function write
-    input String file;
-    input String name;
-    input Real matrix[:, :];
-    output Boolean done;
-    external \"C\" done = ModelicaIO_writeRealMatrix(
-      file, name, matrix, size(matrix, 1), size(matrix, 2), false, \"4\");
-  end write;
-  impure function tell
-    input String text;
-    input String file;
-    external \"C\" ModelicaInternal_print(text, file);
-  end tell;
-  impure function twice
-    input Real number;
-  algorithm
-    tell(\"number \" + String(2*number), \"log.txt\");
-  end twice;
-  parameter Integer method = 1;
-  Real x(start = 0, fixed = true);
-  Integer n(start = 0, fixed = true);
-equation
-  der(x) = 1;
-  when {x > 0.25, x > 0.5} then
-    n = pre(n) + 1;
-    tell(\"event\", \"log.txt\");
-    twice(n);
-  end when;
-algorithm
-  when terminal() then
-    if method == 1 then
-      write(\"end.mat\", \"A\", [x, n; 3, 4]);
-    end if;
-  end when;
-end W;";
+const WRITER: &str = include_str!("../../data/models/notices_writer.mo");
 
 fn after_writer(model: &str, then: &str) -> (u8, String, String) {
     let world = MemoryWorld::new().with_file("P.mo", model);
@@ -248,36 +188,7 @@ end W;";
     assert!(output.contains("[0.5"), "{output}");
 }
 
-const TALKING: &str = "model P
-  function say
-    input String text;
-    external \"C\" ModelicaMessage(text);
-  end say;
-  function f
-    input Real x;
-    output Real y;
-  algorithm
-    say(\"f of \" + String(x));
-    y := 2*x;
-  end f;
-  Real y(start = 0, fixed = true);
-  Real w(start = 0, fixed = true);
-  Real v = w + y/3;
-  Real z(start = 0, fixed = true);
-  Real u(start = 0, fixed = true);
-equation
-  der(z) = 1;
-  when time > 2 then
-    w = 1;
-  end when;
-algorithm
-  when sample(0.25, 0.25) then
-    y := if time > 0.3 then f(time) else 3;
-    if time > 0.6 then
-      u := f(10*time);
-    end if;
-  end when;
-end P;";
+const TALKING: &str = include_str!("../../data/models/notices_talking.mo");
 
 /// What functions print whose values are used, at events and in equations.
 #[test]

@@ -178,17 +178,7 @@ fn a_session_finds_what_another_one_has_kept() {
 }
 
 /// A model that is large enough to be kept on a disk.
-const LARGE: &str = "\
-model Large
-  parameter Real p = 1;
-  Real x[1000](each start = 0, each fixed = true);
-  Real s = sum(x);
-equation
-  for i in 1:1000 loop
-    der(x[i]) = p - x[i]*i*1e-3;
-  end for;
-end Large;
-";
+const LARGE: &str = include_str!("../../data/models/translations_large.mo");
 
 /// Simulates the model with a cache below the folder.
 fn simulated(here: &TempDir, arguments: &[&str]) -> Output {

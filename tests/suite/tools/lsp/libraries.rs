@@ -7,32 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// Connectors: of electricity, with an overdetermined angle, and of a mechanism.
-const CONNECTORS: &str = "\
-  connector Pin
-    Real v;
-    flow Real i;
-  end Pin;
-  connector RealInput = input Real;
-  connector RealOutput = output Real;
-  record Angle
-    Real gamma;
-    function equalityConstraint
-      input Angle a;
-      input Angle b;
-      output Real residue[0];
-    algorithm
-      assert(abs(a.gamma - b.gamma) < 1e-9, \"different angles\");
-    end equalityConstraint;
-  end Angle;
-  connector Phasor
-    Real v;
-    flow Real i;
-    Angle reference;
-  end Phasor;
-  model World
-    parameter Real g = 9.81;
-  end World;
-";
+const CONNECTORS: &str = include_str!("../../../data/models/libraries_connectors.mo");
 
 /// The diagnostics of a package with the connectors and these classes, without the helps.
 fn found(classes: &str) -> Vec<String> {
