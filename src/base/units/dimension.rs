@@ -27,6 +27,12 @@ impl Dimension {
         Dimension(parts)
     }
 
+    /// The exponents of kg, m, s, A, K, mol and cd; `None` where one is broken.
+    pub fn exponents(self) -> Option<[i32; 7]> {
+        let is_whole = self.0.iter().all(|parts| parts % PARTS == 0);
+        is_whole.then(|| self.0.map(|parts| parts / PARTS))
+    }
+
     /// The sum of the exponents.
     pub fn times(self, other: Dimension) -> Option<Dimension> {
         self.zip(other, i32::checked_add)

@@ -8,6 +8,7 @@
 //! linearity             whether the right-hand side is affine between events
 //! hoist                 what depends on parameters alone runs once a simulation
 //! compilation           all of it, in order: Program::compile
+//! exchange              what other simulators need to know of a model
 //! machine_code          Cranelift's code of the tapes
 //! ```
 
@@ -17,6 +18,7 @@ mod compilation;
 pub mod errors;
 mod event_code;
 pub(crate) mod events;
+mod exchange;
 pub(crate) mod hoist;
 pub(crate) mod instruction;
 mod iteration_variables;
@@ -53,6 +55,7 @@ mod unread;
 mod upcalls;
 mod validation;
 
+pub use exchange::Attributes;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
 pub use stored::bytes_of;

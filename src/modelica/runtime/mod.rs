@@ -13,6 +13,7 @@
 //! state_selection        dynamic state selection
 //! sliding                both sides of relations that chatter
 //! sensitivity            forward sensitivities carried along
+//! exchange               what other simulators ask of a system
 //! log_messages           warnings and printed strings; failure_messages, singular_systems
 //! ```
 
@@ -21,6 +22,7 @@ mod delay_buffer;
 mod delays;
 mod difference_quotients;
 mod event_iteration;
+mod exchange;
 mod execution;
 mod failure_messages;
 mod global_newton;

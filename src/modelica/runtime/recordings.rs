@@ -16,6 +16,20 @@ impl System {
             self.events.knots_passed.push(passed);
             self.set_segment(recording, passed);
         }
+        for (register, value) in &self.events.given {
+            self.registers.registers[*register as usize] = *value;
+        }
+    }
+
+    /// Gives a recorded input, by its number from [`Program::recorded_input`](crate::codegen::Program::recorded_input),
+    /// a value that holds from the next event, or the start, until another one is given. It has one
+    /// sample.
+    pub fn set_recorded(&mut self, input: u32, value: f64) {
+        self.registers.registers[input as usize] = value;
+        match self.events.given.iter_mut().find(|(known, _)| *known == input) {
+            Some((_, known)) => *known = value,
+            None => self.events.given.push((input, value)),
+        }
     }
 
     /// Advances to the segments that begin at `t`; whether an input jumps there, or its derivative

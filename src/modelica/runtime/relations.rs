@@ -156,4 +156,27 @@ impl System {
         self.relations.crossing_values = values;
         computed
     }
+
+    /// Writes for every relation and rounding with crossing functions how far it is from another value:
+    /// positive as long as it keeps the one that it has, within ε; y is loaded and solved.
+    pub(super) fn distances(&mut self, out: &mut [f64]) -> Result<(), Failure> {
+        let program = self.program.clone();
+        let mut values = vec![0.0; program.switching.crossings.outputs.len()];
+        read(&program.switching.crossings, &mut self.registers, &mut values)?;
+        let n = program.switching.crossing_relations.len();
+        let (sides, rest) = values.split_at(2 * n);
+        let (first, second) = out.split_at_mut(n);
+        let pairs = sides.chunks_exact(2).zip(&program.switching.crossing_relations);
+        for (z, (pair, at)) in first.iter_mut().zip(pairs) {
+            let relation = &program.switching.relations[*at];
+            let holds = self.registers[relation.register as usize] != 0.0;
+            let tolerated = self.relations.tolerated[*at];
+            *z = distance(relation.operator, holds, (pair[0], pair[1]), tolerated);
+        }
+        // The argument of a rounding less its value, and that less 1.
+        for (z, pair) in second.chunks_exact_mut(2).zip(rest.chunks_exact(2)) {
+            (z[0], z[1]) = (pair[0] + ABSOLUTE, ABSOLUTE - pair[1]);
+        }
+        Ok(())
+    }
 }

@@ -92,7 +92,7 @@ pub use integrators::{Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use settings::{OutputGrid, Settings, TimeBudget};
-pub use simulator::{Simulator, simulate};
+pub use simulator::{End, Simulator, simulate};
 pub use statistics::Statistics;
 pub use system::{
     DaeSystem, EventOutcome, Events, Linearity, Modes, Pattern, Residual, Sensitive, Side,

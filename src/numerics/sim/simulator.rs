@@ -58,6 +58,15 @@ pub struct Simulator {
     effort: Effort,
 }
 
+/// How a simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// The time that was reached, seconds.
+    pub time: f64,
+    /// Whether the model ended it (`terminate`).
+    pub is_terminated: bool,
+}
+
 /// Nominal values of y, without and with shares of surfaces.
 #[derive(Default)]
 pub(crate) struct Nominals {
@@ -125,7 +134,36 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        let (n, is_explicit, solves_loops) = self.prepare(system, settings, out);
+        self.run_from(system, settings, None, out).map(|(_, statistics)| statistics)
+    }
+
+    /// Continues a simulation of a system that is initialized, from y at the start of the settings, with
+    /// algebraic unknowns as far as the method has them; y is that at the end afterwards.
+    ///
+    /// # Errors
+    /// When and why the simulation failed; y is where it was reached.
+    pub fn resume(
+        &mut self,
+        system: &mut dyn DaeSystem,
+        settings: &Settings,
+        y: &mut [f64],
+        out: &mut Trajectory,
+    ) -> Result<End, SimError> {
+        let done = self.run_from(system, settings, Some(y), out);
+        if self.y.len() == y.len() {
+            y.copy_from_slice(&self.y);
+        }
+        done.map(|(end, _)| end)
+    }
+
+    fn run_from(
+        &mut self,
+        system: &mut dyn DaeSystem,
+        settings: &Settings,
+        from: Option<&[f64]>,
+        out: &mut Trajectory,
+    ) -> Result<(End, Statistics), SimError> {
+        let (n, is_explicit, solves_loops) = self.prepare(system, settings, from, out);
         let linearity = system.linearity().filter(|_| settings.takes_exact_steps && n > 0);
         let integrator: &mut dyn Integrator = match linearity {
             _ if n == 0 => &mut self.without_unknowns,
@@ -168,10 +206,13 @@ impl Simulator {
             outputs: OutputPoints::new(settings, n == 0 || linearity.is_some()),
             jumps: Jumps::NONE,
             progress: Progress::default(),
+            is_resumed: from.is_some(),
         };
         let ended = run.run();
-        ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
-        Ok(statistics)
+        let is_terminated =
+            ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
+        let end = End { time: run.t, is_terminated };
+        Ok((end, statistics))
     }
 
     /// Sets up the workspace; the number of unknowns, whether the method is explicit, and whether the
@@ -180,9 +221,12 @@ impl Simulator {
         &mut self,
         system: &mut dyn DaeSystem,
         settings: &Settings,
+        from: Option<&[f64]>,
         out: &mut Trajectory,
     ) -> (usize, bool, bool) {
-        system.begin();
+        if from.is_none() {
+            system.begin();
+        }
         // Explicit methods see no algebraic variables if the system can do without; and without
         // states there is nothing to integrate, only equations to solve at every point.
         let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
@@ -191,6 +235,9 @@ impl Simulator {
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
         self.y.resize(n * (1 + system.n_directions()), 0.0);
+        if let Some(y) = from {
+            self.y.copy_from_slice(y);
+        }
         self.set_nominals(system, settings.tolerance);
         out.reset(system.n_observed());
         self.effort = Effort::default();
@@ -279,6 +326,8 @@ pub struct Run<'a> {
     outputs: OutputPoints,
     jumps: Jumps,
     pub(super) progress: Progress,
+    /// Whether it continues another one.
+    is_resumed: bool,
 }
 
 /// The output points of a run.
@@ -316,7 +365,8 @@ impl Jumps {
 }
 
 impl Run<'_> {
-    fn run(&mut self) -> Result<(), SimErrorKind> {
+    /// Whether the model ended the simulation.
+    fn run(&mut self) -> Result<bool, SimErrorKind> {
         let mut after = self.initialize()?;
         while after != After::Terminated && self.t < self.problem.settings.stop {
             after = match self.step() {
@@ -334,16 +384,21 @@ impl Run<'_> {
             budget.extend(self.t, settings.stop, statistics.attempts());
         }
         self.end_slide();
-        let finished = self.problem.system.finish(self.t, self.y);
-        match finished.map_err(SimErrorKind::Evaluation)? {
-            true => self.record(),
-            false => Ok(()),
+        // The end of a part is not the end of the simulation.
+        if !self.is_resumed {
+            let finished = self.problem.system.finish(self.t, self.y);
+            if finished.map_err(SimErrorKind::Evaluation)? {
+                self.record()?;
+            }
         }
+        Ok(after == After::Terminated)
     }
 
     fn initialize(&mut self) -> Result<After, SimErrorKind> {
         let system = &mut *self.problem.system;
-        system.initialize(self.t, self.y).map_err(SimErrorKind::Initialization)?;
+        if !self.is_resumed {
+            system.initialize(self.t, self.y).map_err(SimErrorKind::Initialization)?;
+        }
         if !self.y.iter().all(|y| y.is_finite()) {
             return Err(SimErrorKind::NotFinite);
         }

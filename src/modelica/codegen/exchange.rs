@@ -1,0 +1,141 @@
+//! What another simulator needs to know of a model before it simulates it: attributes of variables,
+//! which variables follow from which states, and what only the simulator of this program offers.
+
+use super::program::{Program, VariableInfo};
+use super::sequence::close;
+use crate::causalize::Block;
+use crate::source::Span;
+use crate::symbolic::{Expr, VarId, evaluate};
+use rustc_hash::FxHashSet;
+
+/// Attributes of a variable with the default values of the parameters; `None` where the model says
+/// nothing, or where there is no number.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Attributes {
+    /// `start`.
+    pub start: Option<f64>,
+    /// `min`.
+    pub min: Option<f64>,
+    /// `max`.
+    pub max: Option<f64>,
+    /// `nominal`.
+    pub nominal: Option<f64>,
+}
+
+impl VariableInfo {
+    /// Unit for people, empty if none.
+    pub fn display_unit(&self) -> &str {
+        &self.display_unit
+    }
+}
+
+impl Program {
+    /// The attributes of a variable of [`Program::variables`].
+    pub fn attributes(&self, variable: usize) -> Attributes {
+        let Some(info) = self.variables().get(variable) else { return Attributes::default() };
+        let dae = &self.sorted.dae;
+        let value = |e: Option<Expr>| {
+            let defaults = &dae.defaults;
+            let value = evaluate(&dae.pool, e?, defaults.values());
+            Some(value).filter(|value| value.is_finite())
+        };
+        let variable = dae.variable(info.variable);
+        Attributes {
+            start: value(variable.start),
+            min: value(variable.min),
+            max: value(variable.max),
+            nominal: value(variable.nominal),
+        }
+    }
+
+    /// Number of event indicators of its systems.
+    pub fn n_indicators(&self) -> usize {
+        self.n_crossings() + self.selections.len()
+    }
+
+    /// Number of states.
+    pub fn n_states(&self) -> usize {
+        self.sorted.states.len()
+    }
+
+    /// The states from which variables of [`Program::variables`] are computed between events, as
+    /// numbers; `None` where a loop is solved on the way, from which everything may follow.
+    pub fn states_needed_by(&self, variables: &[usize]) -> Option<Vec<usize>> {
+        let infos = variables.iter().filter_map(|at| self.variables().get(*at));
+        let sources = infos.map(|info| self.resolve(info.variable).0);
+        self.states_of(sources.collect())
+    }
+
+    /// The same for the derivative of a state.
+    pub fn states_of_derivative(&self, state: usize) -> Option<Vec<usize>> {
+        if !self.continuous.iteration.is_empty() {
+            return None;
+        }
+        let n = self.n_states();
+        let pattern = &self.continuous.pattern;
+        let found =
+            (0..n).filter(|column| pattern.column(*column).any(|at| pattern.rows[at] == state));
+        Some(found.collect())
+    }
+
+    fn states_of(&self, sources: FxHashSet<VarId>) -> Option<Vec<usize>> {
+        let needed = close(&self.sorted.dae.pool, &self.sequence, sources);
+        if self.continuous.iteration.iter().any(|unknown| needed.contains(unknown)) {
+            return None;
+        }
+        let states = self.sorted.states.iter().enumerate();
+        Some(states.filter(|(_, state)| needed.contains(state)).map(|(at, _)| at).collect())
+    }
+
+    /// Whether equations read a parameter of [`Program::parameters`] beside the one that sets a
+    /// derivative to it.
+    pub fn reads_parameter_twice(&self, parameter: usize) -> bool {
+        let Some(parameter) = self.parameters().get(parameter).map(|own| own.variable) else {
+            return false;
+        };
+        let pool = &self.sorted.dae.pool;
+        let mut same = vec![parameter];
+        let blocks = self.sorted.blocks.iter().chain(&self.sorted.event_blocks);
+        let blocks: Vec<&Block> = blocks.collect();
+        for block in &blocks {
+            for assignment in block.assignments() {
+                if pool.as_variable(assignment.value) == Some(parameter) {
+                    same.push(assignment.variable);
+                }
+            }
+        }
+        let reads = |e: Expr| {
+            pool.as_variable(e) != Some(parameter)
+                && same.iter().any(|own| pool.depends_on(e, *own))
+        };
+        blocks.iter().any(|block| {
+            block.assignments().iter().any(|assignment| reads(assignment.value))
+                || block.residuals().any(reads)
+        })
+    }
+
+    /// The number by which [`System::set_recorded`](crate::runtime::System::set_recorded) sets a
+    /// recorded input that is held.
+    pub fn recorded_input(&self, name: &str) -> Option<u32> {
+        let dae = &self.sorted.dae;
+        let signal = format!("$value({name})");
+        let mut tracks = dae.events.recordings.iter().flat_map(|recording| &recording.tracks);
+        let found = tracks.find(|track| *dae.variable(track.value).name == *signal)?;
+        Some(found.value.0)
+    }
+
+    /// Whether a number is that of a recorded input.
+    pub fn is_recorded_input(&self, number: u32) -> bool {
+        let recordings = self.sorted.dae.events.recordings.iter();
+        recordings.flat_map(|recording| &recording.tracks).any(|track| track.value.0 == number)
+    }
+
+    /// What the model does that needs its own simulator, and where this is written: expressions of
+    /// the past.
+    pub fn needs_past(&self) -> Option<(&'static str, Span)> {
+        let events = &self.sorted.dae.events;
+        let delay = events.delays.first().map(|delay| ("`delay`", delay.span));
+        let transport = events.transports.first();
+        delay.or(transport.map(|own| ("`delay` or `spatialDistribution`", own.span())))
+    }
+}
