@@ -76,7 +76,7 @@ pub mod internals {
     //! # The crates
     //!
     //! A module owns one stage and one noun, imports only modules before it (`tests/suite/architecture` has
-    //! the table), and never changes what the stage before it made. The modules lie in seven crates, each of
+    //! the table), and never changes what the stage before it made. The modules lie in eight crates, each of
     //! which knows only those before it; this one is what programs embed, and the program `gapi`.
     //!
     //! `src/base`, what all parts share:
@@ -104,7 +104,8 @@ pub mod internals {
     //! - [`codegen`], [`runtime`]: a program of instruction tapes, and the systems that execute it.
     //!
     //! `src/fmi`:
-    //! - `fmi`: descriptions and archives of functional mock-up units.
+    //! - `fmi`: descriptions and archives of functional mock-up units, and the export of programs; `src/fmu`
+    //!   is the shared library in these.
     //!
     //! `src/identify`:
     //! - [`identify`]: populations of simulations, and what they say of the parameters.

@@ -6,6 +6,7 @@ use super::completions::CompletionsArgs;
 #[cfg(feature = "lsp")]
 use super::connection::LspArgs;
 use super::explain::ExplainArgs;
+use super::export_fmu::ExportFmuArgs;
 use super::fmt::FmtArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
@@ -74,6 +75,8 @@ pub(super) enum Command {
     Help(HelpArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
+    /// Export a model as a functional mock-up unit (FMU)
+    ExportFmu(ExportFmuArgs),
     /// Check every class of Modelica files, and models including their causalization (BLT)
     Check(CheckArgs),
     /// Print a model as flat Modelica

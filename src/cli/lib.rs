@@ -30,6 +30,7 @@ mod disk;
 mod effort;
 pub mod embedding;
 mod explain;
+mod export_fmu;
 mod fitted;
 mod fmt;
 mod hangup;
@@ -154,13 +155,14 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Run(_)
             | Command::Identify(_)
             | Command::Simulate(_)
+            | Command::ExportFmu(_)
             | Command::Check(_)
             | Command::Flatten(_)
             | Command::Repl(_)
     );
     if cli.global.show_permissions && !lists {
         terminal::eprint(
-            "error: `--show-permissions` lists what `run`, `identify`, `simulate`, `check`, \
+            "error: `--show-permissions` lists what `run`, `identify`, `simulate`, `export-fmu`, `check`, \
              `flatten` and `repl` permit\n",
         );
         return ExitCode::from(2);
@@ -185,6 +187,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Completions(arguments) => completions::completions(arguments, Cli::command()),
         Command::Man(arguments) => man::man(arguments, Cli::command()),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
+        Command::ExportFmu(arguments) => export_fmu::export_fmu(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
         Command::Fmt(arguments) => fmt::fmt(arguments),
         #[cfg(feature = "lsp")]

@@ -110,7 +110,7 @@ fn pass_names() -> clap::builder::PossibleValuesParser {
     std::iter::once(value("flatten", "the flat model")).chain(passes).collect::<Vec<_>>().into()
 }
 
-fn name_and_value(text: &str) -> Result<(String, String), String> {
+pub(super) fn name_and_value(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }

@@ -270,7 +270,29 @@ impl Files for SystemWorld {
     }
 }
 
+/// The name of the shared library that simulates the models in exported units.
+fn runtime_name() -> String {
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    format!("{prefix}gapilib_fmu{suffix}")
+}
+
 impl Environment for SystemWorld {
+    fn unit_runtime(&self) -> io::Result<Vec<u8>> {
+        let file = match std::env::var_os("GAPILIB_FMU_RUNTIME") {
+            Some(file) => PathBuf::from(file),
+            None => {
+                let program = std::env::current_exe()?;
+                let beside = program.with_file_name(runtime_name());
+                // As packages of systems have it: `bin` and `lib` side by side.
+                let folder = program.parent().and_then(Path::parent);
+                let library = folder.map(|folder| folder.join("lib/gapi").join(runtime_name()));
+                library.filter(|library| library.is_file() && !beside.is_file()).unwrap_or(beside)
+            }
+        };
+        fs::read(&file)
+            .map_err(|error| io::Error::new(error.kind(), format!("`{}`: {error}", file.display())))
+    }
+
     fn env(&self, name: &str) -> Option<String> {
         std::env::var(name).ok()
     }

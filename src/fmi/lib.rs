@@ -4,6 +4,7 @@
 //! ```text
 //! x.fmu ──archive──▶ files        modelDescription.xml ──description::read──▶ Description
 //!                                                      ◀──description::write──
+//! Program ──export──▶ Unit: description, program, runtime ──▶ archive
 //! ```
 //!
 //! Both versions of the standard have one [`Description`]: what refers to variables by their place in
@@ -11,9 +12,14 @@
 
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
 
+// Modules and macros of lower crates, under the names that they have there.
+pub(crate) use gapilib_base::{diag, fault, source, units};
+pub(crate) use gapilib_modelica::{codegen, flatten, lower};
+
 pub mod archive;
 pub mod description;
 mod errors;
+pub mod export;
 
 pub use archive::Archive;
 pub use description::Description;

@@ -208,9 +208,9 @@ fn attributes(xml: &mut Xml, own: &Attributes) {
     xml.optional("displayUnit", own.display_unit.as_ref());
     xml.optional("relativeQuantity", own.is_relative.as_ref());
     xml.optional("unbounded", own.is_unbounded.as_ref());
-    xml.optional("min", own.min.as_ref());
-    xml.optional("max", own.max.as_ref());
-    xml.optional("nominal", own.nominal.as_ref());
+    xml.optional("min", own.min.map(number).as_ref());
+    xml.optional("max", own.max.map(number).as_ref());
+    xml.optional("nominal", own.nominal.map(number).as_ref());
 }
 
 fn variable(xml: &mut Xml, own: &Variable, description: &Description) {
@@ -336,6 +336,16 @@ fn list(values: impl IntoIterator<Item: Display>) -> String {
         let _ = write!(text, "{separator}{value}");
     }
     text
+}
+
+/// A number, very small and large ones with an exponent.
+fn number(value: f64) -> String {
+    match value {
+        f64::INFINITY => "INF".to_owned(),
+        f64::NEG_INFINITY => "-INF".to_owned(),
+        _ if value == 0.0 || (1e-4..1e15).contains(&value.abs()) => value.to_string(),
+        _ => format!("{value:e}"),
+    }
 }
 
 /// A text in XML while it is written.

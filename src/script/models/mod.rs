@@ -10,6 +10,7 @@ pub mod compiled;
 pub(crate) mod constant_cache;
 mod continuation;
 pub mod documents;
+pub mod exported;
 pub mod final_state;
 pub mod hardest;
 pub(crate) mod in_use;

@@ -191,6 +191,12 @@ impl Session {
         self.models.current.clone()
     }
 
+    /// Values of parameters that were set by hand, by their names.
+    pub(super) fn values_set_by_hand(&self) -> Vec<(Arc<str>, f64)> {
+        let current = self.models.current.iter();
+        current.flat_map(|current| current.overrides.clone()).collect()
+    }
+
     /// Takes back what was set since.
     pub(crate) fn restore_values(&mut self, before: Option<Current>) {
         self.models.current = before;

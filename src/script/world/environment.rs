@@ -68,6 +68,13 @@ pub trait Environment {
             "there is no operating system in this environment",
         ))
     }
+    /// The shared library that simulates the models in exported units.
+    ///
+    /// # Errors
+    /// There is none beside the program, or it cannot be read.
+    fn unit_runtime(&self) -> io::Result<Vec<u8>> {
+        Err(io::Error::new(io::ErrorKind::NotFound, "there is none in this environment"))
+    }
     /// Number of threads to use, at least 1.
     fn threads(&self) -> usize;
     /// Other processes that simulate.

@@ -15,6 +15,7 @@ pub(super) type Names = Vec<String>;
 /// that one. The other crates are nothing but their modules.
 const ROOTS: &[(&str, &[&str])] = &[
     ("fmi", &[]),
+    ("fmu", &[]),
     ("identify", &[]),
     ("script", &["lessons", "packages", "teach"]),
     ("cli", &["lsp"]),

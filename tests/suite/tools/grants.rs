@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/compare.rs", "Read", 1),
     ("cli/check.rs", "CheckOnly", 1),
+    // The unit that is written.
+    ("cli/export_fmu.rs", "Named", 1),
     ("cli/identify.rs", "Read", 1),
     ("cli/new.rs", "Named", 1),
     ("cli/repl/commands.rs", "Named", 1),

@@ -25,3 +25,4 @@ mod session;
 mod teach;
 #[cfg(unix)]
 mod terminal;
+mod units;

@@ -1,0 +1,39 @@
+//! The units of measurement of a unit's variables.
+
+use crate::description::{BaseUnit, DisplayUnit, Unit, Variable};
+use crate::units;
+use std::collections::BTreeMap;
+
+/// The units that variables name, each once, in alphabetical order.
+pub(super) fn units<'v>(variables: impl Iterator<Item = &'v Variable>) -> Vec<Unit> {
+    let mut known: BTreeMap<String, Unit> = BTreeMap::new();
+    for variable in variables {
+        let Some(name) = &variable.attributes.unit else { continue };
+        let unit = known.entry(name.clone()).or_insert_with(|| Unit {
+            name: name.clone(),
+            base: base(name),
+            display_units: Vec::new(),
+        });
+        let Some(shown) = &variable.attributes.display_unit else { continue };
+        let is_new = unit.display_units.iter().all(|one| one.name != *shown);
+        if let (true, Some(display)) = (is_new, display(name, shown)) {
+            unit.display_units.push(display);
+        }
+    }
+    known.into_values().collect()
+}
+
+/// What a unit is in base units of SI.
+fn base(name: &str) -> Option<BaseUnit> {
+    let unit = units::unit(name)?;
+    let [kg, m, s, a, k, mol, cd] = unit.dimension.exponents()?;
+    let exponents = [kg, m, s, a, k, mol, cd, 0];
+    Some(BaseUnit { exponents, factor: unit.factor, offset: unit.offset })
+}
+
+/// A unit for people; `None` where it measures something else.
+pub(super) fn display(name: &str, shown: &str) -> Option<DisplayUnit> {
+    let conversion = units::unit(name)?.to(units::unit(shown)?)?;
+    let (factor, offset) = (conversion.factor, conversion.offset);
+    Some(DisplayUnit { name: shown.to_owned(), factor, offset, is_inverse: false })
+}

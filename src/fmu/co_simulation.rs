@@ -1,0 +1,85 @@
+//! Steps of an instance by its own integrator, a method of one step that may begin anywhere: inputs
+//! jump at communication points. Events within a step are handled in it.
+
+use crate::instance::{Instance, Phase, Wrong};
+use crate::sim::{
+    AT_ONCE, End, EventOutcome, OutputGrid, Residual, Settings, SimError, SimErrorKind, Trajectory,
+    find_integrator,
+};
+
+/// A method of Rosenbrock for stiff and other models.
+const METHOD: &str = "rodas4";
+
+impl Instance {
+    /// Goes from a communication point to the next.
+    pub(crate) fn do_step(&mut self, from: f64, length: f64) -> Result<End, Wrong> {
+        self.expect(&[Phase::Event], "steps follow the initialization")?;
+        let (time, to) = (self.state.time, from + length);
+        let margin = AT_ONCE.max(1e-9 * time.abs());
+        if !to.is_finite() || length < 0.0 {
+            return Err(Wrong::Error(format!("a step cannot have the length {length}")));
+        }
+        if (from - time).abs() > margin {
+            return Err(Wrong::Error(format!(
+                "the step begins at {from}, but the last one has ended at {time}"
+            )));
+        }
+        if self.stop.is_some_and(|stop| to > stop + margin) {
+            return Err(Wrong::Error(format!("the step leads past the stop time to {to}")));
+        }
+        let state = &mut self.state;
+        let due = state.system.is_event_due(state.time, &state.x);
+        let is_due = due.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;
+        if self.state.inputs_changed || is_due {
+            let mut outcome = EventOutcome::Again;
+            while outcome == EventOutcome::Again {
+                outcome = self.handle_event()?;
+            }
+            if outcome == EventOutcome::Terminate {
+                return Ok(End { time, is_terminated: true });
+            }
+        }
+        if to <= time {
+            return Ok(End { time, is_terminated: false });
+        }
+        self.integrate(to)
+    }
+
+    fn integrate(&mut self, to: f64) -> Result<End, Wrong> {
+        let method = find_integrator(METHOD).map_err(|fault| Wrong::Error(fault.message))?;
+        let settings = Settings {
+            start: self.state.time,
+            stop: to,
+            output: OutputGrid::At(Vec::new()),
+            tolerance: self.tolerance,
+            method,
+            initial_step: Some(to - self.state.time),
+            ..Settings::default()
+        };
+        // The integrator sees the unknowns of loops, from where the last evaluation has left them.
+        let system = &mut self.state.system;
+        system.solve_loops(false);
+        let n = self.state.x.len();
+        let mut y = vec![0.0; n + system.n_algebraic()];
+        system.unknowns(&mut y);
+        y[..n].copy_from_slice(&self.state.x);
+        let mut events = Trajectory::default();
+        let done = self.simulator.resume(system, &settings, &mut y, &mut events);
+        let system = &mut self.state.system;
+        system.solve_loops(true);
+        self.state.x.copy_from_slice(&y[..n]);
+        self.forget_values();
+        match done {
+            Ok(end) => {
+                self.state.time = end.time;
+                Ok(end)
+            }
+            Err(error) => {
+                let SimError { time, .. } = error;
+                let message = self.state.system.explain(&error).message.clone();
+                self.state.time = time;
+                Err(Wrong::Error(message))
+            }
+        }
+    }
+}

@@ -1,0 +1,503 @@
+//! An instance: a system with what the modes of FMI ask of it.
+
+use crate::fmi::export::{Exported, Place, Setter, ValueKind};
+use crate::loading::Loaded;
+use crate::runtime::System;
+use crate::sim::{EventOutcome, Events, Failure, Residual, SimError, SimErrorKind, Simulator};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Why a function failed.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Wrong {
+    /// The status `Error`.
+    Error(String),
+    /// The status `Discard`: the values at hand have no result, others may.
+    Discard(String),
+}
+
+impl From<String> for Wrong {
+    fn from(message: String) -> Wrong {
+        Wrong::Error(message)
+    }
+}
+
+impl From<&str> for Wrong {
+    fn from(message: &str) -> Wrong {
+        Wrong::Error(message.to_owned())
+    }
+}
+
+/// Where an instance is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Phase {
+    /// Before the initialization.
+    Instantiated,
+    /// During it: values follow from what is set so far.
+    Initialization,
+    /// At an event; for co-simulation between steps.
+    Event,
+    /// Between events.
+    Continuous,
+    /// After the end.
+    Terminated,
+}
+
+/// What an event update did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Updated {
+    pub(crate) needs_update: bool,
+    pub(crate) terminates: bool,
+    pub(crate) states_changed: bool,
+    pub(crate) next_event: Option<f64>,
+}
+
+/// What belongs to the state of an instance, to be kept and restored.
+#[derive(Clone)]
+pub(crate) struct State {
+    pub(crate) system: System,
+    pub(crate) phase: Phase,
+    pub(crate) time: f64,
+    /// The states, inputs that are states included.
+    pub(crate) x: Vec<f64>,
+    /// Values that were set before the initialization, by value reference.
+    given: BTreeMap<u32, f64>,
+    /// Whether the initial system has been solved with what is set.
+    is_initialized: bool,
+    /// Whether no event has been handled since.
+    is_at_start: bool,
+    /// Whether inputs were set since the last event.
+    pub(crate) inputs_changed: bool,
+    /// Observed variables at (time, x).
+    observed: Vec<f64>,
+    is_observed: bool,
+}
+
+/// An instance.
+pub(crate) struct Instance {
+    pub(crate) model: Arc<Loaded>,
+    pub(crate) state: State,
+    pub(crate) start: f64,
+    pub(crate) stop: Option<f64>,
+    pub(crate) tolerance: f64,
+    pub(crate) simulator: Simulator,
+    /// How many messages of the model have been passed on.
+    passed_on: usize,
+}
+
+impl State {
+    fn new(model: &Loaded) -> State {
+        let mut system = model.program.system();
+        system.solve_loops(true);
+        system.listen();
+        for (parameter, value) in &model.content.set {
+            // It was checked when it was set.
+            let _ = system.set_parameter(*parameter, *value);
+        }
+        for variable in &model.content.variables {
+            if let Setter::Recorded { input, start } = variable.setter {
+                system.set_recorded(input, start);
+            }
+        }
+        State {
+            x: vec![0.0; model.program.n_states()],
+            observed: vec![0.0; system.n_observed()],
+            system,
+            phase: Phase::Instantiated,
+            time: 0.0,
+            given: BTreeMap::new(),
+            is_initialized: false,
+            is_at_start: false,
+            inputs_changed: false,
+            is_observed: false,
+        }
+    }
+}
+
+impl Instance {
+    pub(crate) fn new(model: Arc<Loaded>) -> Instance {
+        let state = State::new(&model);
+        let tolerance = model.content.tolerance;
+        let simulator = Simulator::new();
+        let start = model.program.experiment().start_time.unwrap_or(0.0);
+        Instance { model, state, start, stop: None, tolerance, simulator, passed_on: 0 }
+    }
+
+    pub(crate) fn reset(&mut self) {
+        self.state = State::new(&self.model);
+        self.passed_on = 0;
+    }
+
+    /// When it begins and ends, and how accurate it is to be.
+    pub(crate) fn set_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Wrong> {
+        self.expect(&[Phase::Instantiated], "the experiment can be set before the initialization")?;
+        if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
+            return Err("the start and stop time are no interval".into());
+        }
+        (self.start, self.stop) = (start, stop);
+        if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > 0.0) {
+            self.tolerance = tolerance.clamp(1e-14, 1.0);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn expect(&self, phases: &[Phase], rule: &str) -> Result<(), Wrong> {
+        match phases.contains(&self.state.phase) {
+            true => Ok(()),
+            false => Err(Wrong::Error(format!("called in the wrong state: {rule}"))),
+        }
+    }
+
+    pub(crate) fn enter_initialization(&mut self) -> Result<(), Wrong> {
+        self.expect(&[Phase::Instantiated], "the initialization begins after the instantiation")?;
+        self.state.phase = Phase::Initialization;
+        self.state.time = self.start;
+        Ok(())
+    }
+
+    pub(crate) fn exit_initialization(&mut self) -> Result<(), Wrong> {
+        self.expect(&[Phase::Initialization], "the initialization has not begun")?;
+        self.initialize()?;
+        self.state.phase = Phase::Event;
+        self.state.inputs_changed = false;
+        Ok(())
+    }
+
+    /// Solves the initial system with what is set, unless that was done.
+    fn initialize(&mut self) -> Result<(), Wrong> {
+        if self.state.is_initialized {
+            return Ok(());
+        }
+        let state = &mut self.state;
+        let done = state.system.initialize(self.start, &mut state.x);
+        done.map_err(|failure| self.explained(SimErrorKind::Initialization(failure)))?;
+        self.state.is_initialized = true;
+        self.state.is_at_start = true;
+        self.passed_on = 0;
+        self.forget_values();
+        Ok(())
+    }
+
+    pub(crate) fn forget_values(&mut self) {
+        self.state.is_observed = false;
+    }
+
+    /// A failure in the model's words.
+    pub(crate) fn explained(&self, kind: SimErrorKind) -> Wrong {
+        let error = SimError { time: self.state.time, kind, offending: None };
+        Wrong::Error(self.state.system.explain(&error).message.clone())
+    }
+
+    fn discarded(&self, failure: Failure) -> Wrong {
+        match self.explained(SimErrorKind::Evaluation(failure)) {
+            Wrong::Error(message) if self.state.phase == Phase::Continuous => {
+                Wrong::Discard(message)
+            }
+            other => other,
+        }
+    }
+
+    /// Messages of the model that were not passed on yet: whether each is a warning, and its text.
+    pub(crate) fn new_messages(&mut self) -> Vec<(bool, String)> {
+        let (messages, _) = self.state.system.log_messages();
+        let fresh = messages.iter().skip(self.passed_on);
+        let fresh = fresh.map(|message| {
+            (message.warning.is_some(), format!("t = {}: {}", message.time, message.text))
+        });
+        let fresh: Vec<_> = fresh.collect();
+        self.passed_on = messages.len();
+        fresh
+    }
+
+    fn variable(&self, reference: u32, kinds: &[ValueKind]) -> Result<Exported, Wrong> {
+        let found = self.model.content.variables.get(reference as usize);
+        let found = found.filter(|variable| kinds.contains(&variable.kind));
+        found.cloned().ok_or_else(|| {
+            Wrong::Error(format!(
+                "there is no variable of this type with value reference {reference}"
+            ))
+        })
+    }
+
+    /// The value of a variable.
+    pub(crate) fn value(&mut self, reference: u32, kinds: &[ValueKind]) -> Result<f64, Wrong> {
+        let variable = self.variable(reference, kinds)?;
+        match self.state.phase {
+            Phase::Instantiated => return self.start_value(reference, &variable),
+            Phase::Initialization => self.initialize()?,
+            _ => {}
+        }
+        let at_place = match variable.place {
+            Place::Time => return Ok(self.state.time),
+            Place::State(state) => return Ok(self.state.x[state]),
+            Place::Derivative(state) => return Ok(self.all_derivatives()?[state]),
+            Place::Indicator(at) => {
+                let mut all = vec![0.0; self.model.program.n_indicators()];
+                self.event_indicators(&mut all)?;
+                return all.get(at).copied().ok_or_else(|| "there is no such indicator".into());
+            }
+            Place::Variable(at) => at,
+        };
+        use crate::codegen::Access;
+        let model = self.model.clone();
+        match model.program.variables()[at_place].access {
+            Access::Time => Ok(self.state.time),
+            Access::Constant(value) => Ok(value),
+            Access::Parameter => self.state.system.value(at_place).ok_or_else(|| {
+                Wrong::Error(format!("the parameter `{}` has no value", variable.name))
+            }),
+            Access::Observed { column, negated } => {
+                self.observe()?;
+                let value = self.state.observed[column];
+                Ok(if negated { -value } else { value })
+            }
+        }
+    }
+
+    /// Before the initialization start values are known alone.
+    fn start_value(&self, reference: u32, variable: &Exported) -> Result<f64, Wrong> {
+        if let Some(value) = self.state.given.get(&reference) {
+            return Ok(*value);
+        }
+        let parameters = self.model.program.parameters();
+        let set = |at: usize| {
+            let mut set = self.model.content.set.iter();
+            let found = set.find(|(parameter, _)| *parameter == at);
+            found.map_or(parameters[at].default, |(_, value)| *value)
+        };
+        match variable.setter {
+            Setter::Parameter(at) | Setter::Input { start: at, .. } => Ok(set(at)),
+            Setter::Recorded { start, .. } => Ok(start),
+            Setter::None => match variable.place {
+                Place::Time => Ok(self.start),
+                Place::Variable(at) if self.state.system.value(at).is_some() => {
+                    Ok(self.state.system.value(at).unwrap_or(f64::NAN))
+                }
+                _ => Err(Wrong::Error(format!(
+                    "`{}` has no value before the initialization",
+                    variable.name
+                ))),
+            },
+        }
+    }
+
+    /// Computes the observed variables, unless they are known.
+    fn observe(&mut self) -> Result<(), Wrong> {
+        let state = &mut self.state;
+        if !state.is_observed {
+            let done = state.system.observe(state.time, &state.x, &mut state.observed);
+            done.map_err(|failure| self.discarded(failure))?;
+            self.state.is_observed = true;
+        }
+        Ok(())
+    }
+
+    /// Sets a variable.
+    pub(crate) fn set(
+        &mut self,
+        reference: u32,
+        value: f64,
+        kinds: &[ValueKind],
+    ) -> Result<(), Wrong> {
+        let variable = self.variable(reference, kinds)?;
+        if !value.is_finite() {
+            return Err(Wrong::Error(format!("`{}` cannot become {value}", variable.name)));
+        }
+        let is_before = matches!(self.state.phase, Phase::Instantiated | Phase::Initialization);
+        let state = &mut self.state;
+        match variable.setter {
+            Setter::None => Err(Wrong::Error(format!("`{}` cannot be set", variable.name))),
+            Setter::Parameter(_) if !is_before => Err(Wrong::Error(format!(
+                "`{}` can be set before the end of the initialization only",
+                variable.name
+            ))),
+            Setter::Parameter(at) | Setter::Input { start: at, .. } if is_before => {
+                let set = state.system.set_parameter(at, value);
+                set.map_err(|fault| Wrong::Error(fault.message))?;
+                state.given.insert(reference, value);
+                state.is_initialized = false;
+                self.forget_values();
+                Ok(())
+            }
+            Setter::Input { state: at, is_negated, .. } => {
+                let value = if is_negated { -value } else { value };
+                if state.x[at] != value {
+                    state.x[at] = value;
+                    state.inputs_changed = true;
+                    self.forget_values();
+                }
+                Ok(())
+            }
+            Setter::Recorded { input, .. } => {
+                state.system.set_recorded(input, value);
+                state.given.insert(reference, value);
+                state.is_initialized &= !is_before;
+                state.inputs_changed = true;
+                self.forget_values();
+                Ok(())
+            }
+            Setter::Parameter(_) => Ok(()),
+        }
+    }
+
+    pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Wrong> {
+        if !time.is_finite() {
+            return Err("the time is not finite".into());
+        }
+        self.state.time = time;
+        self.forget_values();
+        Ok(())
+    }
+
+    /// The continuous states.
+    pub(crate) fn states(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
+        if self.state.phase == Phase::Initialization {
+            self.initialize()?;
+        }
+        self.check_number(out.len())?;
+        for (out, state) in out.iter_mut().zip(&self.model.content.states) {
+            *out = self.state.x[*state];
+        }
+        Ok(())
+    }
+
+    pub(crate) fn set_states(&mut self, x: &[f64]) -> Result<(), Wrong> {
+        self.check_number(x.len())?;
+        for (value, state) in x.iter().zip(&self.model.content.states) {
+            self.state.x[*state] = *value;
+        }
+        self.forget_values();
+        Ok(())
+    }
+
+    fn check_number(&self, n: usize) -> Result<(), Wrong> {
+        let expected = self.model.content.states.len();
+        match n == expected {
+            true => Ok(()),
+            false => Err(Wrong::Error(format!("there are {expected} continuous states, not {n}"))),
+        }
+    }
+
+    fn all_derivatives(&mut self) -> Result<Vec<f64>, Wrong> {
+        if self.state.phase == Phase::Initialization {
+            self.initialize()?;
+        }
+        let state = &mut self.state;
+        let mut all = vec![0.0; state.x.len()];
+        let done = state.system.rhs(state.time, &state.x, &mut all);
+        done.map_err(|failure| self.discarded(failure))?;
+        match all.iter().all(|value| value.is_finite()) {
+            true => Ok(all),
+            false => Err(self.not_finite()),
+        }
+    }
+
+    fn not_finite(&self) -> Wrong {
+        match self.explained(SimErrorKind::NotFinite) {
+            Wrong::Error(message) => Wrong::Discard(message),
+            other => other,
+        }
+    }
+
+    /// The derivatives of the continuous states.
+    pub(crate) fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
+        self.check_number(out.len())?;
+        let all = self.all_derivatives()?;
+        for (out, state) in out.iter_mut().zip(&self.model.content.states) {
+            *out = all[*state];
+        }
+        Ok(())
+    }
+
+    pub(crate) fn nominals(&self, out: &mut [f64]) -> Result<(), Wrong> {
+        self.check_number(out.len())?;
+        let mut all = vec![1.0; self.state.x.len()];
+        self.state.system.nominal(&mut all);
+        for (out, state) in out.iter_mut().zip(&self.model.content.states) {
+            *out = if all[*state] > 0.0 { all[*state] } else { 1.0 };
+        }
+        Ok(())
+    }
+
+    pub(crate) fn event_indicators(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
+        if self.state.phase == Phase::Initialization {
+            self.initialize()?;
+        }
+        let expected = self.model.program.n_indicators();
+        if out.len() != expected {
+            let n = out.len();
+            return Err(Wrong::Error(format!("there are {expected} event indicators, not {n}")));
+        }
+        let state = &mut self.state;
+        let done = state.system.event_indicators(state.time, &state.x, out);
+        done.map_err(|failure| self.discarded(failure))
+    }
+
+    pub(crate) fn enter_event_mode(&mut self) -> Result<(), Wrong> {
+        self.expect(&[Phase::Continuous, Phase::Event], "events follow the initialization")?;
+        self.state.phase = Phase::Event;
+        Ok(())
+    }
+
+    pub(crate) fn enter_continuous_mode(&mut self) -> Result<(), Wrong> {
+        self.expect(&[Phase::Event, Phase::Continuous], "an event comes first")?;
+        self.state.phase = Phase::Continuous;
+        Ok(())
+    }
+
+    /// Handles the event at the time and the states as they are.
+    pub(crate) fn update(&mut self) -> Result<Updated, Wrong> {
+        self.expect(&[Phase::Event], "discrete states are updated at events")?;
+        let was_at_start = std::mem::take(&mut self.state.is_at_start);
+        let before = self.state.x.clone();
+        let nothing_to_do =
+            was_at_start && !self.state.inputs_changed && !self.state.system.has_event_at_start();
+        let outcome = match nothing_to_do {
+            true => EventOutcome::Continue { y_changed: false },
+            false => self.handle_event()?,
+        };
+        Ok(Updated {
+            needs_update: outcome == EventOutcome::Again,
+            terminates: outcome == EventOutcome::Terminate,
+            states_changed: before != self.state.x,
+            next_event: self.state.system.next_time_event(self.state.time),
+        })
+    }
+
+    pub(crate) fn handle_event(&mut self) -> Result<EventOutcome, Wrong> {
+        // Loops are solved at the values before the event first, from where those after it are found;
+        // a branch that is left may have no value.
+        let _ = self.observe();
+        let state = &mut self.state;
+        state.system.crossed(None, f64::INFINITY);
+        let outcome = state.system.handle_event(state.time, &mut state.x);
+        let outcome = outcome.map_err(|f| self.explained(SimErrorKind::Evaluation(f)))?;
+        self.state.inputs_changed = false;
+        self.forget_values();
+        Ok(outcome)
+    }
+
+    /// Checks at the end of a step what must hold there.
+    pub(crate) fn complete_step(&mut self) -> Result<(), Wrong> {
+        self.expect(&[Phase::Continuous], "steps are made between events")?;
+        let state = &mut self.state;
+        let done = state.system.check(state.time, &state.x);
+        done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))
+    }
+
+    pub(crate) fn terminate(&mut self) -> Result<(), Wrong> {
+        if matches!(self.state.phase, Phase::Event | Phase::Continuous) {
+            let state = &mut self.state;
+            let done = state.system.finish(state.time, &mut state.x);
+            done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;
+            self.forget_values();
+        }
+        self.state.phase = Phase::Terminated;
+        Ok(())
+    }
+}

@@ -1,0 +1,660 @@
+//! Exported functional mock-up units, driven through the functions of the standard as an importer
+//! does, against exact solutions.
+
+#![allow(unsafe_code, reason = "functions of a shared library can only be called so")]
+
+use gapilib::Session;
+use gapilib::internals::script::models::exported::unit;
+use gapilib::world::MemoryWorld;
+use gapilib_fmi::description::{Causality, Description, Version};
+use gapilib_fmi::export::{FILE, Kinds};
+use libloading::{Library, Symbol};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::sync::{Mutex, OnceLock};
+use tempfile::TempDir;
+
+const CLASSES: &str = "\
+model Decay
+  parameter Real k = 1;
+  output Real x(start = 1, fixed = true);
+equation
+  der(x) = -k*x;
+end Decay;
+model Ball
+  parameter Real e = 0.7;
+  Real h(start = 1, fixed = true), v(start = 0, fixed = true);
+equation
+  der(h) = v;
+  der(v) = -9.81;
+  when h <= 0 then
+    reinit(v, -e*pre(v));
+  end when;
+end Ball;
+model Limited
+  Real x(start = 0, fixed = true);
+  output Boolean full = x >= 1;
+equation
+  der(x) = if full then 0 else 1;
+end Limited;
+model Stair
+  output Integer n(start = 1, fixed = true);
+equation
+  when sample(1, 1) then
+    n = pre(n) + 1;
+  end when;
+  when n == 4 then
+    terminate(\"done\");
+  end when;
+end Stair;
+model Driven
+  input Real u(start = 1);
+  input Integer i(start = 2);
+  input Boolean b;
+  output Real y = 2*x + 3*u;
+  output Integer j = i + 1;
+  output Boolean c = not b;
+  output Boolean high = u > 2;
+  Real x(start = 0, fixed = true);
+equation
+  der(x) = u - x;
+end Driven;
+model Loop
+  Real x(start = 1, fixed = true);
+  output Real z(start = 1);
+equation
+  der(x) = -z;
+  z + 0.1*z^3 + sin(z) = x;
+end Loop;
+model Late
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -delay(x, 1);
+end Late;
+model Fast
+  input Real u;
+  output Real y = der(u);
+end Fast;
+";
+
+const BOTH: Kinds = Kinds { model_exchange: true, co_simulation: true };
+
+/// A unit, unpacked.
+struct Unpacked {
+    folder: TempDir,
+    description: Description,
+}
+
+fn export(class: &str, version: Version) -> Result<Unpacked, String> {
+    let mut session = Session::new(Box::new(MemoryWorld::new()));
+    session.load_text("Classes.mo", CLASSES).map_err(|errors| format!("{errors:?}"))?;
+    let unit = unit(&mut session, class, version, BOTH).map_err(|errors| {
+        errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("\n")
+    })?;
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(FILE), unit.content.to_bytes().unwrap()).unwrap();
+    Ok(Unpacked { folder, description: unit.description })
+}
+
+/// The runtime of units, as the build has left it.
+fn library() -> &'static Library {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let here = std::env::current_exe().unwrap();
+        let name =
+            format!("{}gapilib_fmu{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        unsafe { Library::new(here.with_file_name(name)) }.expect("the runtime was built")
+    })
+}
+
+fn function<T>(name: &str) -> Symbol<'static, T> {
+    unsafe { library().get(name.as_bytes()) }.unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+type Plain = unsafe extern "C" fn(*mut c_void) -> c_int;
+type Array = unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> c_int;
+type Logger = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+
+static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+unsafe extern "C" fn note(_: *mut c_void, _: c_int, _: *const c_char, message: *const c_char) {
+    let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
+    MESSAGES.lock().unwrap().push(message);
+}
+
+/// An instance of FMI 3.0 between the initialization and the end.
+struct Instance<'u> {
+    pointer: *mut c_void,
+    unit: &'u Unpacked,
+}
+
+impl Drop for Instance<'_> {
+    fn drop(&mut self) {
+        let free: Symbol<unsafe extern "C" fn(*mut c_void)> = function("fmi3FreeInstance");
+        unsafe { free(self.pointer) };
+    }
+}
+
+#[derive(Debug, Default, PartialEq)]
+struct Updated {
+    again: bool,
+    terminates: bool,
+    states_changed: bool,
+    next: Option<f64>,
+}
+
+impl<'u> Instance<'u> {
+    fn new(unit: &'u Unpacked, is_co_simulation: bool) -> Instance<'u> {
+        let token = unit.description.token.clone();
+        let pointer = instantiate(unit, &token, is_co_simulation);
+        assert!(!pointer.is_null(), "{:?}", MESSAGES.lock().unwrap());
+        Instance { pointer, unit }
+    }
+
+    fn initialize(&self) {
+        self.begin();
+        self.plain("fmi3ExitInitializationMode");
+    }
+
+    fn begin(&self) {
+        type Enter = unsafe extern "C" fn(*mut c_void, bool, f64, f64, bool, f64) -> c_int;
+        let enter: Symbol<Enter> = function("fmi3EnterInitializationMode");
+        assert_eq!(unsafe { enter(self.pointer, true, 1e-8, 0.0, false, 0.0) }, 0);
+    }
+
+    fn plain(&self, name: &str) {
+        let run: Symbol<Plain> = function(name);
+        let status = unsafe { run(self.pointer) };
+        assert_eq!(status, 0, "{name}: {:?}", MESSAGES.lock().unwrap());
+    }
+
+    fn fill(&self, name: &str, n: usize) -> Vec<f64> {
+        let mut out = vec![f64::NAN; n];
+        let run: Symbol<Array> = function(name);
+        assert_eq!(unsafe { run(self.pointer, out.as_mut_ptr(), n) }, 0, "{name}");
+        out
+    }
+
+    fn derivatives(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        self.place(t, x);
+        self.fill("fmi3GetContinuousStateDerivatives", x.len())
+    }
+
+    fn place(&self, t: f64, x: &[f64]) {
+        let time: Symbol<unsafe extern "C" fn(*mut c_void, f64) -> c_int> = function("fmi3SetTime");
+        type Set = unsafe extern "C" fn(*mut c_void, *const f64, usize) -> c_int;
+        let states: Symbol<Set> = function("fmi3SetContinuousStates");
+        assert_eq!(unsafe { time(self.pointer, t) }, 0);
+        assert_eq!(unsafe { states(self.pointer, x.as_ptr(), x.len()) }, 0);
+    }
+
+    fn update(&self) -> Updated {
+        type Update = unsafe extern "C" fn(
+            *mut c_void,
+            *mut bool,
+            *mut bool,
+            *mut bool,
+            *mut bool,
+            *mut bool,
+            *mut f64,
+        ) -> c_int;
+        let update: Symbol<Update> = function("fmi3UpdateDiscreteStates");
+        let (mut flags, mut next) = ([false; 5], 0.0);
+        let [again, terminates, nominals, states, defined] = &mut flags;
+        let status = unsafe {
+            update(self.pointer, again, terminates, nominals, states, defined, &raw mut next)
+        };
+        assert_eq!(status, 0, "{:?}", MESSAGES.lock().unwrap());
+        let [again, terminates, _, states_changed, defined] = flags;
+        Updated { again, terminates, states_changed, next: defined.then_some(next) }
+    }
+
+    fn reference(&self, name: &str) -> u32 {
+        self.unit.description.find(name).unwrap_or_else(|| panic!("no {name}")).reference
+    }
+
+    fn get<T: Copy + Default + 'static>(&self, what: &str, name: &str) -> T {
+        type Get<T> = unsafe extern "C" fn(*mut c_void, *const u32, usize, *mut T, usize) -> c_int;
+        let get: Symbol<Get<T>> = function(&format!("fmi3Get{what}"));
+        let (reference, mut value) = (self.reference(name), T::default());
+        let status = unsafe { get(self.pointer, &raw const reference, 1, &raw mut value, 1) };
+        assert_eq!(status, 0, "{name}: {:?}", MESSAGES.lock().unwrap());
+        value
+    }
+
+    fn try_set<T: 'static>(&self, what: &str, reference: u32, value: T) -> c_int {
+        type Set<T> =
+            unsafe extern "C" fn(*mut c_void, *const u32, usize, *const T, usize) -> c_int;
+        let set: Symbol<Set<T>> = function(&format!("fmi3Set{what}"));
+        unsafe { set(self.pointer, &raw const reference, 1, &raw const value, 1) }
+    }
+
+    fn set<T: 'static>(&self, what: &str, name: &str, value: T) {
+        let status = self.try_set(what, self.reference(name), value);
+        assert_eq!(status, 0, "{name}: {:?}", MESSAGES.lock().unwrap());
+    }
+
+    /// The time reached, and whether the model has ended the simulation.
+    fn step(&self, from: f64, length: f64) -> (f64, bool) {
+        type Step = unsafe extern "C" fn(
+            *mut c_void,
+            f64,
+            f64,
+            bool,
+            *mut bool,
+            *mut bool,
+            *mut bool,
+            *mut f64,
+        ) -> c_int;
+        let step: Symbol<Step> = function("fmi3DoStep");
+        let (mut event, mut terminates, mut early, mut time) = (false, false, false, 0.0);
+        let status = unsafe {
+            step(
+                self.pointer,
+                from,
+                length,
+                true,
+                &raw mut event,
+                &raw mut terminates,
+                &raw mut early,
+                &raw mut time,
+            )
+        };
+        assert_eq!(status, 0, "{:?}", MESSAGES.lock().unwrap());
+        (time, terminates)
+    }
+
+    fn derivative(&self, of: &str, by: &str, is_adjoint: bool) -> f64 {
+        type Derivative = unsafe extern "C" fn(
+            *mut c_void,
+            *const u32,
+            usize,
+            *const u32,
+            usize,
+            *const f64,
+            usize,
+            *mut f64,
+            usize,
+        ) -> c_int;
+        let name =
+            if is_adjoint { "fmi3GetAdjointDerivative" } else { "fmi3GetDirectionalDerivative" };
+        let run: Symbol<Derivative> = function(name);
+        let (of, by, seed, mut out) = (self.reference(of), self.reference(by), 1.0, f64::NAN);
+        let status = unsafe {
+            run(
+                self.pointer,
+                &raw const of,
+                1,
+                &raw const by,
+                1,
+                &raw const seed,
+                1,
+                &raw mut out,
+                1,
+            )
+        };
+        assert_eq!(status, 0, "{:?}", MESSAGES.lock().unwrap());
+        out
+    }
+}
+
+fn instantiate(unit: &Unpacked, token: &str, is_co_simulation: bool) -> *mut c_void {
+    type Exchange = unsafe extern "C" fn(
+        *const c_char,
+        *const c_char,
+        *const c_char,
+        bool,
+        bool,
+        *mut c_void,
+        Option<Logger>,
+    ) -> *mut c_void;
+    type CoSimulation = unsafe extern "C" fn(
+        *const c_char,
+        *const c_char,
+        *const c_char,
+        bool,
+        bool,
+        bool,
+        bool,
+        *const u32,
+        usize,
+        *mut c_void,
+        Option<Logger>,
+        *const c_void,
+    ) -> *mut c_void;
+    let text = |text: &str| CString::new(text).unwrap();
+    let (name, token) = (text("one"), text(token));
+    let resources = text(unit.folder.path().to_str().unwrap());
+    let (name, token, resources) = (name.as_ptr(), token.as_ptr(), resources.as_ptr());
+    let nothing = std::ptr::null_mut();
+    match is_co_simulation {
+        false => {
+            let make: Symbol<Exchange> = function("fmi3InstantiateModelExchange");
+            unsafe { make(name, token, resources, false, false, nothing, Some(note)) }
+        }
+        true => {
+            let make: Symbol<CoSimulation> = function("fmi3InstantiateCoSimulation");
+            let none = std::ptr::null();
+            unsafe {
+                make(
+                    name,
+                    token,
+                    resources,
+                    false,
+                    false,
+                    false,
+                    false,
+                    none,
+                    0,
+                    nothing,
+                    Some(note),
+                    std::ptr::null(),
+                )
+            }
+        }
+    }
+}
+
+fn close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
+}
+
+/// One step of the classical method of Runge and Kutta.
+fn runge_kutta(instance: &Instance, t: f64, h: f64, x: &mut [f64]) {
+    let moved = |x: &[f64], k: &[f64], h: f64| -> Vec<f64> {
+        x.iter().zip(k).map(|(x, k)| x + h * k).collect()
+    };
+    let k1 = instance.derivatives(t, x);
+    let k2 = instance.derivatives(t + h / 2.0, &moved(x, &k1, h / 2.0));
+    let k3 = instance.derivatives(t + h / 2.0, &moved(x, &k2, h / 2.0));
+    let k4 = instance.derivatives(t + h, &moved(x, &k3, h));
+    for (at, x) in x.iter_mut().enumerate() {
+        *x += h / 6.0 * (k1[at] + 2.0 * k2[at] + 2.0 * k3[at] + k4[at]);
+    }
+    instance.place(t + h, x);
+}
+
+#[test]
+fn a_decay_is_integrated_by_the_importer_and_by_itself() {
+    let unit = export("Decay", Version::V3).unwrap();
+    let exchange = Instance::new(&unit, false);
+    exchange.set("Float64", "k", 2.0);
+    exchange.initialize();
+    assert_eq!(exchange.update(), Updated::default());
+    exchange.plain("fmi3EnterContinuousTimeMode");
+    let mut x = exchange.fill("fmi3GetContinuousStates", 1);
+    assert_eq!(x, [1.0]);
+    for step in 0..100 {
+        runge_kutta(&exchange, f64::from(step) * 0.01, 0.01, &mut x);
+    }
+    close(exchange.get("Float64", "x"), (-2.0f64).exp(), 1e-9);
+    assert_eq!(exchange.derivative("der(x)", "x", false), -2.0);
+    assert_eq!(exchange.derivative("der(x)", "x", true), -2.0);
+
+    let own = Instance::new(&unit, true);
+    own.set("Float64", "k", 2.0);
+    own.initialize();
+    for step in 0..10 {
+        assert_eq!(own.step(f64::from(step) * 0.1, 0.1).1, false);
+    }
+    close(own.get("Float64", "x"), (-2.0f64).exp(), 1e-7);
+}
+
+#[test]
+fn a_start_value_is_set_and_a_state_is_kept_restored_and_reset() {
+    let unit = export("Decay", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.set("Float64", "x", 3.0);
+    own.initialize();
+    assert_eq!(own.get::<f64>("Float64", "x"), 3.0);
+    type Keep = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
+    let (keep, free): (Symbol<Keep>, Symbol<Keep>) =
+        (function("fmi3GetFMUState"), function("fmi3FreeFMUState"));
+    let restore: Symbol<unsafe extern "C" fn(*mut c_void, *mut c_void) -> c_int> =
+        function("fmi3SetFMUState");
+    own.step(0.0, 0.5);
+    let mut kept = std::ptr::null_mut();
+    assert_eq!(unsafe { keep(own.pointer, &raw mut kept) }, 0);
+    own.step(0.5, 0.5);
+    let first: f64 = own.get("Float64", "x");
+    assert_eq!(unsafe { restore(own.pointer, kept) }, 0);
+    close(own.get("Float64", "x"), 3.0 * (-0.5f64).exp(), 1e-7);
+    own.step(0.5, 0.5);
+    assert_eq!(own.get::<f64>("Float64", "x"), first, "the same bits again");
+    assert_eq!(unsafe { free(own.pointer, &raw mut kept) }, 0);
+    assert!(kept.is_null());
+    own.plain("fmi3Reset");
+    own.initialize();
+    assert_eq!(own.get::<f64>("Float64", "x"), 1.0, "nothing is left of what was set");
+}
+
+/// When the ball reaches the ground first, and how fast it is after a time before the second impact.
+fn ball(t: f64) -> (f64, f64, f64) {
+    let (g, impact) = (9.81, (2.0f64 / 9.81).sqrt());
+    let up = 0.7 * g * impact;
+    let since = t - impact;
+    (impact, up * since - g / 2.0 * since * since, up - g * since)
+}
+
+#[test]
+fn a_ball_bounces_at_its_event_indicator() {
+    let unit = export("Ball", Version::V3).unwrap();
+    let exchange = Instance::new(&unit, false);
+    exchange.initialize();
+    exchange.update();
+    exchange.plain("fmi3EnterContinuousTimeMode");
+    let mut x = exchange.fill("fmi3GetContinuousStates", 2);
+    let (impact, _, _) = ball(0.6);
+    let indicator = |exchange: &Instance| exchange.fill("fmi3GetEventIndicators", 1)[0];
+    runge_kutta(&exchange, 0.0, impact - 1e-6, &mut x);
+    let before = indicator(&exchange);
+    runge_kutta(&exchange, impact - 1e-6, 2e-6, &mut x);
+    assert!(before > 0.0 && indicator(&exchange) < 0.0, "{before}");
+    exchange.plain("fmi3EnterEventMode");
+    let updated = exchange.update();
+    assert_eq!((updated.again, updated.states_changed), (false, true));
+    let after = exchange.fill("fmi3GetContinuousStates", 2);
+    close(after[1], -0.7 * x[1], 1e-12);
+    assert!(indicator(&exchange) > 0.0, "the relation holds now");
+}
+
+#[test]
+fn a_ball_bounces_within_a_step() {
+    let unit = export("Ball", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    assert_eq!(own.step(0.0, 0.6), (0.6, false));
+    let (_, h, v) = ball(0.6);
+    close(own.get("Float64", "h"), h, 1e-6);
+    close(own.get("Float64", "v"), v, 1e-6);
+}
+
+#[test]
+fn an_event_beside_the_end_of_a_step_is_not_missed() {
+    let unit = export("Limited", Version::V3).unwrap();
+    // The ramp reaches its limit at t = 1: just before the end of the first step, there, or after it.
+    for first in [1.0 - 1e-13, 1.0, 1.0 + 1e-13, 1.0 + 1e-11] {
+        let own = Instance::new(&unit, true);
+        own.initialize();
+        own.step(0.0, first);
+        own.step(first, 1.0);
+        own.step(first + 1.0, 1.0);
+        close(own.get("Float64", "x"), 1.0, 1e-7);
+        assert!(own.get::<bool>("Boolean", "full"));
+    }
+}
+
+#[test]
+fn time_events_come_when_they_are_announced() {
+    let unit = export("Stair", Version::V3).unwrap();
+    let exchange = Instance::new(&unit, false);
+    exchange.initialize();
+    let mut updated = exchange.update();
+    for n in 1..=3 {
+        assert_eq!(exchange.get::<i64>("Int64", "n"), n);
+        assert_eq!(updated, Updated { next: Some(n as f64), ..Updated::default() });
+        exchange.plain("fmi3EnterContinuousTimeMode");
+        exchange.place(n as f64, &[]);
+        exchange.plain("fmi3EnterEventMode");
+        updated = exchange.update();
+    }
+    assert!(updated.terminates, "{updated:?}");
+
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    assert_eq!(own.step(0.0, 2.5), (2.5, false));
+    assert_eq!(own.get::<i64>("Int64", "n"), 3);
+    assert_eq!(own.step(2.5, 2.5), (3.0, true), "the model ends the simulation");
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    assert_eq!(own.step(0.0, 3.0), (3.0, true), "also where it is the end of a step");
+}
+
+#[test]
+fn inputs_of_every_type_are_followed() {
+    let unit = export("Driven", Version::V3).unwrap();
+    let causality = |name: &str| unit.description.find(name).unwrap().causality;
+    assert_eq!((causality("u"), causality("y")), (Causality::Input, Causality::Output));
+    let exchange = Instance::new(&unit, false);
+    exchange.begin();
+    exchange.set("Float64", "u", 0.5);
+    assert_eq!(exchange.get::<f64>("Float64", "y"), 1.5, "what is set counts at once");
+    exchange.plain("fmi3ExitInitializationMode");
+    assert_eq!(exchange.get::<i64>("Int64", "j"), 3);
+    assert!(exchange.get::<bool>("Boolean", "c"));
+    exchange.set("Int64", "i", 7i64);
+    exchange.set("Boolean", "b", true);
+    exchange.update();
+    assert_eq!(exchange.get::<i64>("Int64", "j"), 8);
+    assert!(!exchange.get::<bool>("Boolean", "c"));
+    exchange.plain("fmi3EnterContinuousTimeMode");
+    assert_eq!(exchange.derivatives(0.0, &[0.25]), [0.25]);
+    let n = unit.description.structure.event_indicators.len();
+    assert!(exchange.fill("fmi3GetEventIndicators", n).iter().all(|z| *z > 0.0));
+    exchange.set("Float64", "u", 4.0);
+    assert!(exchange.fill("fmi3GetEventIndicators", n).iter().any(|z| *z < 0.0));
+    assert_eq!(exchange.get::<f64>("Float64", "y"), 12.5);
+    exchange.plain("fmi3EnterEventMode");
+    exchange.update();
+    assert!(exchange.get::<bool>("Boolean", "high"));
+    assert_eq!(exchange.derivative("y", "u", false), 3.0);
+    assert_eq!(exchange.derivative("y", "x", true), 2.0);
+
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    own.step(0.0, 1.0);
+    own.set("Float64", "u", 5.0);
+    own.set("Int64", "i", 10i64);
+    own.step(1.0, 1.0);
+    let x = 5.0 + (1.0 - (-1.0f64).exp() - 5.0) * (-1.0f64).exp();
+    close(own.get("Float64", "x"), x, 1e-7);
+    assert_eq!(own.get::<i64>("Int64", "j"), 11);
+    assert!(own.get::<bool>("Boolean", "high"));
+}
+
+#[test]
+fn derivatives_through_a_loop_are_exact() {
+    let unit = export("Loop", Version::V3).unwrap();
+    let exchange = Instance::new(&unit, false);
+    exchange.initialize();
+    let z: f64 = exchange.get("Float64", "z");
+    close(z + 0.1 * z.powi(3) + z.sin(), 1.0, 1e-9);
+    let expected = 1.0 / (1.0 + 0.3 * z * z + z.cos());
+    close(exchange.derivative("z", "x", false), expected, 1e-9);
+    close(exchange.derivative("der(x)", "x", false), -expected, 1e-9);
+}
+
+#[test]
+fn what_is_wrong_is_an_error_with_a_message() {
+    let unit = export("Decay", Version::V3).unwrap();
+    assert!(instantiate(&unit, "{another}", false).is_null());
+    let said = |what: &str| MESSAGES.lock().unwrap().iter().any(|message| message.contains(what));
+    assert!(said("but {another} was requested"));
+    let own = Instance::new(&unit, true);
+    assert_eq!(own.try_set("Float64", 99, 1.0), 3);
+    assert!(said("there is no variable of this type with value reference 99"));
+    assert_eq!(own.try_set("Float64", own.reference("der(x)"), 1.0), 3);
+    assert!(said("`der(x)` cannot be set"));
+    own.initialize();
+    assert_eq!(own.try_set("Float64", own.reference("k"), 1.0), 3);
+    assert!(said("`k` can be set before the end of the initialization only"));
+}
+
+#[test]
+fn what_a_unit_cannot_do_is_refused_with_its_place() {
+    let refused = |class: &str| export(class, Version::V3).err().unwrap_or_default();
+    let late = refused("Late");
+    assert!(late.contains("`delay` (Classes.mo:55) needs values of the past"), "{late}");
+    let fast = refused("Fast");
+    assert!(fast.contains("depends on the derivative of its input `u`"), "{fast}");
+}
+
+#[test]
+fn a_unit_has_the_same_bytes_again_and_no_path() {
+    let bytes = |unit: &Unpacked| std::fs::read(unit.folder.path().join(FILE)).unwrap();
+    let (one, two) = (export("Ball", Version::V2).unwrap(), export("Ball", Version::V2).unwrap());
+    assert_eq!(bytes(&one), bytes(&two));
+    assert_eq!(one.description, two.description);
+    let content = String::from_utf8_lossy(&bytes(&one)).into_owned();
+    assert!(!content.contains("Classes.mo"));
+}
+
+/// `fmi2CallbackFunctions` without functions.
+#[repr(C)]
+struct Callbacks([*mut c_void; 5]);
+
+#[test]
+fn the_functions_of_fmi_2_simulate_as_well() {
+    type Instantiate = unsafe extern "C" fn(
+        *const c_char,
+        c_int,
+        *const c_char,
+        *const c_char,
+        *const Callbacks,
+        c_int,
+        c_int,
+    ) -> *mut c_void;
+    type Setup = unsafe extern "C" fn(*mut c_void, c_int, f64, f64, c_int, f64) -> c_int;
+    type Step = unsafe extern "C" fn(*mut c_void, f64, f64, c_int) -> c_int;
+    type Get = unsafe extern "C" fn(*mut c_void, *const u32, usize, *mut f64) -> c_int;
+    type Status = unsafe extern "C" fn(*mut c_void, c_int, *mut c_int) -> c_int;
+    let unit = export("Decay", Version::V2).unwrap();
+    let text = |text: &str| CString::new(text).unwrap();
+    let token = text(&unit.description.token);
+    let resources = text(&format!("file://{}", unit.folder.path().display()));
+    let callbacks = Callbacks([std::ptr::null_mut(); 5]);
+    let instantiate: Symbol<Instantiate> = function("fmi2Instantiate");
+    let (setup, step): (Symbol<Setup>, Symbol<Step>) =
+        (function("fmi2SetupExperiment"), function("fmi2DoStep"));
+    let (get, status): (Symbol<Get>, Symbol<Status>) =
+        (function("fmi2GetReal"), function("fmi2GetBooleanStatus"));
+    let plain = |name: &str, one: *mut c_void| {
+        let run: Symbol<Plain> = function(name);
+        assert_eq!(unsafe { run(one) }, 0, "{name}");
+    };
+    let reference = unit.description.find("x").unwrap().reference;
+    let (mut x, mut terminated) = (f64::NAN, -1);
+    unsafe {
+        let one = instantiate(
+            c"one".as_ptr(),
+            1,
+            token.as_ptr(),
+            resources.as_ptr(),
+            &raw const callbacks,
+            0,
+            0,
+        );
+        assert!(!one.is_null());
+        assert_eq!(setup(one, 1, 1e-8, 0.0, 1, 1.0), 0);
+        plain("fmi2EnterInitializationMode", one);
+        plain("fmi2ExitInitializationMode", one);
+        assert_eq!(step(one, 0.0, 0.5, 1), 0);
+        assert_eq!(step(one, 0.5, 0.6, 1), 3, "past the stop time");
+        assert_eq!(step(one, 0.5, 0.5, 1), 0);
+        assert_eq!(get(one, &raw const reference, 1, &raw mut x), 0);
+        assert_eq!(status(one, 3, &raw mut terminated), 0);
+        let free: Symbol<unsafe extern "C" fn(*mut c_void)> = function("fmi2FreeInstance");
+        free(one);
+    }
+    close(x, (-1.0f64).exp(), 1e-7);
+    assert_eq!(terminated, 0);
+}
