@@ -60,8 +60,8 @@ impl Table {
     pub(super) fn has_structured_names(&self) -> bool {
         let is_plain = |name: &str| {
             let inner = name.strip_prefix("der(").and_then(|name| name.strip_suffix(')'));
-            let parts = inner.unwrap_or(name).split('.');
-            parts.into_iter().all(|part| {
+            let mut parts = inner.unwrap_or(name).split('.');
+            parts.all(|part| {
                 let (name, subscripts) = part.split_once('[').unwrap_or((part, "1]"));
                 let starts = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
                 let word = |c: char| c.is_ascii_alphanumeric() || c == '_';

@@ -105,11 +105,7 @@ fn of_program(
     }
     for (input, rate) in &made.rates {
         if program.find_parameter(rate).is_ok_and(|at| program.reads_parameter_twice(at)) {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "`{problem}` cannot be exported: something depends on the derivative of its input `{input}`";
-                help: "make the derivative an input of its own"
-            ));
+            return Err(reads_derivative(input));
         }
     }
     let values = session.values_set_by_hand();
@@ -203,6 +199,9 @@ fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Resul
         return Err(array(input));
     }
     let zero = || Expression::new(ExpressionKind::Real(0.0), Span::NONE);
+    if flat.to_string().contains(&format!("der({})", input.name)) {
+        return Err(reads_derivative(&input.name).at(input.span));
+    }
     let unreadable = || fault!(NOT_SUPPORTED, "`{}` cannot be an input", input.name).at(input.span);
     let start = input.attributes.get("start").map_or_else(zero, |start| start.value.clone());
     let (start_name, start_value) = parameter(flat, input, "start", made).ok_or_else(unreadable)?;
@@ -225,6 +224,14 @@ fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Resul
     made.inputs.insert(input.name.to_string(), Input::State(start_name));
     made.rates.push((input.name.to_string(), rate_name));
     Ok(())
+}
+
+fn reads_derivative(input: &str) -> Fault {
+    fault!(
+        NOT_SUPPORTED,
+        "the model cannot be exported: something depends on the derivative of its input `{input}`";
+        help: "make the derivative an input of its own"
+    )
 }
 
 fn array(input: &Variable) -> Diagnostic {

@@ -394,7 +394,7 @@ fn a_decay_is_integrated_by_the_importer_and_by_itself() {
     own.set("Float64", "k", 2.0);
     own.initialize();
     for step in 0..10 {
-        assert_eq!(own.step(f64::from(step) * 0.1, 0.1).1, false);
+        assert!(!own.step(f64::from(step) * 0.1, 0.1).1);
     }
     close(own.get("Float64", "x"), (-2.0f64).exp(), 1e-7);
 }
