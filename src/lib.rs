@@ -104,8 +104,8 @@ pub mod internals {
     //! - [`codegen`], [`runtime`]: a program of instruction tapes, and the systems that execute it.
     //!
     //! `src/fmi`:
-    //! - `fmi`: descriptions and archives of functional mock-up units, and the export of programs; `src/fmu`
-    //!   is the shared library in these.
+    //! - [`fmi`]: functional mock-up units: descriptions, archives, the export of programs, and simulations of
+    //!   those of others; `src/fmu` is the shared library in exported ones.
     //!
     //! `src/identify`:
     //! - [`identify`]: populations of simulations, and what they say of the parameters.
@@ -122,6 +122,7 @@ pub mod internals {
     pub use gapilib_base::{
         bibliography, budget, diag, elementary, graph, name, page, plot, registry, source, units,
     };
+    pub use gapilib_fmi as fmi;
     pub use gapilib_identify as identify;
     pub use gapilib_modelica::{
         bytecode, causalize, codegen, eval, external, flatten, format, functions, lower, runtime,

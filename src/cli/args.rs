@@ -8,6 +8,7 @@ use super::connection::LspArgs;
 use super::explain::ExplainArgs;
 use super::export_fmu::ExportFmuArgs;
 use super::fmt::FmtArgs;
+use super::fmu::FmuWorkerArgs;
 use super::help::HelpArgs;
 use super::identify::IdentifyArgs;
 use super::journal::JournalArgs;
@@ -100,6 +101,9 @@ pub(super) enum Command {
     Completions(CompletionsArgs),
     /// Print or write manual pages
     Man(ManArgs),
+    /// Simulate a functional mock-up unit for another process
+    #[command(hide = true)]
+    FmuWorker(FmuWorkerArgs),
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! `gapi check` and `gapi flatten`: models without running them.
 
+mod imported;
+
 use super::options::{Global, Limits};
 use super::{limits, session, terminal};
 use crate::diag::{Diagnostic, Fault, Severity};
@@ -7,6 +9,7 @@ use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::language::parsing::{self, Reading};
+use crate::script::models::imported::is_unit;
 use crate::script::models::{checking, simulation};
 use crate::source::Span;
 use crate::syntax::errors::NOT_A_SCRIPT;
@@ -22,9 +25,10 @@ Examples:
   gapi check models/CaseStudies
   gapi check models --model CaseStudies.PolarizationCurve
   gapi check scripts/GAPILib.mos
+  gapi check Pump.fmu
   gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {
-    /// Modelica files, package folders or scripts, or the class
+    /// Modelica files, package folders, scripts or functional mock-up units (FMUs), or the class
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
@@ -68,6 +72,8 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
     let (class, files) = session::class_and_files(arguments.model.as_ref(), &arguments.files);
     let is_script = |file: &PathBuf| file.extension().is_some_and(|e| e == "mos");
     let (scripts, files): (Vec<PathBuf>, Vec<PathBuf>) = files.into_iter().partition(is_script);
+    let (units, files): (Vec<PathBuf>, Vec<PathBuf>) =
+        files.into_iter().partition(|file| is_unit(file));
     let (mut session, loaded) = match session::with_files(global, &files) {
         Ok(session) => session,
         Err(code) => return code,
@@ -78,6 +84,7 @@ pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
     }
     checking::set_strict(&mut session, arguments.strict);
     let wrong = scripts.iter().filter(|script| !check_script(&mut session, script)).count();
+    let wrong = wrong + units.iter().filter(|unit| !imported::check(&mut session, unit)).count();
     let models = match &class {
         Some(model) => check_one(&mut session, model),
         None if files.is_empty() => ExitCode::SUCCESS,

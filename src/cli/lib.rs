@@ -11,6 +11,7 @@
 pub(crate) use gapilib_base::{
     bail, budget, diag, elementary, fault, name, plot, registry, source,
 };
+pub(crate) use gapilib_fmi as fmi;
 pub(crate) use gapilib_modelica::{codegen, external, flatten, format, functions, runtime, syntax};
 pub(crate) use gapilib_numerics::{ga, results, sim};
 pub(crate) use gapilib_script as script;
@@ -33,6 +34,7 @@ mod explain;
 mod export_fmu;
 mod fitted;
 mod fmt;
+mod fmu;
 mod hangup;
 mod help;
 mod identify;
@@ -197,5 +199,6 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),
         Command::Verify(arguments) => verify::verify(arguments, &cli.global),
         Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
+        Command::FmuWorker(arguments) => fmu::worker(arguments),
     }
 }

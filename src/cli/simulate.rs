@@ -1,5 +1,7 @@
 //! `gapi simulate`: one simulation of one model.
 
+mod imported;
+
 use super::effort;
 use super::numbers::number;
 use super::options::{Global, Limits};
@@ -40,11 +42,12 @@ Examples:
   gapi simulate Tank.mo --input measured.csv --output tank.csv
   gapi simulate Decay.mo --model Decay --from first.mat --stop-time 10 --output second.mat
   gapi simulate Decay.mo --model Decay --dump eliminate_aliases
+  gapi simulate Pump.fmu --allow-external=Pump.fmu --set k=2 --output pump.csv
 
 Defaults come from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
     /// Modelica files or package folders, and the class; files that can be found by
-    /// class name can be omitted
+    /// class name can be omitted. Or a functional mock-up unit (FMU)
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to simulate, optionally with a modification: 'M(p = 2)'
@@ -62,7 +65,7 @@ pub(super) struct SimulateArgs {
     /// Relative tolerance
     #[arg(long, value_name = "E", value_parser = number)]
     pub tolerance: Option<f64>,
-    /// Integration method
+    /// Integration method; `co-simulation` for that of an FMU itself
     #[arg(long, value_name = "M")]
     pub method: Option<String>,
     /// Set a parameter (repeatable): a number, true, false, a literal of an enumeration, or a String
@@ -130,6 +133,9 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
         Ok(watch) => watch,
         Err(code) => return code,
     };
+    if let Some(path) = imported::unit_of(&arguments.files) {
+        return imported::simulate(path, arguments, global);
+    }
     let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
     let (mut session, class) = match opened {
         Ok(opened) => opened,
@@ -174,7 +180,8 @@ fn run(
     let translated = driven.as_ref().map_or(class, |driven| driven.class.as_str());
     let model = simulation::translate(session, translated)?;
     options.takes_exact_steps = driven.is_some();
-    check_filter(arguments, &options, &model).map_err(one)?;
+    let names = model.program.variables().iter().map(|variable| &*variable.name);
+    check_filter(arguments, &options, names).map_err(one)?;
     if let Some(driven) = &driven
         && model.program.experiment().stop_time.is_none()
     {
@@ -238,16 +245,15 @@ fn filter(expression: &str) -> Result<Regex, Fault> {
 }
 
 /// Refuses a filter that leaves nothing but the time.
-fn check_filter(
+fn check_filter<'n>(
     arguments: &SimulateArgs,
     options: &SimulationOptions,
-    model: &Translated,
+    mut names: impl Iterator<Item = &'n str>,
 ) -> Result<(), Fault> {
     let (Some(expression), Some(filter)) = (&arguments.variable_filter, &options.only) else {
         return Ok(());
     };
-    let mut variables = model.program.variables().iter();
-    if variables.any(|variable| filter.is_match(&variable.name)) {
+    if names.any(|name| filter.is_match(name)) {
         return Ok(());
     }
     let glob = expression.contains('*') && !expression.contains(".*");

@@ -2,6 +2,7 @@
 
 use super::c_compiler;
 use super::disk::{Disk, real_path};
+use super::fmu;
 use super::hangup;
 use super::limits::Stopping;
 use super::lock::Lock;
@@ -10,6 +11,7 @@ use super::output::Output;
 use super::signals;
 use super::terminal::Terminal;
 use crate::external::c::CCompiler;
+use crate::fmi::import::Host;
 use crate::packages;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::runs::view::Progress;
@@ -356,6 +358,10 @@ impl Environment for SystemWorld {
     fn c_compiler(&self) -> Option<Arc<dyn CCompiler>> {
         let allowed = self.disk.external_code();
         allowed.is_allowed().then(|| c_compiler::for_libraries(allowed))
+    }
+
+    fn fmu_host(&self) -> Option<Arc<dyn Host>> {
+        Some(Arc::new(fmu::LocalHost::new(self.disk.external_code())))
     }
 
     fn run_command(

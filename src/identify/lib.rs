@@ -7,6 +7,7 @@
 pub(crate) use gapilib_base::{
     bail, codes, diag, elementary, fault, page, plot, registry, singular_values, source,
 };
+pub(crate) use gapilib_fmi as fmi;
 pub(crate) use gapilib_modelica::{codegen, runtime};
 pub(crate) use gapilib_numerics::{ga, results, sim};
 
@@ -19,6 +20,7 @@ mod evaluation;
 #[cfg(test)]
 mod evaluation_tests;
 mod generation;
+mod imported;
 mod model;
 mod objective;
 mod plan;
@@ -38,6 +40,7 @@ mod table;
 mod uncertainty;
 
 pub use evaluation::{Evaluator, Question, Simulated};
+pub use imported::ImportedModel;
 pub use model::{Instance, Model, Parameter, PortableModel};
 pub use objective::Objective;
 pub use points::{Path, time_of};

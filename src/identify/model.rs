@@ -1,7 +1,7 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
 use crate::diag::{Diagnostic, Fault};
-use crate::sim::{DaeSystem, Settings, SimError};
+use crate::sim::{DaeSystem, Settings, SimError, Simulator, Statistics, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// A model that can be simulated many times with different parameter values.
@@ -83,8 +83,21 @@ pub struct PortableModel {
 pub trait Instance: Send {
     /// Sets the varied parameters, in their order; nothing of an earlier simulation remains.
     fn set(&mut self, genome: &[f64]) -> Result<(), Fault>;
-    /// The system to simulate.
-    fn system(&mut self) -> &mut dyn DaeSystem;
+    /// Simulates with the values that were set; the observed variables become the columns of `out`.
+    ///
+    /// # Errors
+    ///
+    /// When and why it failed; `out` keeps what was computed until then.
+    fn simulate(
+        &mut self,
+        simulator: &mut Simulator,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> Result<Statistics, SimError>;
+    /// Whether it has no states, so that nothing is integrated.
+    fn is_static(&mut self) -> bool;
+    /// The system that is simulated, where it is one of this process.
+    fn system(&mut self) -> Option<&mut dyn DaeSystem>;
     /// From the next simulation on, the observed variables are followed by their derivatives for the
     /// varied parameters, parameter by parameter; or no longer.
     ///

@@ -75,7 +75,7 @@ fn times_of_points(
     settings: &Settings,
 ) -> Result<Option<Vec<f64>>, Fault> {
     let mut instance = model.instance(varied, &[x_name.to_owned()])?;
-    let system = instance.system();
+    let Some(system) = instance.system() else { return Ok(None) };
     let mut y = vec![0.0; system.n_differential() + system.n_algebraic()];
     if system.initialize(settings.start, &mut y).is_err() {
         return Ok(None);

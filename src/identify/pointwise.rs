@@ -67,7 +67,9 @@ impl Pointwise {
         self.values.extend_from_slice(parameters);
         self.values.push(x);
         instance.set(&self.values).map_err(|fault| fault.message)?;
-        let system = instance.system();
+        let Some(system) = instance.system() else {
+            return Err("the model cannot be solved point by point".to_owned());
+        };
         let unknowns = system.n_differential() + system.n_algebraic();
         self.unknowns.clear();
         self.unknowns.resize(unknowns * (1 + system.n_directions()), 0.0);

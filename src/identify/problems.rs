@@ -4,7 +4,7 @@ use super::{Instance, Model, Parameter};
 use crate::diag::Fault;
 use crate::sim::{
     DaeSystem, EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive, Settings,
-    SimError,
+    SimError, Simulator, Statistics, Trajectory,
 };
 
 /// dv/dt = −a v, v(0) = b, with the ramp i = 2 t and the sum s = i + v. Fails for a > 10.
@@ -56,8 +56,19 @@ impl Instance for DecaySystem {
         [self.a, self.b] = [genome[0], genome[1]];
         Ok(())
     }
-    fn system(&mut self) -> &mut dyn DaeSystem {
-        self
+    fn simulate(
+        &mut self,
+        simulator: &mut Simulator,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> Result<Statistics, SimError> {
+        simulator.run(self, settings, out)
+    }
+    fn is_static(&mut self) -> bool {
+        self.n_differential() == 0
+    }
+    fn system(&mut self) -> Option<&mut dyn DaeSystem> {
+        Some(self)
     }
     fn explain(&self, error: &SimError) -> String {
         format!("{:?}", error.kind)

@@ -4,7 +4,9 @@ use super::{Instance, Model, Parameter, PortableModel};
 use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::{Diagnostic, Fault};
 use crate::runtime::System;
-use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
+use crate::sim::{
+    DaeSystem, OutputGrid, Residual as _, Settings, SimError, Simulator, Statistics, Trajectory,
+};
 use crate::source::with_source_table;
 use rustc_hash::FxHashSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -200,8 +202,21 @@ impl Instance for CompiledInstance {
         pairs.try_for_each(|(&slot, &value)| self.system.set_parameter(slot, value))
     }
 
-    fn system(&mut self) -> &mut dyn DaeSystem {
-        &mut self.system
+    fn simulate(
+        &mut self,
+        simulator: &mut Simulator,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> Result<Statistics, SimError> {
+        simulator.run(&mut self.system, settings, out)
+    }
+
+    fn is_static(&mut self) -> bool {
+        self.system.n_differential() == 0
+    }
+
+    fn system(&mut self) -> Option<&mut dyn DaeSystem> {
+        Some(&mut self.system)
     }
 
     fn differentiate(&mut self, with_derivatives: bool) -> Result<(), String> {

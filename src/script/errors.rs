@@ -20,6 +20,12 @@ codes! {
     /// A file cannot be read or written.
     FILE_ERROR = "file-error":
         "## What it means\n\nA file is missing, or the system refuses to read or write it.\n\n## Example\n\n`readMatrix(\"missing.mat\", \"A\", 3, 3)`\n\n## What to do\n\nCorrect the path. Relative paths start from the working directory, which `cd()` shows.",
+    /// A functional mock-up unit that cannot be used, or not so.
+    BAD_FMU = "bad-fmu":
+        "## What it means\n\nThe file is not a functional mock-up unit (FMU) of version 2.0 or 3.0, it has no binary for this machine, it needs what is not supported (clocks, scheduled execution), a variable does not exist or cannot be set, or its simulation failed. The message says which.\n\n## Example\n\n`gapi simulate Pump.fmu` on Linux, where the FMU has a binary for Windows alone.\n\n## What to do\n\nExport the FMU for this machine with the tool that has made it. Where the simulation fails, the message has what the FMU itself says; set its parameters within their ranges.",
+    /// A message of a functional mock-up unit (a note).
+    FMU_MESSAGE = "fmu-message":
+        "## What it means\n\nA functional mock-up unit (FMU) has written a log message, or printed something. Each message is shown once, whatever number of simulations has led to it.\n\n## Example\n\nA warning of the FMU that a table is extrapolated.\n\n## What to do\n\nNothing, unless the message says so. Placeholders such as `%s` in messages of FMI 2.0 are not filled in.",
     /// Scripts that call each other without end.
     SCRIPTS_TOO_DEEP = "scripts-too-deep":
         "## What it means\n\nScripts call each other (or themselves) more than 64 levels deep.\n\n## Example\n\nA script `a.mos` that holds `RunScript(\"a.mos\");`\n\n## What to do\n\nEnd the recursion with a condition, or use a loop.",

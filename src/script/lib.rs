@@ -17,6 +17,7 @@
 pub(crate) use gapilib_base::{
     bail, codes, diag, elementary, fault, name, page, plot, registry, source, units,
 };
+pub(crate) use gapilib_fmi as fmi;
 pub(crate) use gapilib_identify as identify;
 pub(crate) use gapilib_modelica::{
     causalize, codegen, eval, external, flatten, functions, lower, runtime, symbolic, syntax, value,

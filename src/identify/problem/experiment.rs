@@ -2,12 +2,13 @@
 //! runs all of them for one set of parameters.
 
 use super::event_limits::{Limit, limits};
-use super::{Failed, FailureKind, Portable, PortableExperiment, PortableSettings, Simulate};
+use super::{Failed, FailureKind, Portable, PortableExperiment, Simulate};
 use crate::diag::{Diagnostic, Fault};
 use crate::plan::{Plan, TIME, plan, with_driver};
 use crate::pointwise::Pointwise;
 use crate::sim::{
-    Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
+    Failure, PortableSettings, Settings, SimError, SimErrorKind, Simulator, Trajectory,
+    find_integrator,
 };
 use crate::{Instance, Model, Path};
 use std::sync::Arc;
@@ -122,7 +123,7 @@ impl ModelSimulator {
 
     /// Whether the first experiment has no states, so that nothing is integrated.
     pub fn is_static(&mut self) -> bool {
-        self.stages[0].instance.system().n_differential() == 0
+        self.stages[0].instance.is_static()
     }
 }
 
@@ -204,8 +205,8 @@ pub fn diagnosed(experiments: &[Experiment], values: &[f64]) -> Option<(Diagnost
         let mut stage = Stage::new(experiment).ok()?;
         let own: Vec<f64> = stage.places.iter().map(|&place| values[place]).collect();
         stage.instance.set(&own).ok()?;
-        let system = stage.instance.system();
-        let run = Simulator::new().run(system, &stage.settings, &mut Trajectory::default());
+        let mut out = Trajectory::default();
+        let run = stage.instance.simulate(&mut Simulator::new(), &stage.settings, &mut out);
         let error = run.err()?;
         Some((stage.instance.diagnostic(&error)?, error.time))
     })
@@ -328,7 +329,7 @@ impl Stage {
     ) -> Result<Result<(), String>, Failed> {
         self.values.clear();
         self.values.extend(self.places.iter().map(|&place| parameters[place]));
-        let is_static = self.instance.system().n_differential() == 0;
+        let is_static = self.instance.is_static();
         let method = self.settings.method.name;
         if !is_static && method != WITH_SENSITIVITIES {
             return Ok(Err(format!(
@@ -460,7 +461,7 @@ impl Stage {
         let refused = |fault: Fault| Failed::new(FailureKind::Model, fault.message, 0.0);
         self.instance.set(&self.values).map_err(refused)?;
         let settings = self.retry.as_ref().filter(|_| again).unwrap_or(&self.settings);
-        let run = simulator.run(self.instance.system(), settings, trajectory);
+        let run = self.instance.simulate(simulator, settings, trajectory);
         run.map(|_| ()).map_err(|error| {
             let length = (settings.stop - settings.start).max(f64::MIN_POSITIVE);
             Failed {

@@ -82,7 +82,6 @@ pub use non_identifiable::Form;
 pub(crate) use non_identifiable::NonIdentifiable;
 use parts::other_shards;
 pub use parts::{Parts, Shard, ShardFile, missing_shards};
-pub(crate) use portable::PortableSettings;
 pub use portable::{Portable, PortableExperiment};
 pub use profile::{Profile, Profiles};
 pub use refit::MakeSimulator;

@@ -69,6 +69,7 @@ mod linear;
 mod literal_relations;
 mod newton;
 mod norm;
+mod portable;
 #[cfg(test)]
 mod problems;
 mod progress;
@@ -91,6 +92,7 @@ pub(crate) use integrators::INTEGRATORS;
 pub use integrators::{Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
+pub use portable::PortableSettings;
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{End, Simulator, simulate};
 pub use statistics::Statistics;

@@ -1,7 +1,7 @@
 //! What a simulation cost.
 
 /// What a simulation cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// Accepted steps.
     pub steps: u64,

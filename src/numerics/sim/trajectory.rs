@@ -38,6 +38,16 @@ impl Trajectory {
         }
     }
 
+    /// Puts rows in the place of all there are.
+    ///
+    /// # Panics
+    /// If a column has another length than the time.
+    pub fn replace(&mut self, time: Vec<f64>, columns: Vec<Vec<f64>>) {
+        let fits = columns.iter().all(|column| column.len() == time.len());
+        assert!(fits, "a column has one value for each row");
+        (self.time, self.columns) = (time, columns);
+    }
+
     /// An empty trajectory that keeps all values of these columns, and of others the last one.
     pub fn keeping(kept: Vec<bool>) -> Trajectory {
         Trajectory { kept, ..Trajectory::default() }

@@ -274,6 +274,11 @@ impl ExternalCode {
         self.all || !self.libraries.is_empty()
     }
 
+    /// Whether the functional mock-up unit in a file of this name is allowed.
+    pub fn permits_file(&self, file: &str) -> bool {
+        self.all || self.libraries.contains(file)
+    }
+
     /// Whether those of the library with this class are allowed.
     pub fn permits(&self, class: &str) -> bool {
         let library = class.split('.').next().unwrap_or_default();

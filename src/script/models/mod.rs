@@ -13,6 +13,7 @@ pub mod documents;
 pub mod exported;
 pub mod final_state;
 pub mod hardest;
+pub mod imported;
 pub(crate) mod in_use;
 mod left_open;
 mod libraries;

@@ -1,6 +1,7 @@
 //! Clocks, the process, its environment variables, and requests to stop.
 
 use crate::external::c::CCompiler;
+use crate::fmi::import::Host;
 use crate::identify::ranks::{Processors, Ranks};
 use std::collections::BTreeMap;
 use std::io;
@@ -54,6 +55,10 @@ pub trait Environment {
     }
     /// Who compiles the C functions of libraries, if the user allows it.
     fn c_compiler(&self) -> Option<Arc<dyn CCompiler>> {
+        None
+    }
+    /// Who runs functional mock-up units; `None` where there are no processes.
+    fn fmu_host(&self) -> Option<Arc<dyn Host>> {
         None
     }
     /// Runs a command of the operating system with these environment variables besides its own;

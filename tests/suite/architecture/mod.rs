@@ -122,12 +122,13 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "diag",
         ],
     ),
-    ("fmi", &["codegen", "lower", "flatten", "units", "source", "diag"]),
+    ("fmi", &["sim", "codegen", "lower", "flatten", "units", "source", "diag"]),
     ("fmu", &["fmi", "runtime", "codegen", "sim", "source", "diag"]),
     ("teach", &["ga", "page", "plot", "diag"]),
     (
         "identify",
         &[
+            "fmi",
             "runtime",
             "codegen",
             "results",

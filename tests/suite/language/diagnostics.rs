@@ -29,6 +29,9 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "external-outside",
     // Scripts meet `bad-parameter-value` first.
     "structural-parameter",
+    // A world in memory has no processes for units: see `fmus.rs`.
+    "bad-fmu",
+    "fmu-message",
     // Only several processes can differ: see `ranks.rs`.
     "ranks-differ",
     "ranks-idle",

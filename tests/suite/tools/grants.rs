@@ -21,6 +21,7 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/check.rs", "CheckOnly", 1),
     // The unit that is written.
     ("cli/export_fmu.rs", "Named", 1),
+    ("cli/check/imported.rs", "Read", 1),
     ("cli/identify.rs", "Read", 1),
     ("cli/new.rs", "Named", 1),
     ("cli/repl/commands.rs", "Named", 1),
@@ -36,6 +37,8 @@ const GRANTS: &[(&str, &str, usize)] = &[
     ("cli/session.rs", "WriteAll", 1),
     ("cli/simulate.rs", "Named", 1),
     ("cli/simulate.rs", "Read", 1),
+    ("cli/simulate/imported.rs", "Named", 1),
+    ("cli/simulate/imported.rs", "Read", 2),
     ("cli/verify/mod.rs", "Named", 1),
     ("cli/world.rs", "Create", 1),
     ("cli/world.rs", "Own", 1),

@@ -10,10 +10,11 @@ use super::file::{ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::inputs::Undecided;
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, own_fitness};
+use super::{experiment, imported, own_fitness};
 use crate::Session;
 use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
+use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
@@ -27,6 +28,7 @@ use crate::source::Span;
 use crate::{bail, fault, results};
 use indexmap::IndexMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Fitness functions whose scale is estimated unless sigma is given.
 const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
@@ -45,6 +47,8 @@ pub(super) struct Built {
     pub(crate) calibration: Option<Calibration>,
     /// Inputs of which it is not known how they continue between samples.
     pub undecided: Vec<Undecided>,
+    /// The functional mock-up unit, where the model is one.
+    pub unit: Option<Arc<Imported>>,
 }
 
 /// The data of an experiment and the parts of which it consists.
@@ -81,13 +85,20 @@ pub(super) fn build(
 ) -> Result<Built, Vec<Diagnostic>> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_models(session, file, &folder)?;
-    let file = &*file;
-    check_class(session, file)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
+    let file = &*file;
+    let unit = imported::unit(session, file, &folder)?;
+    if unit.is_none() {
+        check_class(session, file)?;
+    } else {
+        let bytes = session.read_bytes(&folder.join(&file.model)).map_err(one)?;
+        origins.add(format!("`{}`", file.model), &bytes);
+    }
     origins.add_problem(&file.table);
     let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
     let free = free_parameters(file, &data).map_err(one)?;
-    let mut read = experiments(session, file, &data, &free, &mut notes)?;
+    let model = (file, unit.as_ref());
+    let mut read = experiments(session, model, &data, &free, &mut notes)?;
     if file.fitness.is_none() {
         decide(&mut read.series);
     }
@@ -109,7 +120,7 @@ pub(super) fn build(
     adjust(&mut problem, adjustments).map_err(one)?;
     session.add_models_read(&mut origins, &mut 0);
     let notes = notes.into_notes();
-    Ok(Built { problem, experiments, validation, origins, notes, calibration, undecided })
+    Ok(Built { problem, experiments, validation, origins, notes, calibration, undecided, unit })
 }
 
 fn one(fault: Fault) -> Vec<Diagnostic> {
@@ -172,7 +183,7 @@ fn data_of<'f>(
 
 fn experiments(
     session: &mut Session,
-    file: &ProblemFile,
+    (file, unit): (&ProblemFile, Option<&Arc<Imported>>),
     data: &[ExperimentData<'_>],
     free: &[Free],
     notes: &mut Notes,
@@ -184,9 +195,14 @@ fn experiments(
         let rows = segment.rows.clone().map(|rows| own.table.rows(rows, own.count));
         let table = rows.as_ref().unwrap_or(&own.table);
         let source = experiment::Source { file, entry, label, segment, number, table, free };
-        let built = source.build(session, notes)?;
+        let built = match unit {
+            Some(unit) => imported::build(&source, (session, unit), notes).map_err(|e| vec![e])?,
+            None => source.build(session, notes)?,
+        };
         all.noise = all.noise.max(built.error);
-        all.calibration.get_or_insert_with(|| Calibration::of(file, &built.program));
+        if let Some(program) = &built.program {
+            all.calibration.get_or_insert_with(|| Calibration::of(file, program));
+        }
         if entry.validation {
             all.validation.push((built.experiment, built.series));
             continue;

@@ -34,22 +34,25 @@ pub struct Driven {
 
 impl Driven {
     /// Notes what the inputs do where a simulation from `start` to `stop` has no data.
-    pub fn note_outside(&self, session: &mut Session, (start, stop): (f64, f64)) {
-        let Driven { first, last, .. } = self;
-        let mut note = |text: String| session.note(crate::mat::errors::DATA_NOTE, text);
-        if start < *first {
-            note(format!(
-                "the inputs have data from {first} s on: before that, their first values"
-            ));
-        }
-        if stop > *last {
-            note(format!("the inputs have data until {last} s: after that, their last values"));
-        }
+    pub fn note_outside(&self, session: &mut Session, span: (f64, f64)) {
+        note_outside(session, (self.first, self.last), span);
     }
 
     /// Takes the inputs of the class around the model, which are no part of it, out of its results.
     pub fn without_own_inputs(results: &mut ResultTable) {
         results.retain(|name| !name.starts_with("'data of "));
+    }
+}
+
+/// Notes what inputs do where a simulation from `start` to `stop` has no data, which are known from
+/// `first` to `last`.
+pub fn note_outside(session: &mut Session, (first, last): (f64, f64), (start, stop): (f64, f64)) {
+    let mut note = |text: String| session.note(crate::mat::errors::DATA_NOTE, text);
+    if start < first {
+        note(format!("the inputs have data from {first} s on: before that, their first values"));
+    }
+    if stop > last {
+        note(format!("the inputs have data until {last} s: after that, their last values"));
     }
 }
 
@@ -67,11 +70,8 @@ pub fn driven(
     interpolation: Option<&str>,
 ) -> Result<Driven, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let bytes = session.read_bytes(path).map_err(one)?;
-    let table = results::read_data(&path.to_string_lossy(), &bytes).map_err(one)?;
+    let mut columns = InputColumns::read(session, path).map_err(one)?;
     let flat = simulation::flattened(session, class)?.model;
-    let mut notes = Notes::default();
-    let (time, origin) = times(&table, &mut notes).map_err(one)?;
     let names = flat.variables.values().filter(|variable| {
         variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none()
     });
@@ -81,36 +81,84 @@ pub fn driven(
             _ => vec![variable.name.to_string()],
         })
         .collect();
-    let (found, missing): (Vec<&String>, Vec<&String>) =
-        names.iter().partition(|name| table.column(name).is_ok());
-    if found.is_empty() {
-        return Err(one(no_column(class, &names, &table)));
-    }
-    for name in missing {
-        notes.add(format!("{}: no column for the input `{name}`", table.file_name));
-    }
-    let columns = found.iter().map(|name| {
-        let named = ColumnEntry::named(Some((*name).clone()));
+    let is_real = |name: &str| {
         let variable = flat.variables.values().find(|v| is_part_of(name, &v.name));
-        // Nothing lies between two Booleans or Integers.
-        let is_real = variable.is_none_or(|variable| variable.base == BaseType::Real);
-        let interpolation = interpolation.map(|own| if is_real { own } else { "hold" }.to_owned());
-        ((*name).clone(), Column::More(Box::new(ColumnEntry { interpolation, ..named })))
-    });
-    let entry = ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() };
+        variable.is_none_or(|variable| variable.base == BaseType::Real)
+    };
+    let entry = columns.entry(&names, interpolation, &is_real);
+    let entry = entry.ok_or_else(|| one(no_column(class, &names, &columns.table)))?;
     let mut enclosing = EnclosingClass::default();
-    let times = Times { name: "time", values: &time, origin };
-    inputs::inputs(&entry, &table, &times, &flat, &mut enclosing, &mut notes)
+    let times = Times { name: "time", values: &columns.time, origin: columns.origin };
+    inputs::inputs(&entry, &columns.table, &times, &flat, &mut enclosing, &mut columns.notes)
         .map_err(|error| vec![error])?;
     let base = Base::of(class, None).map_err(|error| vec![error])?;
     let class = enclosing.load(session, &base, (0, Span::NONE))?;
-    for note in notes.into_notes() {
-        session.note(crate::mat::errors::DATA_NOTE, note.sentence);
-    }
-    let known = || time.iter().copied().filter(|t| t.is_finite());
-    let (first, last) =
-        (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+    let (first, last) = columns.span();
+    columns.tell(session);
     Ok(Driven { class, first, last })
+}
+
+/// A file with columns for inputs.
+pub(super) struct InputColumns {
+    pub table: MatFile,
+    /// The column of time, seconds.
+    pub time: Vec<f64>,
+    /// The date that it counts from.
+    pub origin: Option<Origin>,
+    pub notes: Notes,
+}
+
+impl InputColumns {
+    /// Reads the file.
+    ///
+    /// # Errors
+    ///
+    /// Files that cannot be read or have no column of time.
+    pub(super) fn read(session: &Session, path: &Path) -> Result<InputColumns, Fault> {
+        let bytes = session.read_bytes(path)?;
+        let table = results::read_data(&path.to_string_lossy(), &bytes)?;
+        let mut notes = Notes::default();
+        let (time, origin) = times(&table, &mut notes)?;
+        Ok(InputColumns { table, time, origin, notes })
+    }
+
+    /// An experiment in which the inputs that have a column follow it; `None` where none has one.
+    /// Nothing lies between two values of those that are not real.
+    pub(super) fn entry(
+        &mut self,
+        names: &[String],
+        interpolation: Option<&str>,
+        is_real: &dyn Fn(&str) -> bool,
+    ) -> Option<ExperimentEntry> {
+        let (found, missing): (Vec<&String>, Vec<&String>) =
+            names.iter().partition(|name| self.table.column(name).is_ok());
+        if found.is_empty() {
+            return None;
+        }
+        for name in missing {
+            self.notes.add(format!("{}: no column for the input `{name}`", self.table.file_name));
+        }
+        let columns = found.into_iter().map(|name| {
+            let named = ColumnEntry::named(Some(name.clone()));
+            let interpolation =
+                interpolation.map(|own| if is_real(name) { own } else { "hold" }.to_owned());
+            (name.clone(), Column::More(Box::new(ColumnEntry { interpolation, ..named })))
+        });
+        Some(ExperimentEntry { inputs: columns.collect(), ..ExperimentEntry::default() })
+    }
+
+    /// The first and the last time.
+    pub(super) fn span(&self) -> (f64, f64) {
+        let known = || self.time.iter().copied().filter(|t| t.is_finite());
+        (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// Notes what should be known of the data.
+    pub(super) fn tell(self, session: &mut Session) {
+        for note in self.notes.into_notes() {
+            session.note(crate::mat::errors::DATA_NOTE, note.sentence);
+        }
+    }
 }
 
 /// Whether a name is that of a variable or of one of its elements.
@@ -128,7 +176,7 @@ fn times(table: &MatFile, notes: &mut Notes) -> Result<(Vec<f64>, Option<Origin>
     Ok((time_axis::seconds(&column, &entry, origin, (table, notes))?, origin))
 }
 
-fn no_column(class: &str, names: &[String], table: &MatFile) -> Fault {
+pub(super) fn no_column(class: &str, names: &[String], table: &MatFile) -> Fault {
     let columns: Vec<&str> = table.arrays.keys().map(String::as_str).collect();
     let shown = suggest::listed(&columns);
     let file = &table.file_name;

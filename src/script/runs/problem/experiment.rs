@@ -15,6 +15,7 @@ use crate::flatten::{self, FlatModel};
 use crate::identify::problem::{Experiment, Free, Series};
 use crate::identify::{CompiledModel, Model, significant};
 use crate::mat::{Column, MatFile};
+use crate::models::imported::CO_SIMULATION;
 use crate::models::simulation::{self, SimulationOptions};
 use crate::models::static_curve;
 use crate::registry::BAD_OPTION;
@@ -45,8 +46,8 @@ pub(super) struct Built {
     pub series: Vec<Series>,
     /// The relative error of simulated values that the integrator makes.
     pub(crate) error: f64,
-    /// Its compiled model.
-    pub program: Arc<Program>,
+    /// Its compiled model; `None` where it is a functional mock-up unit.
+    pub program: Option<Arc<Program>>,
     /// Inputs of which it is not known how they continue between samples.
     pub undecided: Vec<Undecided>,
 }
@@ -66,13 +67,13 @@ pub(super) struct Source<'a> {
 }
 
 /// The independent variable of an experiment.
-struct Abscissa {
+pub(super) struct Abscissa {
     entry: ColumnEntry,
     /// The variable.
-    name: String,
+    pub name: String,
     column: Column,
     /// Times of inputs that follow the rows; X itself where it is not time.
-    time: Vec<f64>,
+    pub time: Vec<f64>,
 }
 
 /// The model of an experiment in its class.
@@ -171,9 +172,9 @@ impl Source<'_> {
             start: 0.0,
         };
         comparison.x = abscissa.in_unit(&comparison, notes).map_err(one)?;
-        let begin = self.begin(&program, &comparison, notes);
-        let settings = self.settings(session, &program, begin, &comparison);
-        let settings = settings.map_err(one)?;
+        let annotated = program.experiment();
+        let begin = self.begin(annotated.start_time, &comparison, notes);
+        let settings = self.settings(session, &annotated, begin, &comparison).map_err(one)?;
         comparison.start = settings.start;
         let has_states = !program.sorted().states.is_empty();
         if has_states {
@@ -193,9 +194,9 @@ impl Source<'_> {
             observations,
             parameters: class.parameters,
         };
-        let undecided = class.undecided;
         let error = if has_states { error_of(&program, &experiment.settings) } else { 0.0 };
-        Ok(Built { experiment, series, error, program, undecided })
+        let undecided = class.undecided;
+        Ok(Built { experiment, series, error, program: Some(program), undecided })
     }
 
     /// Says where the times of the data and of the simulation do not agree.
@@ -233,7 +234,7 @@ impl Source<'_> {
         parameters::check_initial(session, file, self.entry, model)
     }
 
-    fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
+    pub(super) fn abscissa(&self, notes: &mut Notes) -> Result<Abscissa, Fault> {
         let table = self.table;
         let (entry, name, own) = x_of(self.entry, table);
         let column = data::column(table, &entry, &name, notes)?;
@@ -304,9 +305,9 @@ impl Source<'_> {
 
     /// When the simulation begins, if not where the model says or at 0: a part begins with its first
     /// row, and so does an experiment that was measured before 0.
-    fn begin(
+    pub(super) fn begin(
         &self,
-        program: &Program,
+        annotated: Option<f64>,
         comparison: &Comparison<'_>,
         notes: &mut Notes,
     ) -> Option<f64> {
@@ -315,7 +316,7 @@ impl Source<'_> {
         if self.segment.number > 0 {
             return first;
         }
-        if self.entry.start_time.is_some() || program.experiment().start_time.is_some() {
+        if self.entry.start_time.is_some() || annotated.is_some() {
             return self.entry.start_time;
         }
         let first = first.filter(|first| *first < 0.0)?;
@@ -327,23 +328,23 @@ impl Source<'_> {
         Some(first)
     }
 
-    fn settings(
+    pub(super) fn settings(
         &self,
         session: &Session,
-        program: &Program,
+        annotated: &flatten::Experiment,
         begin: Option<f64>,
         comparison: &Comparison<'_>,
     ) -> Result<Settings, Fault> {
-        let (entry, annotated) = (self.entry, program.experiment());
+        let entry = self.entry;
         let tolerance = annotated.tolerance.map_or(TOLERANCE, |tolerance| tolerance.min(TOLERANCE));
         let options = SimulationOptions {
             start: begin,
             stop: stop_time(entry, comparison.x_name, &comparison.x, annotated.stop_time),
             tolerance: entry.tolerance.or(Some(tolerance)),
-            method: entry.integrator.clone(),
+            method: entry.integrator.clone().filter(|name| name != CO_SIMULATION),
             ..SimulationOptions::default()
         };
-        let mut settings = simulation::settings(&annotated, &options)?;
+        let mut settings = simulation::settings(annotated, &options)?;
         settings.takes_exact_steps = entry.integrator.is_none();
         let for_rows = STEPS_PER_ROW * comparison.x.len() as u64;
         settings.max_total_steps = settings.max_total_steps.max(for_rows);
@@ -354,7 +355,11 @@ impl Source<'_> {
 
 impl Abscissa {
     /// X in the unit of the model.
-    fn in_unit(&self, comparison: &Comparison<'_>, notes: &mut Notes) -> Result<Vec<f64>, Fault> {
+    pub(super) fn in_unit(
+        &self,
+        comparison: &Comparison<'_>,
+        notes: &mut Notes,
+    ) -> Result<Vec<f64>, Fault> {
         if self.name == "time" {
             return Ok(self.time.clone());
         }
@@ -371,7 +376,7 @@ fn error_of(program: &Arc<Program>, settings: &Settings) -> f64 {
 }
 
 /// Says where the simulation begins, if that is far from the data.
-fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
+pub(super) fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
     let finite = || comparison.x.iter().copied().filter(|x| x.is_finite());
     let first = finite().fold(f64::INFINITY, f64::min);
     let last = finite().fold(f64::NEG_INFINITY, f64::max);
@@ -388,7 +393,7 @@ fn note_start(comparison: &Comparison<'_>, notes: &mut Notes) {
 }
 
 /// Says where the data end, if that is where the experiment of the model ends in another unit.
-fn note_stop(
+pub(super) fn note_stop(
     comparison: &Comparison<'_>,
     abscissa: &Abscissa,
     annotated: Option<f64>,
@@ -419,7 +424,7 @@ fn note_stop(
 }
 
 /// Says that the simulation continues to the last row where the experiment has it end before.
-fn note_unused_stop(comparison: &Comparison<'_>, notes: &mut Notes) {
+pub(super) fn note_unused_stop(comparison: &Comparison<'_>, notes: &mut Notes) {
     let finite = comparison.x.iter().copied().filter(|x| x.is_finite());
     let last = finite.fold(f64::NEG_INFINITY, f64::max);
     let stop = comparison.entry.stop_time.filter(|stop| *stop < last);

@@ -6,7 +6,7 @@
 //! (zero-order hold) and others are interpolated linearly, a note says so, and after the fit the other
 //! way is tried as well. Two rows with one time stamp are the values before and after a jump.
 
-use super::data::{self, Notes};
+use super::data::{self, Notes, VariableUnit};
 use super::enclosing_class::{self, EnclosingClass};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry};
@@ -80,6 +80,32 @@ struct Followed {
     is_decided: bool,
 }
 
+/// An input of the model as its declaration has it.
+pub(super) struct Declared {
+    pub base: BaseType,
+    pub unit: VariableUnit,
+}
+
+/// An input with the samples that it follows.
+pub(super) struct Recorded {
+    pub name: String,
+    base: BaseType,
+    place: Span,
+    followed: Followed,
+}
+
+impl Recorded {
+    /// Times and values.
+    pub(super) fn samples(&self) -> &[(f64, f64)] {
+        &self.followed.samples
+    }
+
+    /// Whether each value is held until the next sample.
+    pub(super) fn is_held(&self) -> bool {
+        self.followed.between == Between::Constant
+    }
+}
+
 /// Samples for the inputs that follow columns, and those of which it is not known how they continue
 /// between samples.
 pub(super) fn inputs(
@@ -90,6 +116,23 @@ pub(super) fn inputs(
     enclosing: &mut EnclosingClass,
     notes: &mut Notes,
 ) -> Result<Vec<Undecided>, Diagnostic> {
+    let declared = |name: &str| {
+        let base = type_of_input(name, flat)?;
+        Ok(Declared { base, unit: variable_unit(flat, name) })
+    };
+    let (all, undecided) = recorded(entry, table, x, &declared, notes)?;
+    all.iter().for_each(|one| declare((&one.name, &one.base, one.place), &one.followed, enclosing));
+    Ok(undecided)
+}
+
+/// The same without a class around the model, for inputs that `declared` knows.
+pub(super) fn recorded(
+    entry: &ExperimentEntry,
+    table: &MatFile,
+    x: &Times<'_>,
+    declared: &dyn Fn(&str) -> Result<Declared, Fault>,
+    notes: &mut Notes,
+) -> Result<(Vec<Recorded>, Vec<Undecided>), Diagnostic> {
     let own = match &entry.input_time {
         Some(name) => Some(own_times(name, x.origin, table, notes).at(entry.places.data)?),
         None => None,
@@ -98,21 +141,21 @@ pub(super) fn inputs(
         (Some(name), Some(values)) => (name.as_str(), values.as_slice()),
         _ => (x.name, x.values),
     };
-    let (mut undecided, mut torn) = (Vec::new(), Vec::new());
+    let (mut all, mut undecided, mut torn) = (Vec::new(), Vec::new(), Vec::new());
     for (name, requested) in &entry.inputs {
         let place = entry.places.column(name);
         let input = (name.as_str(), &requested.entry());
-        let base = type_of_input(name, flat).at(place)?;
-        let followed = followed(input, table, times, (flat, &base), notes).at(place)?;
-        declare((name, &base, place), &followed, enclosing);
+        let declared = declared(name).at(place)?;
+        let followed = followed(input, table, times, &declared, notes).at(place)?;
         notes.warn_about(table, outside(name, &followed, x.values));
         if !followed.is_decided {
             undecided.push(Undecided { name: name.clone(), assumed: followed.between });
         }
         torn.extend(in_gaps(name, &followed));
+        all.push(Recorded { name: name.clone(), base: declared.base, place, followed });
     }
     note_gaps(torn, table, notes);
-    Ok(undecided)
+    Ok((all, undecided))
 }
 
 /// The type of an input of the model.
@@ -220,7 +263,7 @@ fn followed(
     (name, requested): (&str, &ColumnEntry),
     table: &MatFile,
     (time_name, time): (&str, &[f64]),
-    (flat, base): (&FlatModel, &BaseType),
+    Declared { base, unit }: &Declared,
     notes: &mut Notes,
 ) -> Result<Followed, Fault> {
     let column = data::column(table, requested, name, notes)?;
@@ -230,8 +273,7 @@ fn followed(
     );
     data::same_length([time_name, name], [time.len(), column.values.len()])?;
     check_type(name, base, &column)?;
-    let unit = variable_unit(flat, name);
-    let values = data::in_unit(&column, name, &unit, requested, (table, notes))?.values;
+    let values = data::in_unit(&column, name, unit, requested, (table, notes))?.values;
     let rows: Vec<usize> =
         (0..time.len()).filter(|&row| time[row].is_finite() && values[row].is_finite()).collect();
     if rows.is_empty() {

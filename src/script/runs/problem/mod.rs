@@ -22,6 +22,7 @@ mod file;
 mod flat;
 mod former;
 mod forms;
+mod imported;
 mod inference;
 mod inputs;
 mod interpolation;
@@ -51,13 +52,15 @@ use crate::identify::problem::{
     SolvedSeries,
 };
 use crate::identify::ranks::{Ranks, Traffic};
+use crate::models::imported::{is_unit, note_messages};
 use crate::registry::BAD_OPTION;
 use crate::sim::TimeBudget;
 use crate::source::Span;
 use crate::value::RecordValue;
 use crate::{bail, fault};
 pub use draft::{Draft, DraftOptions, Question, draft};
-pub use driven::{Driven, driven};
+pub use driven::{Driven, driven, note_outside};
+pub use imported::{FollowedInputs, inputs_of};
 pub use shards::{Division, read_shards};
 
 use build::Built;
@@ -187,8 +190,11 @@ fn solve_stated(
             fault!(BAD_OPTION, "the problem cannot be read again: {first}")
         })
     };
-    let mut why = None;
+    let (mut why, unit) = (None, built.unit.clone());
     let solved = solve_built(session, (path, built), (&options, every), &mut again, &mut why);
+    if let Some(unit) = unit {
+        note_messages(session, &unit);
+    }
     solved.map_err(|fault| why.map_or_else(|| one(fault), |why| vec![why]))
 }
 
@@ -222,7 +228,8 @@ fn solve_built(
     again: &mut searches::Again<'_>,
     why: &mut Option<Diagnostic>,
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, origins, notes, calibration, undecided } = built;
+    let Built { problem, experiments, validation, origins, notes, calibration, undecided, unit: _ } =
+        built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = prepared(session, problem, options)?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -613,14 +620,17 @@ fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String
         ("history.csv", solution.history_csv()),
         ("fit.csv", solution.fit_csv()),
         ("individuals.csv", solution.individuals_csv()),
-        ("Calibrated.mo", solution.modelica()),
-        ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
         ("convergence.svg", solution.convergence_figure().svg()),
         ("timing.json", timing(seconds, session.world.ranks())),
     ]
     .map(|(name, text)| (name.to_owned(), text))
     .into();
+    // A unit is no class that others could extend.
+    if !is_unit(Path::new(&solution.subject.model)) {
+        files.push(("Calibrated.mo".to_owned(), solution.modelica()));
+        files.push(("calibrated.mos".to_owned(), solution.script()));
+    }
     files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
     files
         .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));

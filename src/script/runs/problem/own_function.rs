@@ -100,7 +100,7 @@ impl OwnFunction {
     fn outputs(&self, worker: &mut Worker, inputs: &[f64]) -> Result<Vec<f64>, Fault> {
         let Worker { instance, simulator, trajectory } = worker;
         instance.set(inputs)?;
-        if let Err(error) = simulator.run(instance.system(), &self.settings, trajectory) {
+        if let Err(error) = instance.simulate(simulator, &self.settings, trajectory) {
             bail!(BAD_OPTION, "{}", instance.explain(&error));
         }
         let first = |k: usize| trajectory.column(k).first().copied().unwrap_or(f64::NAN);

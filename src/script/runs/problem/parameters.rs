@@ -95,7 +95,11 @@ impl Setting<'_> {
     }
 
     /// The place of a free parameter among all of them.
-    fn free_place(&self, name: &str, parameter: &ParameterEntry) -> Result<usize, Fault> {
+    pub(super) fn free_place(
+        &self,
+        name: &str,
+        parameter: &ParameterEntry,
+    ) -> Result<usize, Fault> {
         let full = self.segment.free_name(name, parameter, self.label);
         self.free.iter().position(|free| free.name == full).ok_or_else(|| {
             fault!(

@@ -1,0 +1,97 @@
+//! `gapi fmu-worker`: the process in which a unit runs.
+
+use crate::fmi::description;
+use crate::fmi::import::{CallWatch, Unit, serve};
+use crate::limits;
+use crate::options::Limits;
+use crate::terminal;
+use clap::Args;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Arc, LazyLock};
+use std::time::{Duration, Instant};
+
+/// The exit code of a process in which a call does not return.
+pub(super) const HUNG: u8 = 124;
+/// How long a call may take: initializations of large models take seconds.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// How often calls are looked at.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Arguments of `gapi fmu-worker`.
+#[derive(Debug, Args)]
+pub(crate) struct FmuWorkerArgs {
+    /// The folder into which the unit was unpacked
+    folder: PathBuf,
+}
+
+/// Answers the requests on its standard input.
+pub(crate) fn worker(arguments: &FmuWorkerArgs) -> ExitCode {
+    let _watch = match limits::enforce(&Limits::default()) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
+    match work(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            terminal::eprint(&format!("{error}\n"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn work(arguments: &FmuWorkerArgs) -> io::Result<()> {
+    let to = own_output()?;
+    let text = std::fs::read_to_string(arguments.folder.join("modelDescription.xml"))?;
+    let description = description::read(&text).map_err(io::Error::other)?;
+    // What it writes without a folder is removed with the folder.
+    let working = super::working_folder(&arguments.folder);
+    std::fs::create_dir_all(&working)?;
+    std::env::set_current_dir(&working)?;
+    let calls = Arc::new(CallWatch::default());
+    let watched = calls.clone();
+    std::thread::spawn(move || watch(&watched));
+    let mut unit = Unit::new(&arguments.folder, description, calls);
+    let (mut from, mut to) = (BufReader::new(io::stdin()), BufWriter::new(to));
+    static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
+    serve(&mut unit, || STARTED.elapsed().as_secs_f64(), (&mut from, &mut to))
+}
+
+/// The standard output for the answers alone; what the unit prints goes to the error output.
+#[cfg(unix)]
+fn own_output() -> io::Result<File> {
+    use std::os::fd::AsFd as _;
+    let own = io::stdout().as_fd().try_clone_to_owned()?;
+    rustix::stdio::dup2_stdout(io::stderr().as_fd())?;
+    Ok(File::from(own))
+}
+
+#[cfg(windows)]
+fn own_output() -> io::Result<File> {
+    use std::os::windows::io::AsHandle as _;
+    Ok(File::from(io::stdout().as_handle().try_clone_to_owned()?))
+}
+
+/// Ends the process where a call does not return.
+fn watch(calls: &CallWatch) {
+    let mut running: Option<(u64, Instant)> = None;
+    loop {
+        std::thread::sleep(TICK);
+        running = match (calls.running(), running) {
+            (Some(call), Some((before, since))) if call == before => {
+                if since.elapsed() > PATIENCE {
+                    terminal::eprint(&format!(
+                        "a call of the FMU has not returned for {} s\n",
+                        PATIENCE.as_secs()
+                    ));
+                    #[allow(clippy::exit, reason = "the thread that works does not come back")]
+                    std::process::exit(i32::from(HUNG));
+                }
+                Some((before, since))
+            }
+            (call, _) => call.map(|call| (call, Instant::now())),
+        };
+    }
+}

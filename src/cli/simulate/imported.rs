@@ -1,0 +1,117 @@
+//! The simulation of a functional mock-up unit.
+
+use super::{
+    SimulateArgs, check_filter, draw, filter, options, statistics, summary, with_progress,
+    write_or_show,
+};
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::options::Global;
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::access::policy::Grant;
+use crate::script::models::imported::{self, Given};
+use crate::script::models::simulation::{self, SimulationOptions};
+use crate::script::runs::problem;
+use crate::source::Span;
+use crate::{plot, results, session};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The unit among the files, if it is the only one.
+pub(super) fn unit_of(files: &[PathBuf]) -> Option<&Path> {
+    match files {
+        [only] if imported::is_unit(only) => Some(only),
+        _ => None,
+    }
+}
+
+/// Simulates and writes the trajectories, or shows the last values.
+pub(super) fn simulate(path: &Path, arguments: &SimulateArgs, global: &Global) -> ExitCode {
+    let mut session = match session::with_files(global, &[]) {
+        Ok((session, _)) => session,
+        Err(code) => return code,
+    };
+    for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
+        session.world.grant(Grant::Named(file));
+    }
+    session.world.grant(Grant::Read(path));
+    if let Some(file) = &arguments.input {
+        session.world.grant(Grant::Read(file));
+    }
+    if session::lists_permissions(&mut session, global) {
+        return ExitCode::SUCCESS;
+    }
+    match run(&mut session, path, arguments, global) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => session::failed(&mut session, vec![error]),
+    }
+}
+
+fn run(
+    session: &mut Session,
+    path: &Path,
+    arguments: &SimulateArgs,
+    global: &Global,
+) -> Result<(), Diagnostic> {
+    let one = |fault: Fault| fault.at(Span::NONE);
+    refuse(arguments).map_err(one)?;
+    let format = match &arguments.output {
+        Some(path) => Some(results::format_of_file(&path.to_string_lossy()).map_err(one)?),
+        None => None,
+    };
+    let picture = arguments.figure.as_deref().map(plot::Picture::of).transpose().map_err(one)?;
+    let only = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
+    let mut options = SimulationOptions { only, ..options(arguments) };
+    let unit = imported::import(session, path, options.method.as_deref()).map_err(one)?;
+    let mut given = Given::default();
+    for (name, value) in &arguments.set {
+        given.add(&unit, name, value).map_err(one)?;
+    }
+    let inputs = arguments.input.as_deref();
+    let inputs = inputs.map(|path| problem::inputs_of(session, &unit, path)).transpose()?;
+    if let Some(inputs) = &inputs
+        && unit.description.experiment.stop.is_none()
+    {
+        options.stop.get_or_insert(inputs.span.1);
+    }
+    let annotated = imported::experiment(&unit.description);
+    let plain = SimulationOptions { method: None, ..options.clone() };
+    let settings = simulation::settings(&annotated, &plain).map_err(one)?;
+    let span = (settings.start, settings.stop);
+    if let Some(inputs) = &inputs {
+        problem::note_outside(session, inputs.span, span);
+    }
+    let samples = inputs.map(|inputs| inputs.samples).unwrap_or_default();
+    let model = imported::model(&unit, given, samples).map_err(one)?;
+    let names = model.layout().scalars().iter().map(|scalar| scalar.name.as_str());
+    check_filter(arguments, &options, names).map_err(one)?;
+    let simulated = with_progress(span, options, global, |options| {
+        imported::simulate(session, &model, &options)
+    });
+    let simulated = simulated.map_err(one)?;
+    session.print(&summary(&unit.file, &simulated));
+    if arguments.stats {
+        session.print(&statistics(&simulated.statistics));
+    }
+    if !arguments.plot.is_empty() {
+        draw(session, &unit.file, (arguments, picture), &simulated.table).map_err(one)?;
+    }
+    write_or_show(session, arguments, format, &simulated.table).map_err(one)
+}
+
+/// Refuses what needs the equations of a model.
+fn refuse(arguments: &SimulateArgs) -> Result<(), Fault> {
+    let SimulateArgs { model, from, dump, no_sliding, .. } = arguments;
+    let given = [
+        ("--model", model.is_some()),
+        ("--from", from.is_some()),
+        ("--dump", dump.is_some()),
+        ("--no-sliding", *no_sliding),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((option, _)) => Err(fault!(BAD_OPTION, "`{option}` has no meaning for an FMU")
+            .help(format!("leave out `{option}`"))),
+    }
+}

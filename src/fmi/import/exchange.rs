@@ -1,0 +1,334 @@
+//! Model exchange: a unit as a system that the integrators solve (FMI 2.0.5 §3, FMI 3.0.2 §3).
+//!
+//! Events of the unit are changes of sign of its indicators, times that it has announced, and what
+//! it asks for at the end of a step; the pieces of inputs begin at events as well.
+
+use super::binary::Component;
+use super::calls::CallError;
+use super::inputs::Inputs;
+use super::values::Readings;
+use crate::Description;
+use crate::sim::{EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive, Settings};
+
+/// Increments of states for derivatives by differences, relative to their magnitude: the root of
+/// the precision of numbers.
+const INCREMENT: f64 = 1.5e-8;
+
+/// How a failed call looks to the integrators; [`ExchangeSystem::failure`] says what it was.
+const FAILED: Failure = Failure::Function { function: 0, at: 0, reason: 0 };
+
+/// What the description says of the states.
+pub(super) struct States {
+    pattern: Pattern,
+    nominal: Vec<f64>,
+    /// Value references of the states and of their derivatives, where the unit has directional
+    /// derivatives and all states are scalars.
+    directional: Option<[Vec<u32>; 2]>,
+}
+
+/// A unit with its inputs and readings.
+pub(super) struct ExchangeSystem<'a> {
+    component: &'a Component<'a>,
+    inputs: Inputs<'a>,
+    readings: Readings,
+    states: States,
+    indicators: usize,
+    /// Whether the unit must be notified of completed steps.
+    needs_completed_step: bool,
+    settings: &'a Settings,
+    next_event: Option<f64>,
+    /// The end of the step after which the unit has asked for an event.
+    asked_at: Option<f64>,
+    terminates: bool,
+    /// The last time at which a step or an event was completed.
+    completed: f64,
+    failure: Option<CallError>,
+    derivatives: [Vec<f64>; 2],
+}
+
+impl States {
+    /// What is known of `n` states.
+    pub fn of(description: &Description, n: usize) -> States {
+        let structure = &description.structure.derivatives;
+        let variables = &description.variables;
+        let state = |at: usize| variables[structure[at].variable].derivative_of;
+        let states: Option<Vec<usize>> = (0..structure.len()).map(state).collect();
+        let scalars = states.filter(|states| states.len() == n);
+        let nominal = |state: &usize| {
+            description.attributes_of(&variables[*state]).nominal.map_or(1.0, f64::abs)
+        };
+        let Some(states) = scalars else {
+            return States { pattern: Pattern::full(n), nominal: vec![1.0; n], directional: None };
+        };
+        let provides = description
+            .model_exchange
+            .as_ref()
+            .is_some_and(|interface| interface.provides_directional_derivatives);
+        let reference = |at: usize| variables[at].reference;
+        let directional = provides.then(|| {
+            let derivatives = structure.iter().map(|own| reference(own.variable)).collect();
+            [states.iter().map(|state| reference(*state)).collect(), derivatives]
+        });
+        States {
+            pattern: pattern(description, &states),
+            nominal: states.iter().map(nominal).collect(),
+            directional,
+        }
+    }
+}
+
+/// Which derivatives depend on which states, each on its own one as the integrators expect; all on all
+/// where a derivative does not say.
+fn pattern(description: &Description, states: &[usize]) -> Pattern {
+    let n = states.len();
+    let mut depends = vec![vec![false; n]; n];
+    for (row, unknown) in description.structure.derivatives.iter().enumerate() {
+        let Some(dependencies) = &unknown.dependencies else { return Pattern::full(n) };
+        depends[row][row] = true;
+        for (place, _) in dependencies {
+            if let Some(column) = states.iter().position(|state| state == place) {
+                depends[column][row] = true;
+            }
+        }
+    }
+    let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+    for column in depends {
+        pattern.rows.extend((0..n).filter(|row| column[*row]));
+        pattern.column_starts.push(pattern.rows.len());
+    }
+    pattern
+}
+
+impl<'a> ExchangeSystem<'a> {
+    /// A system of an instance that has got its values.
+    pub fn new(
+        component: &'a Component<'a>,
+        description: &Description,
+        (inputs, readings): (Inputs<'a>, Readings),
+        settings: &'a Settings,
+    ) -> Result<ExchangeSystem<'a>, CallError> {
+        let of_description =
+            [description.structure.derivatives.len(), description.event_indicators];
+        let [n, indicators] = component.sizes()?.unwrap_or(of_description);
+        let interface = description.model_exchange.as_ref();
+        Ok(ExchangeSystem {
+            component,
+            inputs,
+            readings,
+            states: States::of(description, n),
+            indicators,
+            needs_completed_step: interface.is_some_and(|own| own.needs_completed_step),
+            settings,
+            next_event: None,
+            asked_at: None,
+            terminates: false,
+            completed: f64::NEG_INFINITY,
+            failure: None,
+            derivatives: [vec![0.0; n], vec![0.0; n]],
+        })
+    }
+
+    /// The call that failed last.
+    pub fn failure(&self) -> Option<CallError> {
+        self.failure
+    }
+
+    /// Notes a failed call. After an error the instance must not be used any more.
+    fn done<T>(&mut self, result: Result<T, CallError>) -> Result<T, Failure> {
+        result.map_err(|error| {
+            self.failure = Some(error);
+            FAILED
+        })
+    }
+
+    fn is_broken(&self) -> bool {
+        self.failure.is_some_and(|error| error.is_final())
+    }
+
+    fn set(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        if self.is_broken() {
+            return Err(FAILED);
+        }
+        let set = self.component.set_time(t);
+        let set = set.and_then(|()| self.component.set_states(y));
+        let set = set.and_then(|()| self.inputs.set(self.component, t, false));
+        self.done(set)
+    }
+
+    /// The event iteration at an event or after the initialization.
+    fn update(&mut self, y: &mut [f64]) -> Result<(), CallError> {
+        let update = self.component.update_discrete_states()?;
+        self.next_event = update.next_event;
+        self.terminates |= update.terminates;
+        self.component.enter_continuous_mode()?;
+        self.component.states(y)
+    }
+
+    fn begin_simulation(&mut self, t: f64, y: &mut [f64]) -> Result<(), CallError> {
+        let span = (self.settings.start, self.settings.stop);
+        self.component.enter_initialization(Some(self.settings.tolerance), span)?;
+        self.inputs.seek(t);
+        self.inputs.set(self.component, t, true)?;
+        self.component.exit_initialization()?;
+        self.update(y)?;
+        self.completed = t;
+        Ok(())
+    }
+
+    fn event(&mut self, t: f64, y: &mut [f64]) -> Result<(), CallError> {
+        self.component.enter_event_mode()?;
+        self.inputs.seek(t);
+        self.inputs.set(self.component, t, true)?;
+        self.update(y)?;
+        self.completed = t;
+        Ok(())
+    }
+
+    /// A column of the Jacobian by a difference; those of the unknowns are at hand.
+    fn difference(&mut self, column: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let before = y[column];
+        let magnitude = before.abs().max(self.states.nominal[column]);
+        let moved = before + INCREMENT * magnitude;
+        y[column] = moved;
+        self.set(t, y)?;
+        let [base, own] = &mut self.derivatives;
+        let computed = self.component.derivatives(own);
+        let step = moved - before;
+        own.iter_mut().zip(base).for_each(|(own, base)| *own = (*own - *base) / step);
+        y[column] = before;
+        self.done(computed)
+    }
+}
+
+impl Residual for ExchangeSystem<'_> {
+    fn n_differential(&self) -> usize {
+        self.states.nominal.len()
+    }
+
+    fn n_algebraic(&self) -> usize {
+        0
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.states.nominal);
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y)?;
+        let computed = self.component.derivatives(out);
+        self.done(computed)
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.states.pattern
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y)?;
+        let n = self.n_differential();
+        if let Some([states, derivatives]) = &self.states.directional {
+            let pattern = &self.states.pattern;
+            for column in 0..n {
+                let entries = pattern.column(column);
+                let rows = &pattern.rows[entries.clone()];
+                if rows.is_empty() {
+                    continue;
+                }
+                let unknowns: Vec<u32> = rows.iter().map(|row| derivatives[*row]).collect();
+                let along = [unknowns.as_slice(), &states[column..=column]];
+                let out = &mut values[entries];
+                let computed = self.component.directional_derivative(along, &[1.0], out);
+                if let Err(error) = computed {
+                    self.failure = Some(error);
+                    return Err(FAILED);
+                }
+            }
+            return Ok(());
+        }
+        let computed = self.component.derivatives(&mut self.derivatives[0]);
+        self.done(computed)?;
+        let mut moved = y.to_vec();
+        for column in 0..n {
+            self.difference(column, t, &mut moved)?;
+            let pattern = &self.states.pattern;
+            for entry in pattern.column(column) {
+                values[entry] = self.derivatives[1][pattern.rows[entry]];
+            }
+        }
+        Ok(())
+    }
+
+    fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let begun = self.begin_simulation(t, y);
+        self.done(begun)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        if !self.needs_completed_step || t <= self.completed {
+            return Ok(());
+        }
+        self.set(t, y)?;
+        self.completed = t;
+        let completed = self.component.completed_step();
+        let [asks, terminates] = self.done(completed)?;
+        self.terminates |= terminates;
+        if asks || terminates {
+            self.asked_at = Some(t);
+        }
+        Ok(())
+    }
+
+    fn n_observed(&self) -> usize {
+        self.readings.count()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y)?;
+        let read = self.readings.read(self.component, out);
+        self.done(read)
+    }
+}
+
+impl Sensitive for ExchangeSystem<'_> {}
+
+impl Events for ExchangeSystem<'_> {
+    /// The indicators of the unit, and a number that becomes negative where it has asked for an event.
+    fn n_crossings(&self) -> usize {
+        self.indicators + usize::from(self.needs_completed_step)
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        if self.indicators > 0 {
+            self.set(t, y)?;
+            let computed = self.component.indicators(&mut out[..self.indicators]);
+            self.done(computed)?;
+        }
+        if let Some(asked) = out.get_mut(self.indicators) {
+            let is_due = self.asked_at.is_some_and(|asked_at| t > asked_at);
+            *asked = if is_due { -1.0 } else { 1.0 };
+        }
+        Ok(())
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        let own = self.next_event.filter(|event| *event > t);
+        own.into_iter().chain(self.inputs.next_event(t)).reduce(f64::min)
+    }
+
+    fn has_event_at_start(&self) -> bool {
+        self.terminates
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        self.set(t, y)?;
+        self.asked_at = None;
+        let handled = self.event(t, y);
+        self.done(handled)?;
+        Ok(match self.terminates {
+            true => EventOutcome::Terminate,
+            false => EventOutcome::Continue { y_changed: true },
+        })
+    }
+}
+
+impl Modes for ExchangeSystem<'_> {}

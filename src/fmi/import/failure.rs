@@ -1,0 +1,31 @@
+//! How a simulation of a unit fails.
+
+use serde::{Deserialize, Serialize};
+
+/// Why a simulation failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FailureClass {
+    /// The unit reports an error.
+    Unit,
+    /// The solver did not get through.
+    Solver,
+    /// More steps than allowed.
+    Steps,
+    /// More time on the clock than allowed.
+    Time,
+    /// It was cancelled.
+    Cancelled,
+    /// The process of the unit ended, or a call of it did not.
+    Process,
+}
+
+/// A failed simulation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulationFailure {
+    /// The time reached, seconds.
+    pub time: f64,
+    /// Why.
+    pub class: FailureClass,
+    /// Why, in one sentence without the time.
+    pub message: String,
+}

@@ -1,0 +1,190 @@
+//! Processes in which a unit runs, as many as simulations run at once. One that ends, by a fault of the
+//! unit or because it was too slow, costs its simulation; the next one gets a new process.
+
+use super::LogMessage;
+use super::failure::{FailureClass, SimulationFailure};
+use super::plan::Plan;
+use super::worker::{Answer, Request};
+use crate::Archive;
+use crate::sim::{PortableSettings, Settings, Statistics, Trajectory};
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Who runs units.
+pub trait Host: Send + Sync {
+    /// Whether the user allows to run the unit in a file of this name.
+    fn permits(&self, file: &str) -> bool;
+    /// Unpacks a unit for its processes.
+    ///
+    /// # Errors
+    /// Why that is not possible, in one sentence.
+    fn install(&self, archive: &Archive) -> Result<Box<dyn Start>, String>;
+}
+
+/// Starts processes for a unit.
+pub trait Start: Send + Sync {
+    /// A process that waits for requests.
+    ///
+    /// # Errors
+    /// Why there is none, in one sentence.
+    fn start(&self) -> Result<Box<dyn Process>, String>;
+}
+
+/// A process that simulates.
+pub trait Process: Send {
+    /// Sends a request.
+    ///
+    /// # Errors
+    /// How the process ended, in one sentence.
+    fn send(&mut self, request: &Request) -> Result<(), String>;
+    /// Waits for the answer, at most until the flag is set or so many seconds have passed; then the
+    /// process is ended.
+    ///
+    /// # Errors
+    /// How the process ended.
+    fn answer(
+        &mut self,
+        cancel: Option<&AtomicBool>,
+        seconds: Option<f64>,
+    ) -> Result<Answer, Ended>;
+}
+
+/// How a process has ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ended {
+    /// By itself, in one sentence.
+    Itself(String),
+    /// It was cancelled.
+    Cancelled,
+    /// It took too long.
+    TooSlow,
+}
+
+/// Seconds that a simulation may take beyond its budget, before its process is ended: what looks at the
+/// clock between steps is faster.
+const GRACE: f64 = 1.0;
+
+/// Processes of one unit.
+pub struct Pool {
+    start: Box<dyn Start>,
+    idle: Mutex<Vec<Worker>>,
+    messages: Mutex<Vec<LogMessage>>,
+    next_plan: AtomicU64,
+}
+
+/// A process with the plans that it knows.
+struct Worker {
+    process: Box<dyn Process>,
+    plans: BTreeSet<u64>,
+}
+
+/// A plan with its number.
+#[derive(Debug, Clone)]
+pub struct NumberedPlan {
+    number: u64,
+    plan: Arc<Plan>,
+}
+
+impl fmt::Debug for Pool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Pool").finish_non_exhaustive()
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Pool {
+    /// Processes that are started when they are needed.
+    pub fn new(start: Box<dyn Start>) -> Pool {
+        Pool {
+            start,
+            idle: Mutex::default(),
+            messages: Mutex::default(),
+            next_plan: AtomicU64::new(0),
+        }
+    }
+
+    /// A plan for simulations with these processes.
+    pub fn plan(&self, plan: Plan) -> NumberedPlan {
+        let number = self.next_plan.fetch_add(1, Ordering::Relaxed);
+        NumberedPlan { number, plan: Arc::new(plan) }
+    }
+
+    /// What the unit has said since this was asked, each message once.
+    pub fn take_messages(&self) -> Vec<LogMessage> {
+        std::mem::take(&mut locked(&self.messages))
+    }
+
+    /// Simulates in a process that is idle, or in a new one.
+    ///
+    /// # Errors
+    /// When and why the simulation failed; `out` has what was computed until then.
+    pub fn simulate(
+        &self,
+        (plan, values): (&NumberedPlan, &[f64]),
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> Result<Statistics, SimulationFailure> {
+        out.reset(plan.plan.observed.len());
+        let failure = |ended: Ended| {
+            let (class, message) = match ended {
+                Ended::Itself(message) => (FailureClass::Process, message),
+                Ended::Cancelled => (FailureClass::Cancelled, "it was cancelled".to_owned()),
+                Ended::TooSlow => {
+                    (FailureClass::Time, "it takes more time than allowed".to_owned())
+                }
+            };
+            SimulationFailure { time: settings.start, class, message }
+        };
+        let idle = locked(&self.idle).pop();
+        let mut worker = match idle {
+            Some(worker) => worker,
+            None => {
+                let process = self.start.start();
+                let process = process.map_err(|why| failure(Ended::Itself(why)))?;
+                Worker { process, plans: BTreeSet::new() }
+            }
+        };
+        let answer = worker.simulate((plan, values), settings).map_err(failure)?;
+        locked(&self.idle).push(worker);
+        self.keep(answer.messages);
+        out.replace(answer.time, answer.columns);
+        answer.result
+    }
+
+    fn keep(&self, messages: Vec<LogMessage>) {
+        /// A unit that says more is cut short.
+        const MOST: usize = 100;
+        let mut all = locked(&self.messages);
+        for message in messages {
+            if all.len() < MOST && !all.contains(&message) {
+                all.push(message);
+            }
+        }
+    }
+}
+
+impl Worker {
+    fn simulate(
+        &mut self,
+        (plan, values): (&NumberedPlan, &[f64]),
+        settings: &Settings,
+    ) -> Result<Answer, Ended> {
+        if self.plans.insert(plan.number) {
+            let plan = Request::Plan(plan.number, (*plan.plan).clone());
+            self.process.send(&plan).map_err(Ended::Itself)?;
+        }
+        let request = Request::Simulate {
+            plan: plan.number,
+            values: values.to_vec(),
+            settings: PortableSettings::of(settings),
+        };
+        self.process.send(&request).map_err(Ended::Itself)?;
+        let seconds = settings.time_budget.map(|budget| budget.seconds + GRACE);
+        self.process.answer(settings.cancel.as_deref(), seconds)
+    }
+}

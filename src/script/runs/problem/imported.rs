@@ -1,0 +1,330 @@
+//! Experiments on functional mock-up units. Nothing is around a unit as a class is around a Modelica
+//! model: what an experiment sets are values of its variables and samples of its inputs.
+
+use super::data::{Notes, VariableUnit};
+use super::driven::{InputColumns, no_column};
+use super::dynamics;
+use super::experiment::{Abscissa, Built, Source, note_start, note_stop, note_unused_stop};
+use super::file::{ExperimentEntry, ProblemFile, Role, ValueEntry};
+use super::inputs::{self, Declared, Times, Undecided};
+use super::parameters::Setting;
+use super::series::Comparison;
+use crate::Session;
+use crate::bail;
+use crate::diag::{At as _, Diagnostic, Fault, suggest};
+use crate::errors::BAD_FMU;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::fmi::description::{Causality, Kind};
+use crate::fmi::import::{Imported, Layout, Samples, is_parameter, why_not_set};
+use crate::identify::problem::Experiment;
+use crate::identify::{ImportedModel, Model};
+use crate::models::imported::{self, Given};
+use crate::registry::BAD_OPTION;
+use crate::source::Span;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The unit that is the model of a problem, if it is one.
+///
+/// # Errors
+///
+/// What is wrong with it, at the place of the model.
+pub(super) fn unit(
+    session: &Session,
+    file: &ProblemFile,
+    folder: &Path,
+) -> Result<Option<Arc<Imported>>, Vec<Diagnostic>> {
+    if !imported::is_unit(Path::new(&file.model)) {
+        return Ok(None);
+    }
+    let methods = file.experiment.iter().map(|entry| entry.integrator.as_deref());
+    let mut methods: Vec<bool> =
+        methods.map(|method| method == Some(imported::CO_SIMULATION)).collect();
+    methods.dedup();
+    let place = file.places.model.unwrap_or(Span::NONE);
+    let method = match methods.as_slice() {
+        [false] | [] => None,
+        [true] => Some(imported::CO_SIMULATION),
+        _ => {
+            let name = imported::CO_SIMULATION;
+            let fault = fault!(
+                BAD_OPTION,
+                "some experiments have the integrator `{name}` and others \
+                                            have not"
+            )
+            .help("write it in all experiments, or in none");
+            return Err(vec![fault.at(place)]);
+        }
+    };
+    let unit = imported::import(session, &folder.join(&file.model), method);
+    unit.map(Some).map_err(|fault| vec![fault.at(place)])
+}
+
+/// Reads an experiment on a unit.
+///
+/// # Errors
+///
+/// Data and settings that are wrong, and what only a class around a model can do.
+pub(super) fn build(
+    source: &Source<'_>,
+    (session, unit): (&Session, &Arc<Imported>),
+    notes: &mut Notes,
+) -> Result<Built, Diagnostic> {
+    let entry = source.entry;
+    let abscissa = &source.abscissa(notes).at(entry.places.x)?;
+    refuse_dynamics(source).at(entry.places.data)?;
+    let (given, parameters) = values(source, unit)?;
+    let (samples, undecided) = follow(source, unit, abscissa, notes)?;
+    let model = imported::model(unit, given, samples).at(entry.places.data)?;
+    check_names(&model, entry, &abscissa.name)?;
+    let model: Arc<dyn Model> = Arc::new(model);
+    let name = source.segment.name.clone();
+    let mut comparison = Comparison {
+        experiment: &name,
+        entry,
+        table: source.table,
+        model: &*model,
+        x_name: &abscissa.name,
+        x: Vec::new(),
+        start: 0.0,
+    };
+    comparison.x = abscissa.in_unit(&comparison, notes).at(entry.places.x)?;
+    let annotated = imported::experiment(&unit.description);
+    let begin = source.begin(annotated.start_time, &comparison, notes);
+    let settings = source.settings(session, &annotated, begin, &comparison).at(Span::NONE)?;
+    comparison.start = settings.start;
+    note_start(&comparison, notes);
+    note_stop(&comparison, abscissa, annotated.stop_time, notes);
+    note_unused_stop(&comparison, notes);
+    let observed: Vec<String> = entry.all_outputs().map(|(name, _)| name.clone()).collect();
+    let (observations, series) = comparison.outputs(&observed, notes)?;
+    if observations.is_empty() {
+        return Err(fault!(BAD_OPTION, "{name} has no outputs to compare").at(Span::NONE));
+    }
+    let error = settings.tolerance;
+    let x_name = abscissa.name.clone();
+    let experiment = Experiment {
+        name,
+        model: model.clone(),
+        settings,
+        second_attempt: true,
+        x_name,
+        observations,
+        parameters,
+    };
+    Ok(Built { experiment, series, error, program: None, undecided })
+}
+
+/// Refuses what becomes a part of the class around a Modelica model.
+fn refuse_dynamics(source: &Source<'_>) -> Result<(), Fault> {
+    let entry = source.entry;
+    let delayed = entry.all_outputs().any(|(_, column)| column.delay.is_some());
+    let what = if entry.steady_state {
+        "`steady_state`"
+    } else if delayed {
+        "`delay`"
+    } else if entry.segments.is_some() {
+        "`segments`"
+    } else {
+        return Ok(());
+    };
+    bail!(
+        BAD_OPTION,
+        "{what} of {} needs the equations of the model, which an FMU does not show", source.label;
+        help: "remove it, or use the Modelica model that the FMU was made of"
+    )
+}
+
+/// The values that an experiment gives, and the free parameters.
+fn values(
+    source: &Source<'_>,
+    unit: &Imported,
+) -> Result<(Given, Vec<(usize, String)>), Diagnostic> {
+    let Source { file, entry, label, segment, free, .. } = *source;
+    let setting = Setting { file, entry, label, segment, free };
+    let (mut given, mut names) = (Given::default(), Vec::new());
+    for (name, parameter) in &file.parameters {
+        let place = file.places.parameter(name);
+        match parameter.role(name).at(place)? {
+            Role::Free { .. } if dynamics::is_delay(file, name) => {}
+            Role::Free { .. } => {
+                names.push((setting.free_place(name, parameter).at(place)?, name.clone()));
+            }
+            Role::Fixed(value) => set(&mut given, unit, name, value).at(place)?,
+            Role::Tied(_) => {
+                let fault = fault!(
+                    BAD_OPTION,
+                    "`{name}` is tied, which an FMU cannot be: its \
+                                                parameters are numbers"
+                );
+                return Err(fault.help("estimate it, or give it a value with `fixed`").at(place));
+            }
+        }
+    }
+    for (name, value) in entry.set.iter().chain(&entry.start) {
+        let place = entry.places.value(name);
+        if file.parameters.contains_key(name) {
+            let fault = fault!(BAD_OPTION, "`{name}` is set both in {label} and in `[parameters]`";
+                help: "remove one of the two");
+            return Err(fault.at(place));
+        }
+        set(&mut given, unit, name, *value).at(place)?;
+    }
+    let layout = unit.layout(&given.numbers);
+    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
+    for (_, name) in &names {
+        check_free(unit, &layout, name).at(file.places.parameter(name))?;
+    }
+    Ok((given, names))
+}
+
+fn set(given: &mut Given, unit: &Imported, name: &str, value: ValueEntry) -> Result<(), Fault> {
+    match value {
+        ValueEntry::Truth(value) => given.set(unit, name, f64::from(u8::from(value))),
+        ValueEntry::Number(_) => given.set(unit, name, value.number(name)?),
+    }
+}
+
+/// Refuses, before the first simulation, what cannot be estimated.
+fn check_free(unit: &Imported, layout: &Layout, name: &str) -> Result<(), Fault> {
+    let Some(place) = layout.find(name) else {
+        let parameters =
+            layout.scalars().iter().filter(|own| is_parameter(unit.variable(own.place)));
+        let names: Vec<&str> = parameters.map(|own| own.name.as_str()).collect();
+        return Err(fault!(BAD_FMU, "`{}` has no parameter `{name}`", unit.file)
+            .help_if(suggest::did_you_mean(name, names.iter().copied()))
+            .help(format!("its parameters are {}", suggest::listed(&names))));
+    };
+    let variable = unit.variable(place);
+    if let Some(why) = why_not_set(variable) {
+        bail!(BAD_FMU, "`{name}` of `{}` {why} and cannot be estimated", unit.file);
+    }
+    if !variable.kind.is_float() {
+        bail!(BAD_FMU, "`{name}` of `{}` is {} and cannot be estimated: only real numbers can",
+            unit.file, variable.kind.word();
+            help: "give it a value, `{name} = {{ fixed = … }}`, and compare the fits of several \
+                   problem files with different values");
+    }
+    Ok(())
+}
+
+/// Refuses variables that the unit does not have.
+fn check_names(
+    model: &ImportedModel,
+    entry: &ExperimentEntry,
+    x_name: &str,
+) -> Result<(), Diagnostic> {
+    let outputs = entry.outputs.keys().map(|name| (name.as_str(), entry.places.column(name)));
+    for (name, place) in outputs.chain([(x_name, entry.places.x)]) {
+        if name != "time" && model.layout().find(name).is_none() {
+            let known = model.layout().scalars().iter().map(|scalar| scalar.name.as_str());
+            let fault = fault!(BAD_FMU, "`{}` has no variable `{name}`", model.name());
+            return Err(fault.help_if(suggest::did_you_mean(name, known)).at(place));
+        }
+    }
+    Ok(())
+}
+
+/// Samples of the inputs of an experiment.
+fn follow(
+    source: &Source<'_>,
+    unit: &Imported,
+    abscissa: &Abscissa,
+    notes: &mut Notes,
+) -> Result<(Vec<Samples>, Vec<Undecided>), Diagnostic> {
+    let times =
+        Times { name: &abscissa.name, values: &abscissa.time, origin: source.segment.origin };
+    samples(source.entry, (unit, source.table), &times, notes)
+}
+
+/// Samples of the inputs that follow columns.
+fn samples(
+    entry: &ExperimentEntry,
+    (unit, table): (&Imported, &crate::mat::MatFile),
+    times: &Times<'_>,
+    notes: &mut Notes,
+) -> Result<(Vec<Samples>, Vec<Undecided>), Diagnostic> {
+    let layout = unit.layout(&[]);
+    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
+    let declared = |name: &str| declared(unit, &layout, name);
+    let (all, undecided) = inputs::recorded(entry, table, times, &declared, notes)?;
+    let sampled = all.iter().filter_map(|one| {
+        Some(Samples {
+            place: layout.find(&one.name)?,
+            times: one.samples().iter().map(|(time, _)| *time).collect(),
+            values: one.samples().iter().map(|(_, value)| *value).collect(),
+            is_held: one.is_held(),
+        })
+    });
+    Ok((sampled.collect(), undecided))
+}
+
+/// The names of the inputs that are numbers.
+fn input_names(unit: &Imported, layout: &Layout) -> Vec<String> {
+    let is_input = |place| unit.variable(place).causality == Causality::Input;
+    let scalars = layout.scalars().iter().filter(|scalar| is_input(scalar.place));
+    scalars.map(|scalar| scalar.name.clone()).collect()
+}
+
+/// An input as the description has it.
+fn declared(unit: &Imported, layout: &Layout, name: &str) -> Result<Declared, Fault> {
+    let names = input_names(unit, layout);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let place = layout.find(name).filter(|_| names.contains(&name)).ok_or_else(|| {
+        let fault = fault!(BAD_FMU, "`{}` has no input `{name}`", unit.file);
+        let fault = fault.help_if(suggest::did_you_mean(name, names.iter().copied()));
+        match names.is_empty() {
+            true => fault.help("it has no inputs"),
+            false => fault.help(format!("its inputs are {}", suggest::listed(&names))),
+        }
+    })?;
+    let variable = unit.variable(place);
+    let attributes = unit.description.attributes_of(variable);
+    Ok(Declared {
+        base: match variable.kind {
+            Kind::Boolean => BaseType::Boolean,
+            kind if kind.is_float() => BaseType::Real,
+            _ => BaseType::Integer,
+        },
+        unit: VariableUnit {
+            symbol: attributes.unit.unwrap_or_default(),
+            is_relative: attributes.is_relative.unwrap_or(false),
+        },
+    })
+}
+
+/// Inputs of a unit that follow a file in a simulation.
+pub struct FollowedInputs {
+    /// Their samples.
+    pub samples: Vec<Samples>,
+    /// The first and the last time of the data.
+    pub span: (f64, f64),
+}
+
+/// Lets the inputs of a unit follow the columns of a file that have their names.
+///
+/// # Errors
+///
+/// Files that cannot be read, without a column of time or of an input.
+pub fn inputs_of(
+    session: &mut Session,
+    unit: &Imported,
+    path: &Path,
+) -> Result<FollowedInputs, Diagnostic> {
+    let layout = unit.layout(&[]);
+    let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
+    let mut columns = InputColumns::read(session, path).at(Span::NONE)?;
+    let names = input_names(unit, &layout);
+    let is_real =
+        |name: &str| layout.find(name).is_none_or(|place| unit.variable(place).kind.is_float());
+    let entry = columns.entry(&names, None, &is_real);
+    let entry =
+        entry.ok_or_else(|| no_column(&unit.file, &names, &columns.table).at(Span::NONE))?;
+    let (table, notes) = (&columns.table, &mut columns.notes);
+    let times = Times { name: "time", values: &columns.time, origin: columns.origin };
+    let (samples, _) = samples(&entry, (unit, table), &times, notes)?;
+    let span = columns.span();
+    columns.tell(session);
+    Ok(FollowedInputs { samples, span })
+}

@@ -1,0 +1,547 @@
+//! Functional mock-up units of others, as a user meets them: `tests/fmus/unit.c`, compiled here.
+//! Without a C compiler the tests that need one say so and pass.
+//!
+//! `GAPILIB_REFERENCE_FMUS` names a folder with the Reference-FMUs (`3/VanDerPol.fmu`,
+//! `VanDerPol/VanDerPol_out.csv`); their expected outputs are those of the explicit Euler method.
+
+use crate::support::program::{command, folder, gapi};
+use gapilib::internals::fmi::Archive;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// Faults of the unit, by the numbers that `unit.c` gives them.
+const CRASH: u32 = 1;
+const HANG: u32 = 2;
+const REPORT: u32 = 3;
+const REFUSE: u32 = 4;
+const LEAVE: u32 = 5;
+const PRINT: u32 = 6;
+const NOT_A_NUMBER: u32 = 7;
+const WRITE: u32 = 8;
+
+/// The folder of binaries for this machine, by version.
+fn platform(version: u8) -> Option<&'static str> {
+    match (version, cfg!(all(target_os = "linux", target_arch = "x86_64"))) {
+        (2, true) => Some("linux64"),
+        (3, true) => Some("x86_64-linux"),
+        _ => None,
+    }
+}
+
+/// The compiled library; `None`, said, where there is no compiler or the tests do not know the machine.
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
+fn library(version: u8, here: &Path) -> Option<Vec<u8>> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmus/unit.c");
+    let object = here.join("unit.so");
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let compiled = platform(version).is_some()
+        && Command::new(compiler)
+            .args(["-O1", "-shared", "-fPIC", &format!("-DFMI={version}"), "-o"])
+            .args([&object, &source])
+            .arg("-lm")
+            .status()
+            .is_ok_and(|status| status.success());
+    if !compiled {
+        eprintln!("skipped: there is no C compiler for a unit of this machine");
+        return None;
+    }
+    let bytes = fs::read(&object).expect("a library");
+    fs::remove_file(object).expect("removed");
+    Some(bytes)
+}
+
+const DESCRIPTION_3: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="unit" instantiationToken="{unit}">
+  <ModelExchange modelIdentifier="unit" needsCompletedIntegratorStep="true"/>
+  <CoSimulation modelIdentifier="unit" canHandleVariableCommunicationStepSize="true"/>
+  <UnitDefinitions><Unit name="1/s"/><Unit name="V"/></UnitDefinitions>
+  <DefaultExperiment startTime="0" stopTime="2" stepSize="0.1" tolerance="1e-8"/>
+  <ModelVariables>
+    <Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>
+    <Float64 name="x0" valueReference="1" causality="parameter" variability="fixed" initial="exact" start="1"/>
+    <Float64 name="x" valueReference="2" causality="local" variability="continuous" initial="calculated"/>
+    <Float64 name="der(x)" valueReference="3" causality="local" variability="continuous" derivative="2"/>
+    <Float64 name="k" valueReference="4" causality="parameter" variability="tunable" start="1" unit="1/s" min="0"/>
+    <Float64 name="u" valueReference="5" causality="input" variability="continuous" start="0"/>
+    <Float64 name="y" valueReference="6" causality="output" variability="continuous" unit="V"/>
+    <Float64 name="jump" valueReference="7" causality="parameter" variability="fixed" start="0"/>
+    <Float64 name="threshold" valueReference="8" causality="parameter" variability="fixed" start="-1e300"/>
+    <Int32 name="n" valueReference="9" causality="output" variability="discrete"/>
+    <Int32 name="fault" valueReference="10" causality="parameter" variability="fixed" start="0"/>
+    <UInt64 name="m" valueReference="11" causality="structuralParameter" variability="fixed" start="2"/>
+    <Float64 name="c" valueReference="12" causality="parameter" variability="fixed" start="1 0">
+      <Dimension valueReference="11"/>
+    </Float64>
+    <String name="label" valueReference="13" causality="parameter" variability="fixed"><Start value=""/></String>
+    <Boolean name="gain_on" valueReference="14" causality="parameter" variability="fixed" start="true"/>
+  </ModelVariables>
+  <ModelStructure>
+    <Output valueReference="6"/>
+    <Output valueReference="9"/>
+    <ContinuousStateDerivative valueReference="3" dependencies="2 5"/>
+    <EventIndicator valueReference="2"/>
+  </ModelStructure>
+</fmiModelDescription>
+"#;
+
+const DESCRIPTION_2: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="2.0" modelName="unit" guid="{unit}" numberOfEventIndicators="1">
+  <ModelExchange modelIdentifier="unit"/>
+  <CoSimulation modelIdentifier="unit" canHandleVariableCommunicationStepSize="true"/>
+  <UnitDefinitions><Unit name="1/s"/><Unit name="V"/></UnitDefinitions>
+  <DefaultExperiment startTime="0" stopTime="2" stepSize="0.1" tolerance="1e-8"/>
+  <ModelVariables>
+    <ScalarVariable name="x0" valueReference="1" causality="parameter" variability="fixed" initial="exact"><Real start="1"/></ScalarVariable>
+    <ScalarVariable name="x" valueReference="2" initial="calculated"><Real/></ScalarVariable>
+    <ScalarVariable name="der(x)" valueReference="3"><Real derivative="2"/></ScalarVariable>
+    <ScalarVariable name="k" valueReference="4" causality="parameter" variability="tunable"><Real start="1" unit="1/s" min="0"/></ScalarVariable>
+    <ScalarVariable name="u" valueReference="5" causality="input"><Real start="0"/></ScalarVariable>
+    <ScalarVariable name="y" valueReference="6" causality="output"><Real unit="V"/></ScalarVariable>
+    <ScalarVariable name="jump" valueReference="7" causality="parameter" variability="fixed"><Real start="0"/></ScalarVariable>
+    <ScalarVariable name="threshold" valueReference="8" causality="parameter" variability="fixed"><Real start="-1e300"/></ScalarVariable>
+    <ScalarVariable name="n" valueReference="9" causality="output" variability="discrete"><Integer/></ScalarVariable>
+    <ScalarVariable name="fault" valueReference="10" causality="parameter" variability="fixed"><Integer start="0"/></ScalarVariable>
+    <ScalarVariable name="label" valueReference="13" causality="parameter" variability="fixed"><String start=""/></ScalarVariable>
+    <ScalarVariable name="gain_on" valueReference="14" causality="parameter" variability="fixed"><Boolean start="true"/></ScalarVariable>
+  </ModelVariables>
+  <ModelStructure>
+    <Outputs><Unknown index="6"/><Unknown index="9"/></Outputs>
+    <Derivatives><Unknown index="3" dependencies="2 5"/></Derivatives>
+  </ModelStructure>
+</fmiModelDescription>
+"#;
+
+fn description(version: u8) -> &'static str {
+    if version == 2 { DESCRIPTION_2 } else { DESCRIPTION_3 }
+}
+
+fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut archive = Archive::new();
+    files.iter().for_each(|(path, content)| archive.insert(*path, *content));
+    archive.to_bytes().expect("an archive")
+}
+
+/// A folder with `unit.fmu`.
+fn with_unit(version: u8) -> Option<TempDir> {
+    let here = folder(&[]);
+    let library = library(version, here.path())?;
+    let path = format!("binaries/{}/unit.so", platform(version)?);
+    let description = description(version).as_bytes();
+    let bytes = archive(&[("modelDescription.xml", description), (&path, &library)]);
+    fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+    Some(here)
+}
+
+/// The columns of the results of a simulation.
+fn simulated(here: &TempDir, more: &[&str]) -> Vec<(String, Vec<f64>)> {
+    let base = ["simulate", "unit.fmu", "--allow-external=unit.fmu", "--output", "r.csv"];
+    let (code, _, errors) = gapi(here, &[&base, more].concat());
+    assert_eq!(code, 0, "{errors}");
+    columns(&here.path().join("r.csv"))
+}
+
+fn columns(path: &Path) -> Vec<(String, Vec<f64>)> {
+    let mut csv = csv::Reader::from_path(path).expect("results");
+    let names = csv.headers().expect("a header").clone();
+    let name = |text: &str| text.split(" [").next().unwrap_or_default().to_owned();
+    let mut all: Vec<(String, Vec<f64>)> =
+        names.iter().map(|text| (name(text), Vec::new())).collect();
+    for row in csv.records() {
+        let row = row.expect("readable");
+        all.iter_mut().zip(&row).for_each(|((_, column), text)| {
+            column.push(text.parse().unwrap_or(f64::NAN));
+        });
+    }
+    all
+}
+
+fn column<'c>(all: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
+    let found = all.iter().find(|(known, _)| known == name);
+    &found.unwrap_or_else(|| panic!("no `{name}`")).1
+}
+
+fn near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
+}
+
+/// Both versions and kinds give the exact solution, with the jump at 1 s and what is set.
+#[test]
+fn units_of_both_versions_and_kinds_are_simulated() {
+    for version in [2, 3] {
+        let Some(here) = with_unit(version) else { return };
+        for kind in [&[][..], &["--method", "co-simulation"]] {
+            let set = ["--set", "k=2", "--set", "x0=3", "--set", "jump=0.5"];
+            let all = simulated(&here, &[&set, kind].concat());
+            let (time, y) = (column(&all, "time"), column(&all, "y"));
+            assert_eq!(time.last(), Some(&2.0));
+            for (t, y) in time.iter().zip(y).filter(|(t, _)| (**t - 1.0).abs() > 1e-9) {
+                let after = if *t > 1.0 { 0.5 * (-2.0 * (t - 1.0)).exp() } else { 0.0 };
+                near(*y, 3.0 * (-2.0 * t).exp() + after, 1e-6);
+            }
+            assert_eq!(column(&all, "k")[0], 2.0);
+        }
+    }
+}
+
+/// The step of an input is an event, and so is a state that falls below its threshold; Integers follow.
+#[test]
+fn inputs_and_events_are_those_of_the_data_and_of_the_unit() {
+    for version in [2, 3] {
+        let Some(here) = with_unit(version) else { return };
+        fs::write(here.path().join("u.csv"), "time,u\n0,0\n0.5,0\n0.5,2\n2,2\n").expect("written");
+        let all = simulated(&here, &["--input", "u.csv", "--set", "threshold=0.8"]);
+        let exact = |t: f64| match t < 0.5 {
+            true => (-t).exp(),
+            false => 2.0 + ((-0.5f64).exp() - 2.0) * (0.5 - t).exp(),
+        };
+        let (time, x) = (column(&all, "time"), column(&all, "x"));
+        time.iter().zip(x).for_each(|(t, x)| near(*x, exact(*t), 1e-6));
+        let n = column(&all, "n");
+        assert_eq!((n[0], n.last()), (0.0, Some(&1.0)));
+        let fell = time.iter().zip(n).find(|(_, n)| **n == 1.0).expect("an event").0;
+        near(*fell, -(0.8f64.ln()), 1e-6);
+    }
+}
+
+/// Sizes of arrays, their elements, Booleans and Strings can be set; what does not fit is refused.
+#[test]
+fn arrays_and_all_types_are_set() {
+    let Some(here) = with_unit(3) else { return };
+    let all = simulated(&here, &["--set", "m=3", "--set", "c[2]=2", "--set", "c[3]=4"]);
+    near(column(&all, "y")[0], 7.0, 1e-12);
+    assert_eq!(column(&all, "c[3]")[0], 4.0);
+    let all = simulated(&here, &["--set", "gain_on=false"]);
+    assert_eq!(column(&all, "y")[0], 0.0);
+    let base = ["simulate", "unit.fmu", "--allow-external"];
+    for (set, said) in [
+        ("label=refused", "this label is refused"),
+        ("c[3]=1", "has no variable `c[3]`"),
+        ("fault=0.5", "is Int32 and cannot be 0.5"),
+        ("y=1", "is computed by the FMU"),
+        ("kk=1", "did you mean `k`?"),
+        ("gain_on=perhaps", "cannot be `perhaps`"),
+    ] {
+        let (code, out, errors) = gapi(&here, &[&base[..], &["--set", set]].concat());
+        assert!(code == 1 && errors.contains(said), "{set}: {out}{errors}");
+    }
+}
+
+#[test]
+fn nothing_runs_without_permission() {
+    let Some(here) = with_unit(3) else { return };
+    let (code, _, errors) = gapi(&here, &["simulate", "unit.fmu", "--allow-external=other.fmu"]);
+    assert_eq!(code, 1);
+    for word in ["external-refused", "`unit.fmu`", "--allow-external=unit.fmu"] {
+        assert!(errors.contains(word), "{word}: {errors}");
+    }
+}
+
+/// A unit that goes wrong in its own way: the message says how, and no files stay in the working folder.
+#[test]
+fn faults_of_a_unit_are_said() {
+    let Some(here) = with_unit(3) else { return };
+    let base = ["simulate", "unit.fmu", "--allow-external", "--set"];
+    for kind in [&[][..], &["--method", "co-simulation"]] {
+        for (fault, said) in [
+            (CRASH, "ended by signal 11 (segmentation fault)"),
+            (REPORT, "reports an error: the pump is dry"),
+            (LEAVE, "exit code 7; it printed last: last words"),
+        ] {
+            let set = format!("fault={fault}");
+            let (code, out, errors) = gapi(&here, &[&base[..], &[&set], kind].concat());
+            assert!(code == 1 && errors.contains(said), "{set}: {out}{errors}");
+        }
+    }
+    let step = ["--method", "co-simulation"];
+    for (fault, kind, said) in [
+        (REFUSE, &step[..], "`fmi3DoStep` of the FMU refuses these values"),
+        (REFUSE, &[], "`fmi3SetTime` of the FMU refuses these values"),
+        (NOT_A_NUMBER, &[], "a state is not finite"),
+    ] {
+        let set = format!("fault={fault}");
+        let (code, out, errors) = gapi(&here, &[&base[..], &[&set], kind].concat());
+        assert!(code == 1 && errors.contains(said), "{set}: {out}{errors}");
+    }
+    let printing = format!("fault={PRINT}");
+    let (code, out, errors) = gapi(&here, &[&base[..], &[&printing]].concat());
+    assert!(code == 0 && errors.contains("printed to the output"), "{out}{errors}");
+    assert_eq!(errors.matches("printed to the output").count(), 1, "{errors}");
+    let writing = format!("fault={WRITE}");
+    let (code, out, errors) = gapi(&here, &[&base[..], &[&writing]].concat());
+    assert!(code == 0 && !here.path().join("remaining.txt").exists(), "{out}{errors}");
+}
+
+const PROBLEM: &str = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
+                       x0 = { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\n\
+                       outputs = { y = \"y\" }\n";
+
+fn data() -> String {
+    let row = |t: f64| {
+        // A ripple that no parameter follows.
+        let ripple = 1e-3 * (37.0 * t).sin();
+        format!("{t},{}\n", 3.0 * (-2.0 * t).exp() + ripple)
+    };
+    let rows: String = (0..=20).map(|n| row(f64::from(n) / 10.0)).collect();
+    format!("time,y\n{rows}")
+}
+
+/// The fit of a unit is that of the formula, for both versions and kinds, and its files have the same
+/// bytes with one thread and with three.
+#[test]
+fn parameters_of_units_are_identified_on_any_number_of_threads() {
+    let mut found = Vec::new();
+    for version in [2, 3] {
+        let Some(here) = with_unit(version) else { return };
+        fs::write(here.path().join("d.csv"), data()).expect("written");
+        for (kind, entry) in [("me", ""), ("cs", "integrator = \"co-simulation\"\n")] {
+            fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
+            let mut results = Vec::new();
+            for threads in ["1", "3"] {
+                let out = format!("{kind}{threads}");
+                let (code, said, errors) = gapi(
+                    &here,
+                    &[
+                        "identify",
+                        "p.toml",
+                        "--allow-external=unit.fmu",
+                        "--threads",
+                        threads,
+                        "--out",
+                        &out,
+                    ],
+                );
+                assert_eq!(code, 0, "{said}{errors}");
+                assert!(said.contains("the model is an FMU"), "{said}");
+                let text = fs::read_to_string(here.path().join(&out).join("result.json"));
+                results.push(text.expect("a result"));
+            }
+            assert_eq!(without_time(&results[0]), without_time(&results[1]));
+            found.push(estimates(&results[0]));
+        }
+    }
+    for [k, x0] in &found {
+        near(*k, found[0][0], 1e-4);
+        near(*x0, found[0][1], 1e-4);
+        near(*k, 2.0, 5e-3);
+        near(*x0, 3.0, 5e-3);
+    }
+}
+
+/// Seconds on the clock differ from run to run.
+fn without_time(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.contains("second") && !line.contains("threads")).collect()
+}
+
+fn estimates(text: &str) -> [f64; 2] {
+    let result: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    let parameters = result["parameters"].as_array().expect("parameters");
+    ["k", "x0"].map(|name| {
+        let own = parameters.iter().find(|own| own["name"] == name).expect("a parameter");
+        own["value"].as_f64().expect("a number")
+    })
+}
+
+/// Simulations in which the unit crashes or does not return have failed, and the run continues.
+#[test]
+fn a_unit_that_crashes_or_hangs_costs_its_simulations_alone() {
+    let Some(here) = with_unit(3) else { return };
+    fs::write(here.path().join("d.csv"), data()).expect("written");
+    for (fault, said) in [(CRASH, "signal 11"), (HANG, "takes more time than allowed")] {
+        let entry = format!("max_seconds = 0.2\nset = {{ fault = {fault} }}\n");
+        fs::write(here.path().join("p.toml"), format!("{PROBLEM}{entry}")).expect("written");
+        let problem = ["identify", "p.toml", "--allow-external", "--out", &format!("o{fault}")];
+        let mut child = command(here.path(), &problem);
+        let output = child.output().expect("it ends");
+        let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert!(output.status.code().is_some_and(|code| code != 101), "{text}");
+        assert!(text.contains(said), "{fault}: {text}");
+    }
+}
+
+#[test]
+fn problems_name_what_a_unit_does_not_have() {
+    let Some(here) = with_unit(3) else { return };
+    fs::write(here.path().join("d.csv"), data()).expect("written");
+    for (from, to, said) in [
+        ("k = {", "kk = {", "has no parameter `kk`"),
+        ("k = {", "y = {", "is computed by the FMU and cannot be estimated"),
+        ("k = {", "fault = {", "only real numbers can"),
+        ("{ y = ", "{ z = ", "has no variable `z`"),
+        ("k = { min = 0.1, max = 10 }", "k = { tied = \"2*x0\" }", "`k` is tied"),
+        ("outputs =", "steady_state = true\noutputs =", "`steady_state` of experiment 1"),
+        ("outputs =", "inputs = { w = \"y\" }\noutputs =", "its inputs are `u`"),
+    ] {
+        fs::write(here.path().join("p.toml"), PROBLEM.replacen(from, to, 1)).expect("written");
+        let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--allow-external"]);
+        assert!(code == 1 && errors.contains(said), "{said}: {out}{errors}");
+    }
+}
+
+/// What is no unit, or none for this machine, is refused with its file and a remedy.
+#[test]
+fn files_that_are_not_usable_units_are_refused() {
+    let Some(platform) = platform(3) else { return };
+    let binary = format!("binaries/{platform}/unit.so");
+    let of = |xml: &str| archive(&[("modelDescription.xml", xml.as_bytes()), (&binary, b"none")]);
+    let changed = |from: &str, to: &str| {
+        assert!(DESCRIPTION_3.contains(from), "{from}");
+        of(&DESCRIPTION_3.replacen(from, to, 1))
+    };
+    let exchange =
+        "<ModelExchange modelIdentifier=\"unit\" needsCompletedIntegratorStep=\"true\"/>";
+    let simulation =
+        "<CoSimulation modelIdentifier=\"unit\" canHandleVariableCommunicationStepSize=\"true\"/>";
+    let without_kinds = DESCRIPTION_3.replace(exchange, "").replace(simulation, "");
+    let scheduled =
+        DESCRIPTION_3.replace(exchange, "<ScheduledExecution modelIdentifier=\"unit\"/>");
+    let scheduled = scheduled.replace(simulation, "");
+    let clock = "<Clock name=\"tick\" valueReference=\"99\" causality=\"input\" \
+                 intervalVariability=\"constant\" intervalDecimal=\"1\"/>\n  </ModelVariables>";
+    let whole = of(DESCRIPTION_3);
+    let windows =
+        [("modelDescription.xml", DESCRIPTION_3.as_bytes()), ("binaries/win64/u.dll", b"")];
+    let sources: [(&str, &[u8]); 2] =
+        [("modelDescription.xml", DESCRIPTION_3.as_bytes()), ("sources/u.c", b"")];
+    let cases: Vec<(Vec<u8>, &str)> = vec![
+        (b"no archive".to_vec(), "not an FMU"),
+        (Vec::new(), "not an FMU"),
+        (whole[..whole.len() / 2].to_vec(), "not an FMU"),
+        (archive(&[("a.txt", b"")]), "there is no `modelDescription.xml`"),
+        (archive(&[("modelDescription.xml", DESCRIPTION_3.as_bytes())]), "has no binaries at all"),
+        (archive(&windows), "it has `binaries/win64/u.dll`"),
+        (archive(&sources), "it has sources alone"),
+        (of("<fmiModelDescription"), "modelDescription.xml"),
+        (of("<other/>"), "modelDescription.xml"),
+        (changed("fmiVersion=\"3.0\"", "fmiVersion=\"1.0\""), "1.0"),
+        (changed(" instantiationToken=\"{unit}\"", ""), "instantiationToken"),
+        (changed("modelIdentifier=\"unit\" ", ""), "modelIdentifier"),
+        (changed("causality=\"output\"", "causality=\"outlet\""), "outlet"),
+        (changed("valueReference=\"6\"", "valueReference=\"six\""), "six"),
+        (
+            changed("<Dimension valueReference=\"11\"/>", "<Dimension valueReference=\"77\"/>"),
+            "size",
+        ),
+        (of(&without_kinds), "neither `ModelExchange` nor `CoSimulation`"),
+        (of(&scheduled), "scheduled execution"),
+        (changed("</ModelVariables>", clock), "clock `tick`"),
+        (whole, "cannot be loaded"),
+    ];
+    for (number, (bytes, said)) in cases.into_iter().enumerate() {
+        let here = folder(&[]);
+        fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+        let (code, out, errors) = gapi(&here, &["simulate", "unit.fmu", "--allow-external"]);
+        let text = format!("{number} ({said}): {out}{errors}");
+        assert!(code == 1 && errors.contains("unit.fmu") && errors.contains(said), "{text}");
+        assert!(!errors.contains("panicked"), "{text}");
+    }
+}
+
+/// A unit whose library does not fit its description.
+#[test]
+fn a_wrong_token_is_said_by_the_unit() {
+    for (version, attribute) in [(2, "guid=\"{unit}\""), (3, "instantiationToken=\"{unit}\"")] {
+        let here = folder(&[]);
+        let Some(library) = library(version, here.path()) else { return };
+        let xml = description(version).replace(attribute, &attribute.replace("unit", "other"));
+        let path = format!("binaries/{}/unit.so", platform(version).expect("known"));
+        let bytes = archive(&[("modelDescription.xml", xml.as_bytes()), (&path, &library)]);
+        fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+        let (code, out, errors) = gapi(&here, &["simulate", "unit.fmu", "--allow-external"]);
+        assert!(code == 1 && errors.contains("says (logStatusError): wrong"), "{out}{errors}");
+    }
+}
+
+/// Checking shows what a unit is without running it.
+#[test]
+fn a_check_runs_nothing() {
+    let here = folder(&[]);
+    let platform = platform(3).unwrap_or("x86_64-linux");
+    let binary = format!("binaries/{platform}/unit.so");
+    let description = DESCRIPTION_3.as_bytes();
+    let bytes = archive(&[("modelDescription.xml", description), (&binary, b"none")]);
+    fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+    let (code, out, errors) = gapi(&here, &["check", "unit.fmu"]);
+    if platform == "x86_64-linux" && cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        assert_eq!(code, 0, "{errors}");
+        for word in ["FMI 3.0", "model exchange, co-simulation", "1 state", "inputs: u", "y [V]"] {
+            assert!(out.contains(word), "{word}: {out}");
+        }
+    }
+    fs::write(here.path().join("unit.fmu"), b"none").expect("written");
+    let (code, out, errors) = gapi(&here, &["check", "unit.fmu"]);
+    assert!(code == 1 && errors.contains("bad-fmu"), "{out}{errors}");
+}
+
+/// The folder of the Reference-FMUs, if a variable names one; said if not.
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
+fn reference_units() -> Option<PathBuf> {
+    let named = std::env::var_os("GAPILIB_REFERENCE_FMUS").map(PathBuf::from);
+    if named.is_none() {
+        eprintln!("skipped: GAPILIB_REFERENCE_FMUS names no folder");
+    }
+    named
+}
+
+/// The Reference-FMUs against their expected outputs. These are those of explicit Euler steps, which
+/// co-simulation repeats to the bit and model exchange does with the same method, but for the places of
+/// events (`BouncingBall`) and steps within the output interval (`StateSpace`); these are compared with
+/// the exact solution.
+#[test]
+fn reference_units_give_their_expected_outputs() {
+    let Some(units) = reference_units() else { return };
+    let here = folder(&[]);
+    let mut compared = 0;
+    for version in [2, 3] {
+        for model in [
+            "VanDerPol",
+            "BouncingBall",
+            "Dahlquist",
+            "Stair",
+            "Resource",
+            "Feedthrough",
+            "StateSpace",
+        ] {
+            let unit = units.join(format!("{version}/{model}.fmu"));
+            if !unit.is_file() {
+                continue;
+            }
+            let expected = columns(&units.join(format!("{model}/{model}_out.csv")));
+            for (method, tolerance) in [("co-simulation", 0.0), ("euler", 1e-12)] {
+                if method == "euler" && ["BouncingBall", "StateSpace"].contains(&model) {
+                    continue;
+                }
+                let path = unit.to_string_lossy();
+                let simulate = ["simulate", &*path, "--allow-external", "--method", method];
+                let output = ["--output", "r.csv"];
+                let (code, out, errors) = gapi(&here, &[&simulate[..], &output].concat());
+                assert_eq!(code, 0, "{model}: {out}{errors}");
+                let found = columns(&here.path().join("r.csv"));
+                compared += compare(model, &expected, &found, tolerance);
+            }
+        }
+    }
+    assert!(compared > 10_000, "{compared} values compared");
+}
+
+/// Compares what both have; the number of values.
+fn compare(
+    model: &str,
+    expected: &[(String, Vec<f64>)],
+    found: &[(String, Vec<f64>)],
+    tolerance: f64,
+) -> usize {
+    let (times, own) = (column(expected, "time"), column(found, "time"));
+    let mut compared = 0;
+    for (name, values) in expected.iter().filter(|(name, _)| name != "time") {
+        let Some((_, own_values)) = found.iter().find(|(known, _)| known == name) else { continue };
+        for (t, value) in times.iter().zip(values).filter(|(_, value)| value.is_finite()) {
+            let rows = own.iter().zip(own_values).filter(|(own, _)| (*own - t).abs() < 1e-9);
+            let error = rows.map(|(_, own)| (own - value).abs()).fold(f64::INFINITY, f64::min);
+            assert!(error <= tolerance, "{model}: `{name}` at {t} s is off by {error}");
+            compared += 1;
+        }
+    }
+    compared
+}
