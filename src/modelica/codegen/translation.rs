@@ -58,6 +58,7 @@ pub(super) fn translate(
     let start = builder.create_block();
     builder.append_block_params_for_function_params(start);
     builder.switch_to_block(start);
+    builder.seal_block(start);
     let parameters = builder.block_params(start);
     let (memory, out, workspaces) = (parameters[0], parameters[1], parameters[2]);
     let signatures = signatures(&mut builder, target);
@@ -221,7 +222,7 @@ impl Translation<'_> {
         self.chosen.entry(register).or_insert_with(declare);
     }
 
-    /// Begins a block where a jump leads to.
+    /// Begins a block where jumps lead to. They lead forwards: all that lead here are written.
     fn enter(&mut self, at: usize) {
         if let Some(block) = self.blocks.get(&at).copied() {
             let here = self.builder.current_block();
@@ -229,6 +230,7 @@ impl Translation<'_> {
                 self.builder.ins().jump(block, &[]);
             }
             self.builder.switch_to_block(block);
+            self.builder.seal_block(block);
         }
     }
 
@@ -375,6 +377,7 @@ impl Translation<'_> {
                 let target = self.blocks[&(target as usize)];
                 self.builder.ins().brif(holds, next, &[], target, &[]);
                 self.builder.switch_to_block(next);
+                self.builder.seal_block(next);
             }
             Instruction::Jump { target } => {
                 let target = self.blocks[&(target as usize)];
@@ -571,6 +574,7 @@ impl Translation<'_> {
         };
         self.builder.ins().brif(condition, next, &[], failed, &[]);
         self.builder.switch_to_block(next);
+        self.builder.seal_block(next);
     }
 
     /// The sum of all checks so far.
@@ -600,10 +604,10 @@ impl Translation<'_> {
         self.builder.ins().return_(&[total]);
         if let Some(failed) = self.failed {
             self.builder.switch_to_block(failed);
+            self.builder.seal_block(failed);
             let nothing = self.builder.ins().f64const(f64::NAN);
             self.builder.ins().return_(&[nothing]);
         }
-        self.builder.seal_all_blocks();
         self.builder.finalize(target);
     }
 }
