@@ -34,7 +34,7 @@ impl System {
         let mut added: Vec<usize> = inconsistent(&group, self);
         while !added.is_empty() && group.len() + added.len() <= MOST_RELATIONS {
             group.append(&mut added);
-            if self.try_combinations(&group, &before, t, stage) {
+            if self.try_combinations(0, &group, &before, t, stage) {
                 return true;
             }
             added = inconsistent(&group, self);
@@ -76,7 +76,8 @@ impl System {
         let groups = program.switching.relations_of_blocks.iter();
         let found = groups.filter(|group| group.len() <= MOST_RELATIONS).any(|group| {
             tried += 1 << group.len();
-            tried <= MOST_BRANCHES && self.try_combinations(group, &before, t, stage)
+            // As they are they cannot be solved.
+            tried <= MOST_BRANCHES && self.try_combinations(1, group, &before, t, stage)
         });
         if !found {
             self.registers.copy_from_slice(&before);
@@ -95,8 +96,16 @@ impl System {
         others
     }
 
-    fn try_combinations(&mut self, group: &[usize], before: &[f64], t: f64, stage: Stage) -> bool {
-        let mut combinations: Vec<u32> = (0..1 << group.len()).collect();
+    /// Tries the combinations of a group with at least so many changes.
+    fn try_combinations(
+        &mut self,
+        least: u32,
+        group: &[usize],
+        before: &[f64],
+        t: f64,
+        stage: Stage,
+    ) -> bool {
+        let mut combinations: Vec<u32> = (least..1 << group.len()).collect();
         combinations.sort_by_key(|combination| combination.count_ones());
         combinations.into_iter().any(|combination| {
             self.registers.copy_from_slice(before);
