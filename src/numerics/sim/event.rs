@@ -6,8 +6,9 @@
 //! random until it is larger. The event itself is located at the zero, unless the function already
 //! was within the margin where the step began; then at the margin.
 //!
-//! The bracket of the first change is narrowed by secants of the functions that change within it,
-//! tried a little beyond and a little before, and halved every third time. A function that changes
+//! The bracket of the first change is narrowed by the inverse parabolas of the functions that change
+//! within it, tried a little beyond the zero as seen from the last trial, so that both ends come near; it
+//! is halved where that does not shorten it. A function that changes
 //! its sign twice within one step, or within one part of it where functions vary in time, is noticed
 //! where the parabola through its last three values does: the step is searched at its vertex then.
 //! After an event a function that is at zero has no such values: it is evaluated nearer and nearer
@@ -17,8 +18,11 @@ use super::{Events, Failure, Integrator, Problem, Residual};
 
 /// The width to which an event is located, relative to the step.
 const WIDTH: f64 = 1e-10;
-/// Times to narrow a bracket; halving alone needs 3 · 34.
+/// Times to narrow a bracket; where only halving shortens it, that needs 3 · 34.
 const MAX_TRIALS: usize = 120;
+/// How far beyond the estimated zero the next trial is, relative to how far the estimate has moved since
+/// the last trial: more than its error where parabolas converge.
+const BEYOND: f64 = 0.1;
 /// Margins relative to what errors of y as large as the tolerance make of a function. Errors of y
 /// are a thousandth of the tolerance where a step is short, as those after events are; with 1e-2
 /// the first impacts of a ball at tolerance 1e-4 come late by more than what tests allow.
@@ -41,6 +45,8 @@ pub(crate) struct CrossingSearch {
     pub(super) left: Vec<f64>,
     right: Vec<f64>,
     trial: Vec<f64>,
+    /// At the end of the bracket that was given up last.
+    outside: Vec<f64>,
     /// What errors of y as large as the tolerance make of the functions.
     pub(super) uncertainty: Vec<f64>,
     /// Those that are evaluated between steps: events only where they are larger than their
@@ -98,7 +104,8 @@ impl CrossingSearch {
             flags.resize(n_crossings, false);
         }
         let vectors = [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
-        for vector in vectors.into_iter().chain([&mut self.earlier, &mut self.farther]) {
+        let others = [&mut self.earlier, &mut self.farther, &mut self.outside];
+        for vector in vectors.into_iter().chain(others) {
             vector.resize(n_crossings, 0.0);
         }
         self.lasting.clear();
@@ -113,8 +120,11 @@ impl CrossingSearch {
         }
         self.earlier_time = None;
         self.lasting.fill(0);
-        self.estimate_uncertainty(problem, t, y);
-        problem.system.crossings(t, y, &mut self.left)?;
+        let is_known = self.estimate_uncertainty(problem, t, y);
+        match is_known {
+            true => self.left.copy_from_slice(&self.right),
+            false => problem.system.crossings(t, y, &mut self.left)?,
+        }
         let changed = self.signs.iter().zip(&self.left).any(|(old, z)| *old != sign(*z));
         for (sign_of, z) in self.signs.iter_mut().zip(&self.left) {
             *sign_of = sign(*z);
@@ -122,8 +132,9 @@ impl CrossingSearch {
         Ok(changed)
     }
 
-    /// How much the functions change with errors of y; zero where they have no value.
-    fn estimate_uncertainty(&mut self, problem: &mut Problem, t: f64, y: &[f64]) {
+    /// How much the functions change with errors of y; zero where they have no value. Whether `right`
+    /// has their values at (t, y).
+    fn estimate_uncertainty(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> bool {
         let part = problem.settings.tolerance * MARGIN;
         self.perturbed.clear();
         let errors = y.iter().zip(problem.nominal).enumerate().map(|(at, (y, nominal))| {
@@ -149,6 +160,7 @@ impl CrossingSearch {
             *wide = widen * uncertainty;
         }
         problem.system.set_uncertainty(&self.trial);
+        known
     }
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign
@@ -208,25 +220,33 @@ impl CrossingSearch {
         let width = WIDTH * (b - a);
         let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
         let width = width.max(resolution);
-        for trial in 0..MAX_TRIALS {
+        let mut outside = None;
+        // The last two lengths of the bracket, and the last trial.
+        let (mut lengths, mut last) = ([f64::INFINITY; 2], a);
+        let mut estimate = self.earliest_zero(a, b, outside);
+        for _ in 0..MAX_TRIALS {
             if b - a <= width {
                 break;
             }
-            let t = match trial % 3 {
-                0 => self.earliest_secant(a, b) + 0.4 * width,
-                1 => self.earliest_secant(a, b) - 0.4 * width,
-                _ => 0.5 * (a + b),
-            };
-            let t = if t > a && t < b { t } else { 0.5 * (a + b) };
+            let zero = self.earliest_zero(a, b, outside);
+            let moved = (zero - std::mem::replace(&mut estimate, zero)).abs();
+            let beyond = (BEYOND * moved).max(0.4 * width);
+            let t = if last <= a { zero + beyond } else { zero - beyond };
+            let is_slow = b - a > 0.5 * lengths[1];
+            let t = if t > a && t < b && !is_slow { t } else { 0.5 * (a + b) };
+            lengths = [b - a, if is_slow { f64::INFINITY } else { lengths[0] }];
             integrator.interpolate(t, y);
             problem.system.crossings(t, y, &mut self.trial)?;
-            if self.changed(&self.trial) {
-                b = t;
-                std::mem::swap(&mut self.right, &mut self.trial);
+            let end = if self.changed(&self.trial) {
+                outside = Some(std::mem::replace(&mut b, t));
+                &mut self.right
             } else {
-                a = t;
-                std::mem::swap(&mut self.left, &mut self.trial);
-            }
+                outside = Some(std::mem::replace(&mut a, t));
+                &mut self.left
+            };
+            std::mem::swap(end, &mut self.trial);
+            std::mem::swap(&mut self.outside, &mut self.trial);
+            last = t;
         }
         Ok(b)
     }
@@ -420,17 +440,27 @@ impl CrossingSearch {
         z.iter().enumerate().any(|(at, z)| self.has_changed(at, *z))
     }
 
-    fn earliest_secant(&self, a: f64, b: f64) -> f64 {
-        let ends = self.left.iter().zip(&self.right).enumerate();
-        let changing = ends.filter(|(at, (_, right))| self.has_changed(*at, **right));
-        let root = |(at, (left, right)): (usize, (&f64, &f64))| {
+    /// The earliest zero of the functions that change between a and b, each by the inverse parabola
+    /// through its values there and `outside`, or by its secant.
+    fn earliest_zero(&self, a: f64, b: f64, outside: Option<f64>) -> f64 {
+        let changing = (0..self.signs.len()).filter(|at| self.has_changed(*at, self.right[*at]));
+        let zero = |at: usize| {
+            let (left, right) = (self.left[at], self.right[at]);
             // Where the function passes its margin, if it was within.
             let level = match self.is_near[at] {
                 true => right.signum() * self.margin(at),
                 false => 0.0,
             };
-            a + (b - a) * (left - level) / (left - right)
+            let (left, right) = (left - level, right - level);
+            let secant = a + (b - a) * left / (left - right);
+            let parabola = outside.map(|c| {
+                let z = self.outside[at] - level;
+                a * (right * z) / ((left - right) * (left - z))
+                    + b * (left * z) / ((right - left) * (right - z))
+                    + c * (left * right) / ((z - left) * (z - right))
+            });
+            parabola.filter(|zero| *zero > a && *zero < b).unwrap_or(secant)
         };
-        changing.map(root).filter(|root| root.is_finite()).fold(b, f64::min)
+        changing.map(zero).filter(|zero| zero.is_finite()).fold(b, f64::min)
     }
 }
