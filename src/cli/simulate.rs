@@ -352,14 +352,17 @@ fn statistics(s: &Statistics) -> String {
         ("factorizations", s.factorizations),
         ("state events", s.state_events),
         ("time events", s.time_events),
+        ("events without a restart", s.continued),
         ("chattering relations", s.followed),
         ("sliding modes", s.slides),
         ("accumulations of impacts (Zeno)", s.accumulations),
     ];
+    let sampled = ("of these from sample to sample", s.sampled_steps);
     let exact = ("of these with the exact solution", s.exact_steps);
-    let exact = Some(exact).filter(|(_, count)| *count > 0);
+    let special = [exact, sampled].into_iter().filter(|(_, count)| *count > 0);
+    let special: Vec<_> = special.collect();
     let (first, others) = rows.split_at(1);
-    let rows = first.iter().chain(&exact).chain(others);
+    let rows = first.iter().chain(&special).chain(others);
     rows.map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
 }
 

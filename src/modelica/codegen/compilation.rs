@@ -18,7 +18,7 @@ use super::program::{
     number_of_equations,
 };
 use super::registers::Registers;
-use super::relation_groups::{memoryless, relations_of_blocks};
+use super::relation_groups::{memoryless, relations_of_blocks, relations_of_loops};
 use super::sequence::{
     by_columns, compile_continuous, compile_outputs, compile_steps, resolved, slice,
 };
@@ -280,6 +280,7 @@ impl Compilation {
         let time_rests = time_rests.tape;
         let switching = Switching {
             relations_of_blocks: relations_of_blocks(pool, causalized),
+            relations_of_loops: relations_of_loops(pool, causalized),
             memoryless: memoryless(pool, causalized, &relations),
             relations,
             relation_sides: sides,

@@ -187,6 +187,8 @@ pub(crate) struct Switching {
     pub(crate) crossing_relations: Vec<usize>,
     /// For every block that is solved at once, the relations in it.
     pub(crate) relations_of_blocks: Vec<Vec<usize>>,
+    /// The relations in torn loops that are solved between events, ascending.
+    pub(crate) relations_of_loops: Vec<usize>,
     /// For every relation, whether only functions of the relations follow from it at events.
     pub(crate) memoryless: Vec<bool>,
 }

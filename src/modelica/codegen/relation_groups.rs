@@ -2,7 +2,7 @@
 //! functions of the relations follows at events. Mode search and sliding need it.
 
 use super::code::CompiledRelation;
-use crate::causalize::CausalizedDae;
+use crate::causalize::{Block, CausalizedDae};
 use crate::lower::VariableKind;
 use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
 use indexmap::IndexSet;
@@ -10,13 +10,32 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// For every block that is solved at once, the relations in it.
 pub(super) fn relations_of_blocks(pool: &Pool, sorted: &CausalizedDae) -> Vec<Vec<usize>> {
+    let blocks = sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
+    groups_of(blocks, pool, sorted)
+}
+
+/// The relations in the torn loops that are solved between events, ascending.
+pub(super) fn relations_of_loops(pool: &Pool, sorted: &CausalizedDae) -> Vec<usize> {
+    let loops = sorted.blocks.iter().filter(|block| matches!(block, Block::Loop(_)));
+    let mut all = groups_of(loops, pool, sorted).concat();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// For every block, the relations in it.
+fn groups_of<'a>(
+    blocks: impl Iterator<Item = &'a Block>,
+    pool: &Pool,
+    sorted: &CausalizedDae,
+) -> Vec<Vec<usize>> {
     let numbers: FxHashMap<_, _> =
         sorted.dae.relations.iter().enumerate().map(|(at, r)| (r.variable, at)).collect();
     let mut containing = Containing::new(|pool, e| {
         pool.as_variable(e).is_some_and(|variable| numbers.contains_key(&variable))
     });
     let mut groups = IndexSet::new();
-    for block in sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks) {
+    for block in blocks {
         let values = block.assignments().iter().map(|a| a.value).chain(block.residuals());
         let values: Vec<Expr> = values.filter(|e| containing.contains(pool, *e)).collect();
         let mut group: Vec<usize> = Vec::new();

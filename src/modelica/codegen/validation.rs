@@ -326,6 +326,7 @@ impl Program {
         let roundings = self.events.roundings.iter().filter(|r| r.time.is_none()).count();
         let rests = self.switching.relations.iter().filter_map(|relation| relation.time);
         let groups = self.switching.relations_of_blocks.iter().flatten();
+        let groups = groups.chain(&self.switching.relations_of_loops);
         n == self.sorted.dae.relations.len()
             && (self.switching.relation_sides.len(), self.switching.memoryless.len()) == (n, n)
             && self.switching.relation_sides.iter().all(|sides| sides.has(2, limits))

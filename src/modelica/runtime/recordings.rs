@@ -56,6 +56,17 @@ impl System {
         pairs.filter_map(|(recording, passed)| recording.knots.get(*passed).copied())
     }
 
+    /// The mean distance of all knots between two times.
+    pub(super) fn distance_of_knots(&self, start: f64, stop: f64) -> Option<f64> {
+        let recordings = self.program.sorted.dae.events.recordings.iter();
+        let within = |recording: &Recording| {
+            let up_to = |time: f64| recording.knots.partition_point(|knot| *knot < time);
+            up_to(stop) - up_to(start)
+        };
+        let knots: usize = recordings.map(within).sum();
+        (knots > 0).then(|| (stop - start) / knots as f64)
+    }
+
     /// Values, rates and the time they count from, where so many knots have been passed.
     fn set_segment(&mut self, recording: &Recording, passed: usize) {
         let (first, knots) = (passed.saturating_sub(1), &recording.knots);

@@ -28,6 +28,12 @@ impl System {
         relation.is_some_and(|at| self.program.switching.memoryless[at]) && !self.has_past()
     }
 
+    /// Whether the relation of a crossing function chooses equations of a torn loop.
+    pub(super) fn is_in_loop(&self, crossing: usize) -> bool {
+        let loops = &self.program.switching.relations_of_loops;
+        self.relation_of(crossing).is_none_or(|at| loops.binary_search(&at).is_ok())
+    }
+
     /// Sets the relation of a crossing function to its value on one side.
     fn set_side(&mut self, crossing: usize, is_positive: bool) {
         let Some(at) = self.relation_of(crossing) else { return };

@@ -552,6 +552,10 @@ impl Sensitive for System {
 }
 
 impl Events for System {
+    fn sample_distance(&self, start: f64, stop: f64) -> Option<f64> {
+        self.distance_of_knots(start, stop)
+    }
+
     fn has_event_at_start(&self) -> bool {
         self.relations.is_at_start && self.changes_after(self.registers[0])
     }
@@ -672,6 +676,10 @@ impl Modes for System {
 
     fn can_follow_now(&self, crossing: usize) -> bool {
         self.is_memoryless(crossing) || self.is_idle_now(crossing)
+    }
+
+    fn is_of_loop(&self, crossing: usize) -> bool {
+        self.is_in_loop(crossing)
     }
 
     fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<bool, Failure> {

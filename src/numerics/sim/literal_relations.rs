@@ -66,6 +66,7 @@ impl Run<'_> {
         }
         let n_crossings = self.problem.system.n_crossings();
         self.crossings.resize(n_crossings);
+        self.before_event.resize(n_crossings);
         self.watch.resize(n_crossings);
         self.restart()
     }

@@ -57,11 +57,14 @@
 //! [Shampine & Reichelt 1997](gapilib_base::bibliography#shampine-reichelt-1997).
 
 mod accumulation;
+mod before_event;
 mod chattering;
+mod continuation;
 mod displacement;
 mod effort;
 mod error;
 mod event;
+mod explicit_steps;
 mod inner_loops;
 mod instants;
 mod integrators;

@@ -16,6 +16,8 @@ pub(crate) struct TestProblem {
     pub event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
     pub discrete: Vec<f64>,
     pub assertion: fn(&[f64]) -> bool,
+    /// Whether nothing follows from its crossing functions but other branches.
+    pub only_branches: bool,
     /// All of y unless set.
     pub observed: Option<fn(f64, &[f64]) -> f64>,
     pattern: Pattern,
@@ -40,6 +42,7 @@ impl TestProblem {
             event: |_, _, _| EventOutcome::Continue { y_changed: false },
             discrete: Vec::new(),
             assertion: |_| true,
+            only_branches: false,
             observed: None,
             pattern: Pattern {
                 n,
@@ -53,6 +56,11 @@ impl TestProblem {
     fn difference_scale(&self, j: usize) -> f64 {
         let nominal = self.nominal[j];
         if nominal > 0.0 && nominal.is_finite() { nominal } else { 1.0 }
+    }
+
+    pub fn with_branches(mut self) -> TestProblem {
+        self.only_branches = true;
+        self
     }
 
     pub fn with_discrete(mut self, discrete: &[f64]) -> TestProblem {
@@ -158,7 +166,11 @@ impl Events for TestProblem {
     }
 }
 
-impl Modes for TestProblem {}
+impl Modes for TestProblem {
+    fn can_follow(&self, _: usize) -> bool {
+        self.only_branches
+    }
+}
 
 /// x' = −x, x(0) = 1: x = exp(−t).
 pub fn decay() -> TestProblem {

@@ -1,7 +1,9 @@
 //! The loop of a simulation.
 
+use super::before_event::BeforeEvent;
 use super::event::CrossingSearch;
 use super::instants::same_time;
+use super::integrators::sampled::{self, Patience, Sampled};
 use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
@@ -48,9 +50,11 @@ pub struct Simulator {
     integrator: Option<(&'static str, Box<dyn Integrator>)>,
     without_unknowns: WithoutUnknowns,
     exact: Exact,
+    sampled: Sampled,
     /// Slides where the method is explicit.
     implicit: Option<Box<dyn Integrator>>,
     crossings: CrossingSearch,
+    before_event: BeforeEvent,
     watch: Watch,
     nominals: Nominals,
     y: Vec<f64>,
@@ -165,6 +169,7 @@ impl Simulator {
     ) -> Result<(End, Statistics), SimError> {
         let (n, is_explicit, solves_loops) = self.prepare(system, settings, from, out);
         let linearity = system.linearity().filter(|_| settings.takes_exact_steps && n > 0);
+        let distance = sampled::distance(system, settings).filter(|_| linearity.is_none());
         let integrator: &mut dyn Integrator = match linearity {
             _ if n == 0 => &mut self.without_unknowns,
             Some(linearity) => {
@@ -193,9 +198,12 @@ impl Simulator {
             },
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
+            sampled: distance.map(|distance| (&mut self.sampled, distance)),
+            patience: None,
             is_explicit: is_explicit || linearity.is_some(),
             solves_loops,
             crossings: &mut self.crossings,
+            before_event: &mut self.before_event,
             watch: &mut self.watch,
             nominals: &self.nominals,
             y: &mut self.y,
@@ -253,6 +261,7 @@ impl Simulator {
         self.observed.resize(system.n_observed(), 0.0);
         self.crossings.resize(system.n_crossings());
         self.watch.resize(system.n_crossings());
+        self.before_event.resize(system.n_crossings());
     }
 
     fn set_nominals(&mut self, system: &dyn DaeSystem, tolerance: f64) {
@@ -299,7 +308,7 @@ fn integrator<'a>(
 pub enum After {
     /// The step still holds.
     Resume,
-    /// The integrator was restarted.
+    /// The next step begins here: the integrator was restarted, or continues with its past.
     Restarted,
     /// The model ended the simulation.
     Terminated,
@@ -311,11 +320,16 @@ pub struct Run<'a> {
     pub(super) integrator: &'a mut dyn Integrator,
     /// Takes the place of an explicit one in slides, and the other way round.
     pub(super) implicit: &'a mut dyn Integrator,
+    /// The method for so distant samples, until it is known whether it suits.
+    pub(super) sampled: Option<(&'a mut Sampled, f64)>,
+    /// How long it may continue, while it does.
+    pub(super) patience: Option<Patience>,
     /// Whether the method is explicit, or exact.
     pub(super) is_explicit: bool,
     /// Whether the system solves its loops itself.
     pub(super) solves_loops: bool,
     pub(super) crossings: &'a mut CrossingSearch,
+    pub(super) before_event: &'a mut BeforeEvent,
     pub(super) watch: &'a mut Watch,
     pub(super) nominals: &'a Nominals,
     pub(super) y: &'a mut Vec<f64>,
@@ -374,11 +388,13 @@ impl Run<'_> {
                     self.count_step();
                     self.advance_to_end_of_step(time_event)?
                 }
+                Err(_) if self.patience.is_some() => self.end_explicit_steps()?,
                 Err(kind) => self.jump(kind).or_else(|kind| self.take_loops_inside(kind))?,
             };
             if after == After::Terminated {
                 break;
             }
+            self.watch_explicit_steps()?;
             self.watch_progress()?;
             let Problem { settings, budget, statistics, .. } = &mut self.problem;
             budget.extend(self.t, settings.stop, statistics.attempts());
@@ -421,6 +437,7 @@ impl Run<'_> {
                 return Ok(After::Terminated);
             }
         }
+        self.begin_explicit_steps();
         self.restart()?;
         Ok(After::Restarted)
     }
@@ -435,6 +452,7 @@ impl Run<'_> {
     }
 
     fn count_step(&mut self) {
+        self.problem.statistics.sampled_steps += u64::from(self.patience.is_some());
         if self.problem.settings.counts_effort {
             Effort::count(&mut self.effort.unknowns, self.integrator.dominant());
         }
@@ -728,6 +746,9 @@ impl Run<'_> {
             Err(SimErrorKind::Evaluation(Failure::Domain { .. })) if by_sign_change => {}
             recorded => recorded?,
         }
+        if by_sign_change {
+            self.look_before_event();
+        }
         let was_constrained = self.problem.system.is_constrained();
         let (surfaces, contacts) = self.end_slide();
         let crossing = if by_sign_change { self.crossings.last() } else { None };
@@ -746,10 +767,15 @@ impl Run<'_> {
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
             _ if was_constrained => {}
-            EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
+            EventOutcome::Continue { y_changed: true } | EventOutcome::Again => {
+                if !self.keep_past()? {
+                    self.restart()?;
+                }
+            }
             EventOutcome::Continue { y_changed: false } => {
                 let confirmed = self.start_crossings()?;
                 if confirmed || !by_sign_change {
+                    self.problem.statistics.continued += 1;
                     return Ok(After::Resume);
                 }
                 self.integrator.restart(&mut self.problem, self.t, self.y)?;

@@ -7,6 +7,8 @@ pub struct Statistics {
     pub steps: u64,
     /// Of these, steps with the exact solution of a linear system.
     pub exact_steps: u64,
+    /// Of these, explicit steps from sample to sample of recorded inputs.
+    pub sampled_steps: u64,
     /// Steps rejected by the error test.
     pub error_failures: u64,
     /// Steps rejected because the corrector did not converge or an evaluation failed.
@@ -23,6 +25,8 @@ pub struct Statistics {
     pub state_events: u64,
     /// Time events.
     pub time_events: u64,
+    /// Events, of both kinds, after which the integrator continued without a restart.
+    pub continued: u64,
     /// Relations that chattered and were evaluated between steps from then on.
     pub followed: u64,
     /// Intervals in which the solution slid along discontinuities.

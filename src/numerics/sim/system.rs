@@ -111,6 +111,11 @@ pub trait Events {
     fn next_time_event(&self, _t: f64) -> Option<f64> {
         None
     }
+    /// The mean distance of the samples of recorded inputs between two times, seconds: so often time
+    /// events come. `None` where there are none.
+    fn sample_distance(&self, _start: f64, _stop: f64) -> Option<f64> {
+        None
+    }
     /// Whether something changes right after the start that has another value at the start itself, as
     /// `time > 0` does: an event at the same time, after the initial values.
     fn has_event_at_start(&self) -> bool {
@@ -162,6 +167,11 @@ pub trait Modes {
     /// function has shown, nothing follows from it but what [`Modes::can_follow`] allows.
     fn can_follow_now(&self, crossing: usize) -> bool {
         self.can_follow(crossing)
+    }
+    /// Whether the relation of a crossing function chooses equations of an algebraic loop, whose unknowns
+    /// the other branch may leave open.
+    fn is_of_loop(&self, _crossing: usize) -> bool {
+        false
     }
     /// Changes branches without an event: these crossing functions are positive, or negative, from
     /// (t, y) on. Whether that was possible; if not, nothing has changed, and they need an event.

@@ -332,6 +332,7 @@ fn events_that_change_nothing_need_no_restart() {
     let (restarted, with_restart) = simulate(&mut counter(true), &settings).unwrap();
     let (resumed, without) = simulate(&mut counter(false), &settings).unwrap();
     assert_eq!((with_restart.state_events, without.state_events), (2, 2));
+    assert_eq!((with_restart.continued, without.continued), (0, 2));
     assert!(without.steps < with_restart.steps);
     for trajectory in [restarted, resumed] {
         let events = event_times(&trajectory);

@@ -6,6 +6,7 @@ mod displacement;
 mod events_of_time;
 mod exact_solutions;
 mod exact_steps;
+mod explicit_steps;
 mod fmus;
 mod fuel_cells;
 mod hybrid;

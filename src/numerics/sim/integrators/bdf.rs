@@ -59,6 +59,11 @@ const NEWTON_TOLERANCE: f64 = 0.03;
 /// vanish.
 const ROUNDING: f64 = 0.3;
 
+/// An error that solving a system with a known solution has where its condition is no worse than 1e9.
+const REGULAR: f64 = 1e-7;
+/// A step shortened by more than this is not worth its past: order 1 is as good.
+const LEAST_PART: f64 = 0.1;
+
 fn alpha(order: usize) -> f64 {
     (1.0 - KAPPA[order]) * GAMMA[order]
 }
@@ -81,6 +86,8 @@ struct Bdf {
     equal_steps: usize,
     /// Whether no step has been made since the restart.
     fresh: bool,
+    /// Whether no step has been made since an event after which the past was kept.
+    is_doubtful: bool,
     convergence: Convergence,
     /// Backward differences D⁰ … of n numbers each.
     differences: Vec<Vec<f64>>,
@@ -186,6 +193,19 @@ impl IterationMatrix {
         Ok(())
     }
 
+    /// Whether solving gives back numbers that were multiplied with the matrix.
+    fn is_regular(&mut self) -> bool {
+        let number = |at: usize| 1.0 + 1.0 / (at as f64 + 1.0);
+        let mut product = vec![0.0; self.pattern.n];
+        for column in 0..self.pattern.n {
+            for at in self.pattern.column(column) {
+                product[self.pattern.rows[at]] += self.values[at] * number(column);
+            }
+        }
+        self.factors.as_mut().expect("prepared at the restart").solve(&mut product);
+        product.iter().enumerate().all(|(at, x)| (x - number(at)).abs() <= REGULAR)
+    }
+
     fn solve(&mut self, nominal: &[f64], b: &mut [f64]) {
         self.factors.as_mut().expect("prepared at the restart").solve(b);
         b.iter_mut().zip(nominal).for_each(|(b, nominal)| *b *= nominal);
@@ -233,6 +253,20 @@ impl Bdf {
         }
         self.h = h_new;
         self.equal_steps = 0;
+    }
+
+    /// Moves the point that the differences belong to: they are those of the same polynomial there.
+    fn shift(&mut self, t: f64) {
+        let s = (t - self.t) / self.h;
+        for j in 0..=self.order {
+            let (target, others) = self.differences.split_at_mut(j + 1);
+            let mut factor = 1.0;
+            for (k, other) in others.iter().enumerate().take(self.order - j) {
+                factor *= (s + k as f64) / (k as f64 + 1.0);
+                target[j].iter_mut().zip(other).for_each(|(d, other)| *d += factor * other);
+            }
+        }
+        self.t = t;
     }
 
     /// Chooses order and length of the next step when the differences tell enough.
@@ -426,7 +460,7 @@ impl Bdf {
                 }
             }
         }
-        self.fresh = false;
+        (self.fresh, self.is_doubtful) = (false, false);
         self.t = t_new;
         self.equal_steps += 1;
         self.iteration.is_current = false;
@@ -495,7 +529,7 @@ impl Integrator for Bdf {
         self.h = problem.first_step(t, y, &self.rhs);
         self.order = 1;
         self.equal_steps = 0;
-        self.fresh = true;
+        (self.fresh, self.is_doubtful) = (true, false);
         self.convergence.rate = 1.0;
         self.convergence.iterations = 0;
         self.differences.iter_mut().for_each(|difference| difference.fill(0.0));
@@ -545,10 +579,37 @@ impl Integrator for Bdf {
             }
             self.rescale(self.h * factor);
             failures += 1;
-            if failures == MOST_FAILURES {
+            if failures == MOST_FAILURES || std::mem::take(&mut self.is_doubtful) {
                 self.forget(problem)?;
             }
         }
+    }
+
+    fn keeps_past(&self) -> bool {
+        true
+    }
+
+    fn determines_unknowns(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> bool {
+        if self.norms.weights.len() == self.n_differential {
+            return true;
+        }
+        let c = self.h / alpha(self.order);
+        let evaluated = self.iteration.evaluate(problem, t, &y[..self.n]);
+        evaluated.and_then(|()| self.iteration.factorize(problem, c)).is_ok()
+            && self.iteration.is_regular()
+    }
+
+    fn continue_from(&mut self, t: f64, y: &[f64], longest: f64) -> bool {
+        if longest < LEAST_PART * self.h {
+            return false;
+        }
+        self.shift(t);
+        self.differences[0].copy_from_slice(y);
+        if longest < self.h {
+            self.rescale(longest);
+        }
+        (self.equal_steps, self.is_doubtful) = (0, true);
+        true
     }
 
     fn time(&self) -> f64 {

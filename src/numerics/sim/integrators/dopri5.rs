@@ -13,8 +13,13 @@ pub const ENTRY: Entry<dyn Integrator> = Entry {
     aliases: &["dopri45", "rkf45"],
     summary: "explicit Runge-Kutta method of Dormand and Prince, order 5, variable step",
     reference: "hairer-norsett-wanner-1993",
-    make: |_| Ok(Box::new(ExplicitRungeKutta::new(&TABLEAU))),
+    make: |_| Ok(Box::new(new())),
 };
+
+/// The method without workspace yet.
+pub(super) fn new() -> ExplicitRungeKutta {
+    ExplicitRungeKutta::new(&TABLEAU)
+}
 
 static TABLEAU: Tableau = Tableau {
     nodes: &[0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0],

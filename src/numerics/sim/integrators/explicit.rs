@@ -5,12 +5,13 @@
 //! ```
 //!
 //! Between steps: cubic Hermite interpolation, with the term of order 4 where the tableau has one.
-//! For systems without algebraic unknowns.
+//! For systems without algebraic unknowns. Derivatives along directions are integrated with y, as
+//! unknowns of the same method, and take part in the error test.
 
 use super::step_control::{Attempt, SAFETY, StepControl, error_factor};
 use super::{Integrator, Problem};
-use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
+use crate::sim::{Sensitive, SimErrorKind};
 
 /// The coefficients of a method.
 pub(crate) struct Tableau {
@@ -48,6 +49,8 @@ pub(crate) struct ExplicitRungeKutta {
     y_old: Vec<f64>,
     stage: Vec<f64>,
     weights: Vec<f64>,
+    /// Typical magnitudes of y and, after them, of its derivatives along directions.
+    nominal: Vec<f64>,
     /// Derivatives of the stages, the first at the start of the step.
     derivatives: Vec<Vec<f64>>,
     /// Derivative at the end of the step.
@@ -69,6 +72,7 @@ impl ExplicitRungeKutta {
             y_old: Vec::new(),
             stage: Vec::new(),
             weights: Vec::new(),
+            nominal: Vec::new(),
             derivatives: vec![Vec::new(); tableau.nodes.len()],
             derivative_end: Vec::new(),
             is_outdated: false,
@@ -96,10 +100,10 @@ impl ExplicitRungeKutta {
         for i in 1..self.tableau.nodes.len() {
             combine(&self.y_old, h, self.tableau.stages[i], &self.derivatives, &mut self.stage);
             let t = self.t_old + h * self.tableau.nodes[i];
-            problem.rhs(t, &self.stage, &mut self.derivatives[i])?;
+            differentiate(problem, t, &self.stage, &mut self.derivatives[i])?;
         }
         combine(&self.y_old, h, self.tableau.weights, &self.derivatives, &mut self.y);
-        problem.rhs(attempt.end, &self.y, &mut self.derivative_end)
+        differentiate(problem, attempt.end, &self.y, &mut self.derivative_end)
     }
 
     /// Writes h Σ cᵢ kᵢ over all derivatives and the one at the end.
@@ -115,8 +119,21 @@ impl ExplicitRungeKutta {
     /// The error of the attempt relative to the tolerance.
     fn error(&mut self, problem: &Problem, h: f64, embedded: &Embedded) -> f64 {
         self.combine_all(h, &embedded.error);
-        set_weights(problem.settings.tolerance, &self.y_old, problem.nominal, &mut self.weights);
-        weighted_rms(&self.combined, &self.weights)
+        set_weights(problem.settings.tolerance, &self.y_old, &self.nominal, &mut self.weights);
+        let n = problem.nominal.len().max(1);
+        let blocks = self.combined.chunks_exact(n).zip(self.weights.chunks_exact(n));
+        blocks.map(|(error, weights)| weighted_rms(error, weights)).fold(0.0, f64::max)
+    }
+
+    /// An error of a derivative times what its direction changes counts as one of y.
+    fn set_nominal(&mut self, problem: &Problem) {
+        self.nominal.clear();
+        self.nominal.extend_from_slice(problem.nominal);
+        let mut magnitudes = vec![1.0; problem.system.n_directions()];
+        problem.system.directions(&mut magnitudes);
+        for magnitude in magnitudes {
+            self.nominal.extend(problem.nominal.iter().map(|nominal| nominal / magnitude));
+        }
     }
 
     fn accept(&mut self, attempt: Attempt) {
@@ -125,6 +142,21 @@ impl ExplicitRungeKutta {
             None => self.combined.fill(0.0),
         }
         self.t = attempt.end;
+    }
+}
+
+/// Writes the derivatives of y and of its derivatives along directions, which follow it.
+fn differentiate(
+    problem: &mut Problem,
+    t: f64,
+    y: &[f64],
+    out: &mut [f64],
+) -> Result<(), SimErrorKind> {
+    let n = problem.nominal.len();
+    problem.rhs(t, &y[..n], &mut out[..n])?;
+    match y.len() == n {
+        true => Ok(()),
+        false => problem.sensitivity_rhs(t, y, &mut out[n..]),
     }
 }
 
@@ -147,7 +179,8 @@ impl Integrator for ExplicitRungeKutta {
         self.resize(y.len());
         self.y.copy_from_slice(y);
         (self.t, self.t_old) = (t, t);
-        problem.rhs(t, &self.y, &mut self.derivative_end)?;
+        self.set_nominal(problem);
+        differentiate(problem, t, &self.y, &mut self.derivative_end)?;
         self.is_outdated = false;
         match self.tableau.embedded {
             None => self.control = StepControl::fixed(problem.settings.fixed_step()),
@@ -160,7 +193,7 @@ impl Integrator for ExplicitRungeKutta {
         self.t_old = self.t;
         self.y_old.copy_from_slice(&self.y);
         if std::mem::take(&mut self.is_outdated) {
-            problem.rhs(self.t, &self.y, &mut self.derivative_end)?;
+            differentiate(problem, self.t, &self.y, &mut self.derivative_end)?;
         }
         self.derivatives[0].copy_from_slice(&self.derivative_end);
         self.control.begin(problem, self.t);

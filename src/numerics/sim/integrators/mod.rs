@@ -10,6 +10,7 @@ mod mass_matrix;
 mod radau;
 mod rodas;
 mod rungekutta;
+pub(super) mod sampled;
 mod step_control;
 mod without_unknowns;
 
@@ -68,6 +69,23 @@ pub trait Integrator: Send {
     /// The unknown with the largest part in the error of the last step, where the method knows.
     fn dominant(&self) -> Option<usize> {
         None
+    }
+
+    /// Whether it can continue after an event: see [`Integrator::continue_from`].
+    fn keeps_past(&self) -> bool {
+        false
+    }
+
+    /// Continues from (t, y), where t is within the last step or at its end and y is its solution
+    /// there, as if the step had ended there, with a next step of at most `longest`. Whether it
+    /// does; if not, nothing has changed, and it needs a restart.
+    fn continue_from(&mut self, _t: f64, _y: &[f64], _longest: f64) -> bool {
+        false
+    }
+
+    /// Whether the algebraic unknowns of which it knows a past are determined at (t, y).
+    fn determines_unknowns(&mut self, _problem: &mut Problem, _t: f64, _y: &[f64]) -> bool {
+        true
     }
 
     /// Notes that the right-hand side at the end of the last step is another one since, although
@@ -147,7 +165,7 @@ impl Problem<'_> {
     }
 
     /// Number of the unknowns whose errors count: all but the auxiliary ones.
-    fn n_tested(&self) -> usize {
+    pub(super) fn n_tested(&self) -> usize {
         let system = &self.system;
         system.n_differential() + system.n_algebraic() - system.n_auxiliary()
     }

@@ -414,6 +414,20 @@ impl Integrator for Radau {
         }
     }
 
+    fn keeps_past(&self) -> bool {
+        true
+    }
+
+    fn continue_from(&mut self, t: f64, y: &[f64], longest: f64) -> bool {
+        if longest < self.control.h() {
+            return false;
+        }
+        (self.t, self.t_old) = (t, t);
+        self.y.copy_from_slice(y);
+        (self.has_past, self.knows_first, self.is_current) = (false, false, false);
+        true
+    }
+
     fn branches_changed(&mut self) {
         self.knows_first = false;
     }

@@ -248,6 +248,20 @@ impl Integrator for Rodas {
         }
     }
 
+    fn keeps_past(&self) -> bool {
+        true
+    }
+
+    fn continue_from(&mut self, t: f64, y: &[f64], longest: f64) -> bool {
+        if longest < self.control.h() {
+            return false;
+        }
+        (self.t, self.t_old) = (t, t);
+        self.y.copy_from_slice(y);
+        self.knows_first = false;
+        true
+    }
+
     fn branches_changed(&mut self) {
         self.knows_first = false;
     }

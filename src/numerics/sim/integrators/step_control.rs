@@ -63,6 +63,8 @@ pub(crate) struct StepControl {
     smallest: f64,
     /// Whether the next step may not be longer: an attempt of this one was rejected.
     is_cautious: bool,
+    /// The length of the last step if it was cut at a limit, such as the next sample of an input.
+    cut: f64,
 }
 
 impl StepControl {
@@ -71,9 +73,12 @@ impl StepControl {
         StepControl { h, ..StepControl::default() }
     }
 
-    /// The first step from (t, y), where the right-hand side is given.
+    /// The first step from (t, y), where the right-hand side is given; after an event at a time that was
+    /// known it is as long as the one before it.
     pub fn start(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
-        self.h = problem.first_step(t, y, rhs);
+        // What follows a sample is as fast as what came before.
+        let cut = if t > problem.settings.start { self.cut } else { 0.0 };
+        self.h = problem.first_step(t, y, rhs).max(cut);
     }
 
     /// As [`StepControl::start`], for methods whose steps may be nearly as long after an event as
@@ -111,6 +116,7 @@ impl StepControl {
         let next = attempt.h * if self.is_cautious { factor.min(1.0) } else { factor };
         // A step cut short at the limit says little about longer ones.
         let next = if attempt.reaches_limit { next.max(self.h) } else { next };
+        self.cut = if attempt.reaches_limit && !self.is_cautious { attempt.h } else { 0.0 };
         self.h = next.min(problem.settings.max_step);
     }
 
@@ -185,7 +191,7 @@ mod tests {
 
     #[test]
     fn steps_that_become_too_short_end_with_the_failure() {
-        let mut control = StepControl { h: 1.0, smallest: 0.1, is_cautious: false };
+        let mut control = StepControl { h: 1.0, smallest: 0.1, ..StepControl::default() };
         assert!(control.shorten(0.2, SimErrorKind::Singular).is_ok());
         assert!(control.is_cautious);
         assert!(matches!(

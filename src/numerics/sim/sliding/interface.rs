@@ -142,6 +142,10 @@ impl Events for Sliding<'_> {
         self.inner.oscillation(t)
     }
 
+    fn sample_distance(&self, start: f64, stop: f64) -> Option<f64> {
+        self.inner.sample_distance(start, stop)
+    }
+
     fn has_event_at_start(&self) -> bool {
         self.inner.has_event_at_start()
     }
@@ -190,6 +194,10 @@ impl Modes for Sliding<'_> {
 
     fn can_follow_now(&self, crossing: usize) -> bool {
         self.inner.can_follow_now(crossing)
+    }
+
+    fn is_of_loop(&self, crossing: usize) -> bool {
+        self.inner.is_of_loop(crossing)
     }
 
     fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<bool, Failure> {

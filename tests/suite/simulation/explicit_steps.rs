@@ -1,0 +1,120 @@
+//! Explicit steps from sample to sample, against exact solutions, against dassl, and their derivatives
+//! against difference quotients.
+
+use super::recorded_inputs::{Recorded, program};
+use gapilib::internals::codegen::{Program, SensitivityCode};
+use gapilib::internals::runtime::System;
+use gapilib::internals::sim::{OutputGrid, Settings, Simulator, Statistics, Trajectory};
+use std::sync::Arc;
+
+const SAMPLES: usize = 200;
+
+/// A tank with an outflow that grows with the square of its level, k = 1.
+const TANK: &str = "model M parameter Real k = 1; input Real u; Real x(start = 0.3, fixed = true); \
+    equation der(x) = u - k*x^2; end M;";
+
+fn times() -> Vec<f64> {
+    (0..=SAMPLES).map(|k| 0.05 * k as f64).collect()
+}
+
+fn values() -> Vec<f64> {
+    (0..=SAMPLES).map(|k| 0.5 + (k * k % 17) as f64 / 8.0).collect()
+}
+
+fn run(system: &mut System, is_free: bool, tolerance: f64) -> (Trajectory, Statistics) {
+    let at = times();
+    let settings = Settings {
+        stop: at[SAMPLES],
+        output: OutputGrid::At(at),
+        takes_exact_steps: is_free,
+        tolerance,
+        ..Settings::default()
+    };
+    let mut trajectory = Trajectory::default();
+    let statistics = Simulator::new().run(system, &settings, &mut trajectory);
+    (trajectory, statistics.expect("a simulation"))
+}
+
+fn observing(program: &Arc<Program>, name: &str) -> System {
+    let mut system = program.system();
+    system.observe_only(&[program.find_variable(name).expect("a variable")]);
+    system
+}
+
+fn driven(text: &str, is_held: bool) -> Arc<Program> {
+    let (times, values) = (times(), values());
+    let input: Recorded<'_> = ("u", is_held, &times, &values);
+    program(text, &[input])
+}
+
+/// The last value of x.
+fn end(trajectory: &Trajectory) -> f64 {
+    *trajectory.column(0).last().expect("a row")
+}
+
+#[test]
+fn a_tank_follows_its_held_inflow_in_one_step_for_each_sample() {
+    let mut exact: f64 = 0.3;
+    for u in &values()[..SAMPLES] {
+        let (root, part) = (u.sqrt(), (0.05 * u.sqrt()).tanh());
+        exact = root * (exact + root * part) / (root + exact * part);
+    }
+    let program = driven(TANK, true);
+    for tolerance in [1e-4, 1e-6] {
+        let (trajectory, statistics) = run(&mut observing(&program, "x"), true, tolerance);
+        assert_eq!(statistics.sampled_steps, statistics.steps);
+        assert!(statistics.steps <= SAMPLES as u64 * 6 / 5, "{statistics:?}");
+        assert!(statistics.rhs_evaluations <= 8 * statistics.steps, "{statistics:?}");
+        let error = (end(&trajectory) - exact).abs();
+        assert!(error < tolerance, "{error:e} at {tolerance:e}");
+    }
+    let (_, named) = run(&mut observing(&program, "x"), false, 1e-6);
+    assert_eq!(named.sampled_steps, 0);
+    assert!(named.attempts() > 2 * SAMPLES as u64, "{named:?}");
+}
+
+#[test]
+fn derivatives_are_those_of_difference_quotients() {
+    for is_held in [true, false] {
+        let program = driven(TANK, is_held);
+        let k = program.find_parameter("k").expect("a parameter");
+        let at = |value: f64| {
+            let mut system = observing(&program, "x");
+            system.set_parameter(k, value).expect("a number");
+            end(&run(&mut system, true, 1e-11).0)
+        };
+        let quotient = (at(1.001) - at(0.999)) / 0.002;
+        let mut system = observing(&program, "x");
+        let x = program.find_variable("x").expect("a variable");
+        let code = SensitivityCode::compile(&program, &[k], &[x]).expect("derivatives");
+        system.set_parameter(k, 1.0).expect("a number");
+        system.differentiate(Some(&code));
+        let (trajectory, statistics) = run(&mut system, true, 1e-9);
+        assert_eq!(statistics.sampled_steps, statistics.steps, "{statistics:?}");
+        let derivative = *trajectory.column(1).last().expect("a row");
+        assert!((derivative / quotient - 1.0).abs() < 1e-6, "{derivative} {quotient}");
+    }
+}
+
+#[test]
+fn a_stiff_model_is_left_to_the_implicit_method() {
+    let text = TANK.replace("u - k*x^2", "1e4*(u - k*x^2)");
+    let program = driven(&text, false);
+    let (free, statistics) = run(&mut observing(&program, "x"), true, 1e-6);
+    assert_eq!(statistics.sampled_steps, 0);
+    let (named, _) = run(&mut observing(&program, "x"), false, 1e-6);
+    assert_eq!(end(&free), end(&named));
+}
+
+#[test]
+fn a_model_that_becomes_stiff_is_handed_over() {
+    // Not stiff until the fifth second: then its rate grows by a factor of e^10 in a second.
+    let text = TANK.replace("u - k*x^2", "exp(min(10, max(0, 10*(time - 5))))*(u - k*x^2)");
+    let program = driven(&text, false);
+    let (free, statistics) = run(&mut observing(&program, "x"), true, 1e-6);
+    assert!(statistics.sampled_steps >= 95, "{statistics:?}");
+    assert!(statistics.sampled_steps < statistics.steps, "{statistics:?}");
+    let (named, dassl) = run(&mut observing(&program, "x"), false, 1e-6);
+    assert!(statistics.attempts() < 2 * dassl.attempts() + 1000, "{statistics:?} {dassl:?}");
+    assert!((end(&free) - end(&named)).abs() < 1e-5, "{} {}", end(&free), end(&named));
+}
