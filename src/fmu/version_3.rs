@@ -233,11 +233,11 @@ macro_rules! absent {
             extern "C" fn $name(
                 instance: *mut c_void,
                 _references: *const u32,
-                n: usize,
+                count: usize,
                 $($argument: $type),*
             ) -> c_int {
                 $(let _ = $argument;)*
-                call(instance, stringify!($name), |_| match n {
+                call(instance, stringify!($name), |_| match count {
                     0 => Ok(()),
                     _ => Err(Wrong::from(concat!("the unit has no ", $what))),
                 })
@@ -247,10 +247,10 @@ macro_rules! absent {
 }
 
 absent! {
-    fmi3GetString(_values: *mut *const c_char, _n: usize) = "variables of type String";
-    fmi3SetString(_values: *const *const c_char, _n: usize) = "variables of type String";
-    fmi3GetBinary(_sizes: *mut usize, _values: *mut *const u8, _n: usize) = "binary variables";
-    fmi3SetBinary(_sizes: *const usize, _values: *const *const u8, _n: usize) = "binary variables";
+    fmi3GetString(_values: *mut *const c_char, _values_count: usize) = "variables of type String";
+    fmi3SetString(_values: *const *const c_char, _values_count: usize) = "variables of type String";
+    fmi3GetBinary(_sizes: *mut usize, _values: *mut *const u8, _values_count: usize) = "binary variables";
+    fmi3SetBinary(_sizes: *const usize, _values: *const *const u8, _values_count: usize) = "binary variables";
     fmi3GetClock(_values: *mut bool) = "clocks";
     fmi3SetClock(_values: *const bool) = "clocks";
     fmi3GetIntervalDecimal(_values: *mut f64, _qualifiers: *mut c_int) = "clocks";
@@ -261,7 +261,7 @@ absent! {
     fmi3SetIntervalFraction(_a: *const u64, _b: *const u64) = "clocks";
     fmi3SetShiftDecimal(_values: *const f64) = "clocks";
     fmi3SetShiftFraction(_a: *const u64, _b: *const u64) = "clocks";
-    fmi3GetOutputDerivatives(_orders: *const i32, _values: *mut f64, _n: usize) = "derivatives of outputs";
+    fmi3GetOutputDerivatives(_orders: *const i32, _values: *mut f64, _values_count: usize) = "derivatives of outputs";
 }
 
 #[unsafe(no_mangle)]
