@@ -1,12 +1,12 @@
 //! A process with a unit, as the one sees it that asks.
 
-use super::worker::HUNG;
+use super::worker::{ANSWERED, HUNG};
 use crate::fmi::import::{Answer, Ended, LogMessage, Process, Request, receive, send};
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How often a cancellation is looked for.
@@ -17,15 +17,24 @@ const LAST_WORDS: Duration = Duration::from_secs(1);
 const MOST_LINES: usize = 50;
 const LONGEST_LINE: u64 = 1000;
 
-/// Lines that a unit has printed.
-type Printed = Arc<Mutex<Vec<String>>>;
+/// What a unit has printed.
+#[derive(Debug, Default)]
+struct Printed {
+    lines: Vec<String>,
+    /// For how many answers it is complete.
+    answers: u64,
+}
+
+type Shared = Arc<(Mutex<Printed>, Condvar)>;
 
 /// A process with a unit.
 pub(super) struct WorkerProcess {
     child: Child,
     to: Option<ChildStdin>,
     answers: Receiver<Answer>,
-    printed: Printed,
+    printed: Shared,
+    /// Answers that were received.
+    received: u64,
     listener: Option<std::thread::JoinHandle<()>>,
 }
 
@@ -49,10 +58,10 @@ impl WorkerProcess {
                 }
             }
         });
-        let printed = Printed::default();
-        let lines = printed.clone();
-        let listener = std::thread::spawn(move || listen(errors, &lines));
-        Ok(WorkerProcess { child, to, answers, printed, listener: Some(listener) })
+        let printed = Shared::default();
+        let heard = printed.clone();
+        let listener = Some(std::thread::spawn(move || listen(errors, &heard)));
+        Ok(WorkerProcess { child, to, answers, printed, received: 0, listener })
     }
 
     /// Ends the process; how it has ended by itself, in one sentence.
@@ -69,8 +78,8 @@ impl WorkerProcess {
         while is_listening() && begin.elapsed() < LAST_WORDS {
             std::thread::sleep(TICK);
         }
-        let printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
-        match printed.last() {
+        let printed = self.printed.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match printed.lines.last() {
             Some(line) => format!("{words}; it printed last: {line}"),
             None => words,
         }
@@ -88,10 +97,14 @@ impl WorkerProcess {
         None
     }
 
+    /// What was printed for the answers received so far: it comes by another stream, perhaps later.
     fn take_printed(&self) -> Vec<LogMessage> {
-        let mut printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
+        let printed = self.printed.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_missing = |printed: &mut Printed| printed.answers < self.received;
+        let waited = self.printed.1.wait_timeout_while(printed, LAST_WORDS, is_missing);
+        let (mut printed, _) = waited.unwrap_or_else(PoisonError::into_inner);
         let message = |text| LogMessage { is_problem: false, category: "printed".to_owned(), text };
-        printed.drain(..).map(message).collect()
+        printed.lines.drain(..).map(message).collect()
     }
 
     fn kill(&mut self) {
@@ -115,6 +128,7 @@ impl Process for WorkerProcess {
         loop {
             match self.answers.recv_timeout(TICK) {
                 Ok(mut answer) => {
+                    self.received += 1;
                     answer.messages.extend(self.take_printed());
                     return Ok(answer);
                 }
@@ -140,7 +154,7 @@ impl Drop for WorkerProcess {
 }
 
 /// Keeps the first lines of what a unit prints, and reads on so that it is not held up.
-fn listen(from: ChildStderr, lines: &Printed) {
+fn listen(from: ChildStderr, printed: &Shared) {
     let mut from = BufReader::new(from);
     let mut line = Vec::new();
     loop {
@@ -150,9 +164,17 @@ fn listen(from: ChildStderr, lines: &Printed) {
             return;
         }
         let text = String::from_utf8_lossy(&line).trim().to_owned();
-        let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
-        if !text.is_empty() && lines.len() < MOST_LINES {
-            lines.push(text);
+        let (text, is_answered) = match text.strip_suffix(ANSWERED) {
+            Some(text) => (text.to_owned(), true),
+            None => (text, false),
+        };
+        let mut heard = printed.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !text.is_empty() && heard.lines.len() < MOST_LINES {
+            heard.lines.push(text);
+        }
+        if is_answered {
+            heard.answers += 1;
+            printed.1.notify_all();
         }
     }
 }

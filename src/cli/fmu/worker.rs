@@ -15,6 +15,8 @@ use std::time::{Duration, Instant};
 
 /// The exit code of a process in which a call does not return.
 pub(super) const HUNG: u8 = 124;
+/// The line after what a unit has printed for an answer: this comes by another stream.
+pub(super) const ANSWERED: &str = "gapi fmu-worker: answered";
 /// How long a call may take: initializations of large models take seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How often calls are looked at.
@@ -56,7 +58,8 @@ fn work(arguments: &FmuWorkerArgs) -> io::Result<()> {
     let mut unit = Unit::new(&arguments.folder, description, calls);
     let (mut from, mut to) = (BufReader::new(io::stdin()), BufWriter::new(to));
     static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
-    serve(&mut unit, || STARTED.elapsed().as_secs_f64(), (&mut from, &mut to))
+    let clock = || STARTED.elapsed().as_secs_f64();
+    serve(&mut unit, clock, || terminal::eprint(&format!("{ANSWERED}\n")), (&mut from, &mut to))
 }
 
 /// The standard output for the answers alone; what the unit prints goes to the error output.

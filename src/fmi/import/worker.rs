@@ -80,7 +80,8 @@ pub fn receive<T: for<'de> Deserialize<'de>>(from: &mut impl Read) -> io::Result
     postcard::from_bytes(&bytes).map(Some).map_err(io::Error::other)
 }
 
-/// Answers requests until there are no more.
+/// Answers requests until there are no more. `before_answer` is called before an answer is sent: what
+/// the unit has printed until then belongs to it.
 ///
 /// # Errors
 /// Those of reading and writing; a request that makes no sense.
@@ -88,6 +89,7 @@ pub fn receive<T: for<'de> Deserialize<'de>>(from: &mut impl Read) -> io::Result
 pub fn serve(
     unit: &mut Unit,
     clock: fn() -> f64,
+    before_answer: fn(),
     (from, to): (&mut impl Read, &mut impl Write),
 ) -> io::Result<()> {
     let mut plans: BTreeMap<u64, Plan> = BTreeMap::new();
@@ -109,6 +111,7 @@ pub fn serve(
                     result,
                     messages,
                 };
+                before_answer();
                 send(to, &answer)?;
             }
         }
