@@ -21,15 +21,9 @@ pub enum Version {
     V3,
 }
 
-/// A description.
+/// What a unit is, and whose: attributes that no simulation depends on.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Description {
-    /// The version of the standard.
-    pub version: Version,
-    /// The name of the model in the tool that made the unit.
-    pub model_name: String,
-    /// `guid` in FMI 2.0, `instantiationToken` in FMI 3.0.
-    pub token: String,
+pub struct About {
     /// What it is, in few words.
     pub description: Option<String>,
     /// Who made it.
@@ -44,6 +38,19 @@ pub struct Description {
     pub generation_tool: Option<String>,
     /// When it was made.
     pub generation_time: Option<String>,
+}
+
+/// A description.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Description {
+    /// The version of the standard.
+    pub version: Version,
+    /// The name of the model in the tool that made the unit.
+    pub model_name: String,
+    /// `guid` in FMI 2.0, `instantiationToken` in FMI 3.0.
+    pub token: String,
+    /// What it is, and whose.
+    pub about: About,
     /// Whether names have the form `a.b[1]`, `der(a.b)` (`variableNamingConvention`).
     pub has_structured_names: bool,
     /// Present if the importer may integrate it.

@@ -4,9 +4,10 @@
 //! annotations are.
 
 use super::{
-    Attributes, BASE_UNITS, BaseUnit, Causality, ClockInterval, DefaultExperiment, DependencyKind,
-    Description, Dimension, DisplayUnit, Initial, Interface, Item, Kind, LogCategory, Structure,
-    TypeDefinition, Unit, Unknown, Variability, Variable, VariableAlias, Version,
+    About, Attributes, BASE_UNITS, BaseUnit, Causality, ClockInterval, DefaultExperiment,
+    DependencyKind, Description, Dimension, DisplayUnit, Initial, Interface, Item, Kind,
+    LogCategory, Structure, TypeDefinition, Unit, Unknown, Variability, Variable, VariableAlias,
+    Version,
 };
 use crate::FmuError;
 use roxmltree::{Document, Node};
@@ -70,13 +71,15 @@ fn head(root: &Element, version: Version) -> Result<Description, FmuError> {
         version,
         model_name: root.required("modelName")?.to_owned(),
         token: root.required(token)?.to_owned(),
-        description: text("description"),
-        author: text("author"),
-        model_version: text("version"),
-        copyright: text("copyright"),
-        license: text("license"),
-        generation_tool: text("generationTool"),
-        generation_time: text("generationDateAndTime"),
+        about: About {
+            description: text("description"),
+            author: text("author"),
+            model_version: text("version"),
+            copyright: text("copyright"),
+            license: text("license"),
+            generation_tool: text("generationTool"),
+            generation_time: text("generationDateAndTime"),
+        },
         has_structured_names: root.get("variableNamingConvention") == Some("structured"),
         model_exchange: interface("ModelExchange")?,
         co_simulation: interface("CoSimulation")?,

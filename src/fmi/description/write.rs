@@ -43,13 +43,13 @@ fn head(xml: &mut Xml, description: &Description) {
     xml.attribute("modelName", &description.model_name);
     xml.attribute(token, &description.token);
     let strings = [
-        ("description", &description.description),
-        ("author", &description.author),
-        ("version", &description.model_version),
-        ("copyright", &description.copyright),
-        ("license", &description.license),
-        ("generationTool", &description.generation_tool),
-        ("generationDateAndTime", &description.generation_time),
+        ("description", &description.about.description),
+        ("author", &description.about.author),
+        ("version", &description.about.model_version),
+        ("copyright", &description.about.copyright),
+        ("license", &description.about.license),
+        ("generationTool", &description.about.generation_tool),
+        ("generationDateAndTime", &description.about.generation_time),
     ];
     for (name, text) in strings {
         xml.optional(name, text.as_ref());

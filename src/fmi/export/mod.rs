@@ -16,7 +16,9 @@ pub use content::{Content, Exported, FILE, Place, Setter, ValueKind};
 
 use crate::archive::DESCRIPTION;
 use crate::codegen::Program;
-use crate::description::{self, DefaultExperiment, Description, Interface, LogCategory, Version};
+use crate::description::{
+    self, About, DefaultExperiment, Description, Interface, LogCategory, Version,
+};
 use crate::diag::Fault;
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::{Archive, fault};
@@ -201,8 +203,11 @@ fn describe(
         version,
         model_name: model.name.to_owned(),
         token: content.token.clone(),
-        description: model.description.map(str::to_owned),
-        generation_tool: Some(concat!("gapilib ", env!("CARGO_PKG_VERSION")).to_owned()),
+        about: About {
+            description: model.description.map(str::to_owned),
+            generation_tool: Some(concat!("gapilib ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ..About::default()
+        },
         has_structured_names: table.has_structured_names(),
         model_exchange: kinds.model_exchange.then_some(exchange),
         co_simulation: kinds.co_simulation.then_some(co_simulation),
