@@ -24,11 +24,11 @@ pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: refused! {
-        "models cannot be exported as FMUs":
+        "scripts export no FMUs; `gapi export-fmu` does":
             translateModelFMU buildModelFMU exportFMU translateModelFMI;
         "models cannot be exported as C code":
             translateModelExport;
-        "FMUs cannot be imported":
+        "scripts import no FMUs; `gapi simulate x.fmu` does":
             importFMU importFMUModelDescription;
         "diagrams are not supported":
             exportDiagram;
