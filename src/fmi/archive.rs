@@ -49,7 +49,7 @@ impl Archive {
     /// Reads an archive.
     ///
     /// # Errors
-    /// It is no ZIP file, is damaged, unpacks to more than 4 GiB, or has a path that leads out of it.
+    /// It is not a ZIP file, is damaged, unpacks to more than 4 GiB, or has a path that leads out of it.
     pub fn read(source: impl Read + Seek) -> Result<Archive, FmuError> {
         let mut zip = ZipArchive::new(source).map_err(of_zip)?;
         let mut archive = Archive::new();
@@ -96,7 +96,7 @@ impl Archive {
 }
 
 fn of_zip(error: zip::result::ZipError) -> FmuError {
-    FmuError::Archive(format!("it is no ZIP archive that can be read: {error}"))
+    FmuError::Archive(format!("it is not a ZIP archive that can be read: {error}"))
 }
 
 #[cfg(test)]

@@ -175,7 +175,7 @@ fn unit(element: &Element) -> Result<Unit, FmuError> {
     })
 }
 
-/// A type; `None` for what is no type.
+/// A type; `None` for what is not a type.
 fn type_definition(
     element: &Element,
     version: Version,
@@ -235,7 +235,7 @@ fn variable(element: &Element, version: Version) -> Result<Variable, FmuError> {
         Version::V3 => Kind::of_word(typed.name()),
     };
     let kind =
-        kind.ok_or_else(|| typed.error(format!("`{}` is no type of variables", typed.name())))?;
+        kind.ok_or_else(|| typed.error(format!("`{}` is not a type of variables", typed.name())))?;
     let causality = element.word("causality", Causality::of_word)?.unwrap_or_default();
     let variability = element
         .word("variability", Variability::of_word)?
@@ -436,7 +436,7 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     fn wrong(&self, name: &str, value: &str) -> FmuError {
-        self.error(format!("`{value}` is no value of the attribute `{name}`"))
+        self.error(format!("`{value}` is not a value of the attribute `{name}`"))
     }
 
     fn word<T>(&self, name: &str, of: fn(&str) -> Option<T>) -> Result<Option<T>, FmuError> {

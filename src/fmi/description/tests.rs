@@ -183,7 +183,7 @@ fn what_is_wrong_is_said_with_its_line() {
         (
             "@<ModelVariables>\n<ScalarVariable name=\"x\" valueReference=\"-1\"><Real/>\
              </ScalarVariable></ModelVariables></fmiModelDescription>",
-            "line 3: `-1` is no value of the attribute `valueReference`",
+            "line 3: `-1` is not a value of the attribute `valueReference`",
         ),
         (
             "@<ModelVariables>\n<ScalarVariable name=\"x\" valueReference=\"1\"/></ModelVariables>\

@@ -253,7 +253,7 @@ fn recorded(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Result<(
         BaseType::Real | BaseType::Integer | BaseType::Boolean => 0.0,
         BaseType::String | BaseType::ExternalObject(_) | BaseType::Clock => {
             let name = &input.name;
-            let fault = fault!(NOT_SUPPORTED, "the input `{name}` is no number";
+            let fault = fault!(NOT_SUPPORTED, "the input `{name}` is not a number";
                 help: "make it a parameter");
             return Err(fault.at(input.span));
         }

@@ -626,7 +626,7 @@ fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String
     ]
     .map(|(name, text)| (name.to_owned(), text))
     .into();
-    // A unit is no class that others could extend.
+    // A unit is not a class that others could extend.
     if !is_unit(Path::new(&solution.subject.model)) {
         files.push(("Calibrated.mo".to_owned(), solution.modelica()));
         files.push(("calibrated.mos".to_owned(), solution.script()));
