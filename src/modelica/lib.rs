@@ -9,6 +9,7 @@
 //! - [`value`], [`functions`], [`external`], [`eval`]: values, the functions and operators of the
 //!   language, `external` functions of libraries, the interpreter; `execute`: the walk of statements
 //!   that the interpreter, equations and the code of functions share;
+//! - `inference`: types and sizes of values, as far as expressions show them;
 //! - `names`: the lookup of names; [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
 //!   equations;
 //! - [`symbolic`], [`causalize`]: scalar expressions; index reduction, block lower triangular form,
@@ -37,6 +38,7 @@ pub mod external;
 pub mod flatten;
 pub mod format;
 pub mod functions;
+mod inference;
 mod jit;
 pub mod lower;
 mod names;

@@ -2,6 +2,7 @@
 
 use super::Compiled;
 use crate::functions::Builtin;
+use crate::inference::{ElementType, Elementary};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
@@ -194,6 +195,28 @@ pub enum ValueType {
     Expression,
     /// Any value (built-ins only).
     Any,
+}
+
+impl ValueType {
+    /// The type of a component of a record.
+    pub(crate) fn component(&self, name: Ident) -> Option<ValueType> {
+        match self {
+            ValueType::Record(_, components) => Some(components.get(&name)?.value_type.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl ElementType for ValueType {
+    fn elementary(which: Elementary) -> Option<ValueType> {
+        match which {
+            Elementary::Real => Some(ValueType::Real),
+            Elementary::Integer => Some(ValueType::Integer),
+            Elementary::Boolean => Some(ValueType::Boolean),
+            Elementary::String => Some(ValueType::String),
+            Elementary::Clock => None,
+        }
+    }
 }
 
 /// What a called name stands for.

@@ -447,7 +447,9 @@ impl Types<'_> {
             return false;
         }
         let fields = [left, right].into_iter().find_map(|side| {
-            match self.may_be_record(side, local).then(|| self.value_type_of(side, local))? {
+            let is_array = matches!(side.kind, ExpressionKind::Array(_));
+            let may_be = !is_array && self.may_be_record(side, local);
+            match may_be.then(|| self.value_type_of(side, local))? {
                 Some(ValueType::Record(_, fields)) => Some(fields),
                 _ => None,
             }

@@ -138,36 +138,6 @@ fn element_at<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Express
     }
 }
 
-/// The expression with `end` replaced by a size, where it is the whole of it.
-pub fn at_end(e: &Expression, size: usize) -> Expression {
-    let mut e = e.clone();
-    replace_end(&mut e, size);
-    e
-}
-
-fn replace_end(e: &mut Expression, size: usize) {
-    match &mut e.kind {
-        ExpressionKind::End => e.kind = ExpressionKind::Integer(size as i64),
-        ExpressionKind::Unary { operand, .. } => replace_end(operand, size),
-        ExpressionKind::Binary { .. } => {
-            let (first, operations) = e.chain_mut();
-            replace_end(first, size);
-            operations.into_iter().for_each(|one| replace_end(one.right, size));
-        }
-        ExpressionKind::Range { start, step, stop } => {
-            replace_end(start, size);
-            if let Some(step) = step {
-                replace_end(step, size);
-            }
-            replace_end(stop, size);
-        }
-        ExpressionKind::Array(elements) => {
-            elements.iter_mut().for_each(|element| replace_end(element, size));
-        }
-        _ => {}
-    }
-}
-
 /// The indices, from 1, of an element in an array, the last dimension fastest.
 pub(crate) fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
     let mut indices = vec![0; dims.len()];

@@ -8,31 +8,13 @@ use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::MemberState;
 use crate::flatten::instantiate::instantiation::Instantiation;
-use crate::functions::{self, ArgumentShapes};
-use crate::name::{Ident, Name};
+use crate::inference::{self, Sizes, SizesOfNames};
+use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
-    NamedArgument, Subscript,
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument, Subscript,
 };
-use crate::syntax::visit::{Rewrite, rewrite_expression};
 use crate::value::Value;
-
-/// Writes a number for every iterator: the sizes of an element do not depend on which.
-struct Iterators<'a>(&'a [ForIndex]);
-
-impl Rewrite for Iterators<'_> {
-    fn expression(&mut self, expression: &mut Expression) {
-        if let ExpressionKind::Reference(reference) = &expression.kind
-            && let Some(name) = reference.as_ident()
-            && self.0.iter().any(|index| name == index.name.node)
-        {
-            expression.kind = ExpressionKind::Integer(1);
-            return;
-        }
-        rewrite_expression(self, expression);
-    }
-}
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
@@ -123,94 +105,7 @@ impl Instantiation<'_> {
 
     /// The sizes of a resolved expression; `None` where its text does not tell them.
     pub(crate) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
-        match &e.kind {
-            ExpressionKind::Real(_)
-            | ExpressionKind::Integer(_)
-            | ExpressionKind::Boolean(_)
-            | ExpressionKind::String(_) => Some(Vec::new()),
-            ExpressionKind::Reference(reference) => self.reference_shape(reference),
-            ExpressionKind::Unary { operand, .. } => self.shape_of(operand),
-            ExpressionKind::Binary { .. } => {
-                let (first, operations) = e.chain();
-                let first = self.shape_of(first)?;
-                operations.into_iter().try_fold(first, |left, one| {
-                    binary_shape(one.operator, left, self.shape_of(one.right)?)
-                })
-            }
-            ExpressionKind::If { branches, otherwise } => self.choice_shape(branches, otherwise),
-            ExpressionKind::Array(elements) => {
-                let inner = match elements.first() {
-                    Some(first) => self.shape_of(first)?,
-                    None => Vec::new(),
-                };
-                Some(std::iter::once(elements.len()).chain(inner).collect())
-            }
-            ExpressionKind::ArrayIteration { element, indices } => {
-                self.array_iteration_shape(element, indices)
-            }
-            ExpressionKind::Matrix(rows) => self.matrix_shape(rows),
-            ExpressionKind::Range { .. } => self.value_shape(e),
-            ExpressionKind::Subscripted { base, subscripts } => {
-                let dims = self.shape_of(base)?;
-                self.subscripted_shape(dims, subscripts)
-            }
-            ExpressionKind::Call { function, arguments } => {
-                self.call_shape(&function.name(), arguments).or_else(|| self.value_shape(e))
-            }
-            _ => None,
-        }
-    }
-
-    /// The sizes of the value, where it is known.
-    fn value_shape(&mut self, e: &Expression) -> Option<Vec<usize>> {
-        match self.flat_value(e).ok()? {
-            Value::Array(array) => Some(array.dims),
-            Value::Record(_) | Value::Tuple(_) => None,
-            _ => Some(Vec::new()),
-        }
-    }
-
-    fn reference_shape(&mut self, reference: &ComponentReference) -> Option<Vec<usize>> {
-        if reference.as_ident().is_some_and(|name| name == "time") {
-            return Some(Vec::new());
-        }
-        let at = *self.classes.tree.variable_of.get(&*path(reference))?;
-        let dims = self.classes.tree.variables[at].0.dims.clone();
-        let subscripts = reference.parts.last()?.subscripts.clone();
-        self.subscripted_shape(dims, &subscripts)
-    }
-
-    fn subscripted_shape(
-        &mut self,
-        dims: Vec<usize>,
-        subscripts: &[Subscript],
-    ) -> Option<Vec<usize>> {
-        let mut left = Vec::with_capacity(dims.len());
-        for (at, size) in dims.iter().enumerate() {
-            match subscripts.get(at) {
-                None | Some(Subscript::All(_)) => left.push(*size),
-                Some(Subscript::Index(index)) => {
-                    let index = super::flat_expression::at_end(index, *size);
-                    left.extend(self.shape_of(&index)?);
-                }
-            }
-        }
-        (subscripts.len() <= dims.len()).then_some(left)
-    }
-
-    fn array_iteration_shape(
-        &mut self,
-        element: &Expression,
-        indices: &[ForIndex],
-    ) -> Option<Vec<usize>> {
-        let mut sizes = Vec::with_capacity(indices.len());
-        for index in indices {
-            sizes.push(*self.shape_of(index.range.as_ref()?)?.first()?);
-        }
-        // The last iterator is the outer one (MLS §10.4.1).
-        sizes.reverse();
-        sizes.extend(self.element_shape(element, indices)?);
-        Some(sizes)
+        inference::sizes_of(self, e).and_then(inference::all_known)
     }
 
     /// The sizes of an element that is computed for every value of iterators.
@@ -219,70 +114,7 @@ impl Instantiation<'_> {
         element: &Expression,
         indices: &[ForIndex],
     ) -> Option<Vec<usize>> {
-        let mut element = element.clone();
-        Iterators(indices).expression(&mut element);
-        self.shape_of(&element)
-    }
-
-    /// The sizes of the branches; where they differ, those of the branch that parameters choose.
-    fn choice_shape(
-        &mut self,
-        branches: &[(Expression, Expression)],
-        otherwise: &Expression,
-    ) -> Option<Vec<usize>> {
-        let values = branches.iter().map(|(_, value)| value).chain([otherwise]);
-        let mut shapes: Vec<_> = values.filter_map(|value| self.shape_of(value)).collect();
-        shapes.dedup();
-        if shapes.len() <= 1 {
-            return shapes.pop();
-        }
-        for (condition, value) in branches {
-            match self.flat_value(condition).ok()? {
-                Value::Boolean(true) => return self.shape_of(value),
-                Value::Boolean(false) => {}
-                _ => return None,
-            }
-        }
-        self.shape_of(otherwise)
-    }
-
-    fn matrix_shape(&mut self, rows: &[Vec<Expression>]) -> Option<Vec<usize>> {
-        let mut height = 0;
-        let mut width = 0;
-        for row in rows {
-            let mut row_height = 1;
-            width = 0;
-            for element in row {
-                match self.shape_of(element)?.as_slice() {
-                    [] => width += 1,
-                    [n] => {
-                        row_height = *n;
-                        width += 1;
-                    }
-                    [n, m] => {
-                        row_height = *n;
-                        width += m;
-                    }
-                    _ => return None,
-                }
-            }
-            height += row_height;
-        }
-        Some(vec![height, width])
-    }
-
-    fn call_shape(&mut self, name: &Name, arguments: &Arguments) -> Option<Vec<usize>> {
-        if !arguments.iterators.is_empty() {
-            // A sum of arrays has their sizes (MLS §10.3.4.1), which its iterators may decide.
-            let element = self.shape_of(arguments.positional.first()?);
-            return element.is_none_or(|dims| dims.is_empty()).then(Vec::new);
-        }
-        if let Some(Some(function)) = self.functions.table.get(name).cloned() {
-            return self.function_shape(&function, arguments);
-        }
-        let word = name.last().filter(|_| name.is_simple())?;
-        let entry = functions::find(word.as_str())?;
-        entry.shape_of(&mut Shapes { instantiation: self, arguments: &arguments.positional })
+        inference::element_sizes(self, element, indices).and_then(inference::all_known)
     }
 
     fn sizes(&mut self, sizes: &[Expression]) -> Option<Vec<usize>> {
@@ -375,45 +207,23 @@ impl Instantiation<'_> {
     }
 }
 
-/// The sizes of arguments.
-struct Shapes<'i, 'm, 'a> {
-    instantiation: &'i mut Instantiation<'m>,
-    arguments: &'a [Expression],
-}
-
-impl ArgumentShapes for Shapes<'_, '_, '_> {
-    fn count(&self) -> usize {
-        self.arguments.len()
+impl SizesOfNames for Instantiation<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
+        let at = *self.classes.tree.variable_of.get(&*path(reference))?;
+        Some(self.classes.tree.variables[at].0.dims.iter().copied().map(Some).collect())
     }
 
-    fn dims(&mut self, at: usize) -> Option<Vec<usize>> {
-        self.instantiation.shape_of(self.arguments.get(at)?)
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+    ) -> Option<Option<Sizes>> {
+        let function = self.functions.table.get(&function.name())?.clone()?;
+        let sizes = self.function_shape(&function, arguments);
+        Some(sizes.map(|sizes| sizes.into_iter().map(Some).collect()))
     }
 
-    fn number(&mut self, at: usize) -> Option<i64> {
-        match self.instantiation.flat_value(self.arguments.get(at)?).ok()? {
-            Value::Integer(number) => Some(number),
-            _ => None,
-        }
+    fn value(&mut self, e: &Expression) -> Option<Value> {
+        self.flat_value(e).ok()
     }
-}
-
-/// The sizes of `left operator right` (MLS §10.6).
-fn binary_shape(
-    operator: BinaryOperator,
-    left: Vec<usize>,
-    right: Vec<usize>,
-) -> Option<Vec<usize>> {
-    if operator != BinaryOperator::Multiply {
-        return Some(if left.is_empty() { right } else { left });
-    }
-    Some(match (left.as_slice(), right.as_slice()) {
-        ([], _) => right,
-        (_, []) => left,
-        ([_], [_]) => Vec::new(),
-        ([n, _], [_]) => vec![*n],
-        ([_], [_, m]) => vec![*m],
-        ([n, _], [_, m]) => vec![*n, *m],
-        _ => return None,
-    })
 }

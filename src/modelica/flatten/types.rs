@@ -5,17 +5,15 @@ use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::eval::{FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::functions::table::FunctionTable;
 use crate::flatten::instantiate::tree::Tree;
-use crate::functions::{self, ArgumentShapes, ShapeRule, TypeRule, VariabilityRule};
+use crate::functions::{self, VariabilityRule};
+use crate::inference::{self, ElementType, Elementary, Sizes, SizesOfNames, TypesOfNames};
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex, Subscript,
-    UnaryOperator,
-};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, ForIndex};
 use crate::syntax::visit::{Visit, walk_expression, walk_reference};
 
 /// What the types of resolved expressions follow from: the variables and the functions that they
@@ -123,203 +121,69 @@ impl Types<'_> {
 
     /// The element type of an expression; `None` where its text does not show it.
     pub fn type_of(&self, e: &Expression) -> Option<BaseType> {
-        match &e.kind {
-            ExpressionKind::Real(_) => Some(BaseType::Real),
-            ExpressionKind::Integer(_) => Some(BaseType::Integer),
-            ExpressionKind::Boolean(_) => Some(BaseType::Boolean),
-            ExpressionKind::String(_) => Some(BaseType::String),
-            ExpressionKind::Reference(reference) => match reference.as_ident() {
-                Some(name) if name == "time" => Some(BaseType::Real),
-                _ => Some(self.named(reference)?.base.clone()),
-            },
-            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(BaseType::Boolean),
-            ExpressionKind::Unary { operand, .. } => self.type_of(operand),
-            ExpressionKind::Binary { operator, .. } => match type_of_result(*operator) {
-                None => self.joined_type(e.operands_of(|one| type_of_result(one).is_none())),
-                known => known,
-            },
-            ExpressionKind::If { branches, otherwise } => {
-                self.joined_type(branches.iter().map(|(_, value)| value).chain([&**otherwise]))
-            }
-            ExpressionKind::Array(elements) => self.joined_type(elements.iter()),
-            ExpressionKind::Call { function, arguments } => self.call_type(function, arguments),
-            _ => None,
-        }
-    }
-
-    /// The type that all have together.
-    fn joined_type<'e>(&self, all: impl Iterator<Item = &'e Expression>) -> Option<BaseType> {
-        let mut types = all.map(|one| self.type_of(one));
-        let first = types.next()??;
-        types.try_fold(first, |all, one| joined(all, one?))
-    }
-
-    fn call_type(&self, function: &ComponentReference, arguments: &Arguments) -> Option<BaseType> {
-        if let Some(Some(user)) = self.functions.table.get(&function.name()) {
-            return match user.outputs.first()?.value_type {
-                ValueType::Real => Some(BaseType::Real),
-                ValueType::Integer => Some(BaseType::Integer),
-                ValueType::Boolean => Some(BaseType::Boolean),
-                ValueType::String => Some(BaseType::String),
-                _ => None,
-            };
-        }
-        match functions::find(function.as_ident()?.as_str())?.value_type {
-            TypeRule::Real => Some(BaseType::Real),
-            TypeRule::Integer => Some(BaseType::Integer),
-            TypeRule::Boolean => Some(BaseType::Boolean),
-            TypeRule::String => Some(BaseType::String),
-            TypeRule::Clock => Some(BaseType::Clock),
-            TypeRule::Sampled => match self.is_of_clock(arguments) {
-                true => self.type_of(arguments.positional.first()?),
-                false => Some(BaseType::Boolean),
-            },
-            TypeRule::As(at) => self.type_of(arguments.positional.get(at)?),
-            TypeRule::Joined => self.joined_type(arguments.positional.iter()),
-            TypeRule::Unknown => None,
-        }
-    }
-
-    /// Whether the arguments of `sample` are an expression and a clock, rather than two times
-    /// (MLS §16.5.1).
-    fn is_of_clock(&self, arguments: &Arguments) -> bool {
-        let named = arguments.named.iter().any(|argument| argument.name.node == "clock");
-        match arguments.positional.get(1) {
-            Some(second) => self.type_of(second) == Some(BaseType::Clock),
-            None => named || arguments.named.is_empty(),
-        }
+        inference::type_of(&mut &*self, e)
     }
 
     /// The number of dimensions of an expression; `None` where its text does not show it.
     pub(crate) fn rank_of(&self, e: &Expression) -> Option<usize> {
-        match &e.kind {
-            ExpressionKind::Real(_)
-            | ExpressionKind::Integer(_)
-            | ExpressionKind::Boolean(_)
-            | ExpressionKind::String(_) => Some(0),
-            ExpressionKind::Reference(reference) => self.reference_rank(reference),
-            ExpressionKind::Unary { operand, .. } => self.rank_of(operand),
-            ExpressionKind::Binary { .. } => {
-                let (first, operations) = e.chain();
-                operations.into_iter().try_fold(self.rank_of(first)?, |left, one| {
-                    rank_of_operation(one.operator, left, self.rank_of(one.right)?)
-                })
-            }
-            ExpressionKind::If { branches, otherwise } => {
-                self.rank_of(branches.first().map_or(otherwise, |(_, value)| value))
-            }
-            ExpressionKind::Range { .. } => Some(1),
-            ExpressionKind::Array(elements) => Some(1 + self.rank_of(elements.first()?)?),
-            ExpressionKind::Call { function, arguments } => {
-                if let Some(Some(user)) = self.functions.table.get(&function.name()) {
-                    return self.rank_of_output(user, arguments);
-                }
-                let entry = functions::find(function.as_ident()?.as_str())?;
-                if entry.shape != ShapeRule::Planned || !arguments.iterators.is_empty() {
-                    return None;
-                }
-                entry.shape_of(&mut Ranks { types: self, arguments }).map(|dims| dims.len())
-            }
-            _ => None,
-        }
+        inference::sizes_of(&mut &*self, e).map(|sizes| sizes.len())
+    }
+}
+
+impl ElementType for BaseType {
+    fn elementary(which: Elementary) -> Option<BaseType> {
+        Some(match which {
+            Elementary::Real => BaseType::Real,
+            Elementary::Integer => BaseType::Integer,
+            Elementary::Boolean => BaseType::Boolean,
+            Elementary::String => BaseType::String,
+            Elementary::Clock => BaseType::Clock,
+        })
+    }
+}
+
+impl TypesOfNames for &Types<'_> {
+    type Type = BaseType;
+
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<BaseType> {
+        Some(self.named(reference)?.base.clone())
     }
 
-    /// The number of dimensions of the first output of a function, unless it may be called element by
-    /// element.
-    fn rank_of_output(&self, user: &Function, arguments: &Arguments) -> Option<usize> {
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        _: &Arguments,
+    ) -> Option<Option<BaseType>> {
+        let user = self.functions.table.get(&function.name())?.as_ref()?;
+        Some(user.outputs.first().and_then(|output| match &output.value_type {
+            ValueType::Real => Some(BaseType::Real),
+            ValueType::Integer => Some(BaseType::Integer),
+            ValueType::Boolean => Some(BaseType::Boolean),
+            ValueType::String => Some(BaseType::String),
+            _ => None,
+        }))
+    }
+}
+
+impl SizesOfNames for &Types<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
+        Some(self.named(reference)?.dims.iter().copied().map(Some).collect())
+    }
+
+    /// Those of the first output, unless the function may be called element by element.
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+    ) -> Option<Option<Sizes>> {
+        let user = self.functions.table.get(&function.name())?.as_ref()?;
         let fits = |(argument, input): (&Expression, &FunctionComponent)| {
             self.rank_of(argument) == Some(input.dims.len())
         };
         let all_fit = arguments.named.is_empty()
             && arguments.iterators.is_empty()
             && arguments.positional.iter().zip(&user.inputs).all(fits);
-        all_fit.then(|| user.outputs.first().map(|output| output.dims.len()))?
-    }
-
-    fn reference_rank(&self, reference: &ComponentReference) -> Option<usize> {
-        if reference.as_ident().is_some_and(|name| name == "time") {
-            return Some(0);
-        }
-        let dims = self.named(reference)?.dims.len();
-        let mut gone = 0;
-        for subscript in &reference.parts.last()?.subscripts {
-            if let Subscript::Index(e) = subscript {
-                match self.rank_of(e)? {
-                    0 => gone += 1,
-                    _ => return None,
-                }
-            }
-        }
-        dims.checked_sub(gone)
-    }
-}
-
-/// The number of dimensions of what an operation makes of such operands (MLS §10.6).
-/// The type of the result, where it is not that of the operands.
-fn type_of_result(operator: BinaryOperator) -> Option<BaseType> {
-    use BinaryOperator as Op;
-    match operator {
-        Op::Less
-        | Op::LessEqual
-        | Op::Greater
-        | Op::GreaterEqual
-        | Op::Equal
-        | Op::NotEqual
-        | Op::And
-        | Op::Or => Some(BaseType::Boolean),
-        Op::Divide | Op::ElementwiseDivide | Op::Power | Op::ElementwisePower => {
-            Some(BaseType::Real)
-        }
-        _ => None,
-    }
-}
-
-fn rank_of_operation(operator: BinaryOperator, left: usize, right: usize) -> Option<usize> {
-    use BinaryOperator as Op;
-    match (operator, left, right) {
-        (_, 0, 0) => Some(0),
-        (Op::Multiply, 1, 1) => Some(0),
-        (Op::Multiply, 2, 1) | (Op::Multiply, 1, 2) => Some(1),
-        (Op::Multiply, 2, 2) | (Op::Power, 2, 0) => Some(2),
-        (Op::Multiply, rank, 0) | (Op::Multiply, 0, rank) | (Op::Divide, rank, 0) => Some(rank),
-        (Op::Add | Op::Subtract, _, _) => (left == right).then_some(left),
-        (
-            Op::ElementwiseAdd
-            | Op::ElementwiseSubtract
-            | Op::ElementwiseMultiply
-            | Op::ElementwiseDivide
-            | Op::ElementwisePower,
-            _,
-            _,
-        ) => (left == right || left == 0 || right == 0).then_some(left.max(right)),
-        _ => None,
-    }
-}
-
-/// The numbers of dimensions of arguments, as sizes of one each.
-struct Ranks<'i, 'a> {
-    types: &'i Types<'a>,
-    arguments: &'i Arguments,
-}
-
-impl ArgumentShapes for Ranks<'_, '_> {
-    fn count(&self) -> usize {
-        self.arguments.positional.len()
-    }
-
-    fn dims(&mut self, at: usize) -> Option<Vec<usize>> {
-        Some(vec![1; self.types.rank_of(self.arguments.positional.get(at)?)?])
-    }
-
-    fn number(&mut self, at: usize) -> Option<i64> {
-        match self.arguments.positional.get(at)?.kind {
-            ExpressionKind::Integer(value) => Some(value),
-            _ => None,
-        }
-    }
-
-    fn size(&mut self, _: usize) -> Option<i64> {
-        Some(2)
+        Some(user.outputs.first().filter(|_| all_fit).map(|output| vec![None; output.dims.len()]))
     }
 }
 
@@ -377,16 +241,6 @@ impl Visit for MostVariable<'_, '_> {
 fn reads_sizes(name: Ident) -> bool {
     let entry = functions::find(name.as_str());
     entry.is_some_and(|entry| entry.variability == VariabilityRule::Never)
-}
-
-/// The type that values of both types have.
-fn joined(one: BaseType, other: BaseType) -> Option<BaseType> {
-    match (one, other) {
-        (BaseType::Real, BaseType::Integer) | (BaseType::Integer, BaseType::Real) => {
-            Some(BaseType::Real)
-        }
-        (one, other) => (one == other).then_some(one),
-    }
 }
 
 /// Whether a value of one type can be given to a variable of another; literals of enumerations

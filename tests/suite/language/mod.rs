@@ -37,4 +37,5 @@ mod structural_parameters;
 mod structure;
 mod syntax_properties;
 mod transcripts;
+mod types_of_strings;
 mod unassigned_variables;

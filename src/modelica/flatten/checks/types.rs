@@ -9,17 +9,16 @@ use crate::flatten::declared::classes::Type;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
 use crate::flatten::lookup::types::Predefined;
-use crate::functions::{self, Builtin, TypeRule};
+use crate::functions::{self, Builtin};
+use crate::inference::{self, ElementType, Elementary, TypesOfNames};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
-    Expression, ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
+    Arguments, BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
+    Expression, ExpressionKind, Section, Statement, StatementKind,
 };
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
 };
-use rustc_hash::FxHashMap;
-use std::cell::RefCell;
 
 /// The type of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,8 +41,7 @@ pub fn check_with_values(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 }
 
 fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
-    let operations = RefCell::default();
-    let mut walk = TypeCheck { class, with_values, loops: Vec::new(), operations, errors };
+    let mut walk = TypeCheck { class, with_values, loops: Vec::new(), errors };
     for component in class.components() {
         walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
@@ -62,15 +60,15 @@ fn check_as(class: Scope<'_>, with_values: bool, errors: &mut Vec<Diagnostic>) {
     }
 }
 
+/// An expression and its type, where the class tells.
+type Typed<'e> = (&'e Expression, Option<CheckedType>);
+
 struct TypeCheck<'a, 'e> {
     class: Scope<'a>,
     /// Whether bindings, equations and assignments are checked.
     with_values: bool,
     /// The loop variables met; what they are is not looked at.
     loops: Vec<Ident>,
-    /// The types of the operations of the class, by where these are in memory: each term of a long sum
-    /// asks for that of all terms before it.
-    operations: RefCell<FxHashMap<*const Expression, Option<CheckedType>>>,
     errors: &'e mut Vec<Diagnostic>,
 }
 
@@ -132,31 +130,38 @@ impl TypeCheck<'_, '_> {
     }
 
     /// Arithmetic is defined for numbers (MLS §10.6), the sum of strings aside.
-    fn operands(&mut self, operator: BinaryOperator, operands: [&Expression; 2]) {
+    fn operands(&mut self, operator: BinaryOperator, operands: [Typed<'_>; 2]) {
         use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
-        if !matches!(operator, Add | Subtract | Multiply | Divide | Power) {
-            return;
-        }
-        for operand in operands {
-            self.term(operand);
+        if matches!(operator, Add | Subtract | Multiply | Divide | Power) {
+            operands.into_iter().for_each(|operand| self.term(operand));
         }
     }
 
-    fn numeric(&mut self, operand: &Expression, needed: &str) {
-        if let Some(kind @ (CheckedType::Boolean | CheckedType::Enumeration(_))) =
-            self.kind(operand)
-        {
+    fn numeric(&mut self, (operand, found): Typed<'_>, needed: &str) {
+        if let Some(kind @ (CheckedType::Boolean | CheckedType::Enumeration(_))) = found {
             self.mismatch(operand, needed, kind);
         }
     }
 
     /// Old libraries compute with enumerations, whose ordinals other programs take.
-    fn term(&mut self, operand: &Expression) {
+    fn term(&mut self, operand: Typed<'_>) {
         let before = self.errors.len();
         self.numeric(operand, "arithmetic needs numbers");
-        if let Some(CheckedType::Enumeration(_)) = self.kind(operand) {
+        if let Some(CheckedType::Enumeration(_)) = operand.1 {
             for one in self.errors.split_off(before) {
                 self.errors.push(one.warning());
+            }
+        }
+    }
+
+    /// The operations of a chain, each with the types of its operands.
+    fn operations(&mut self, chain: &Expression) {
+        let types = inference::chain_types(&mut &*self, chain);
+        for (one, left) in chain.chain().1.into_iter().zip(types) {
+            let operands = [(one.left, left), (one.right, self.kind(one.right))];
+            match inference::is_relation(one.operator) {
+                true => self.relation(operands),
+                false => self.operands(one.operator, operands),
             }
         }
     }
@@ -168,7 +173,8 @@ impl TypeCheck<'_, '_> {
         let is_numeric = functions::find(name.name.as_str()).is_some_and(Builtin::is_numeric);
         if !is_declared && is_numeric {
             for argument in arguments {
-                self.numeric(argument, &format!("`{}` needs a number", name.name));
+                let found = self.kind(argument);
+                self.numeric((argument, found), &format!("`{}` needs a number", name.name));
             }
         }
     }
@@ -192,8 +198,8 @@ impl TypeCheck<'_, '_> {
         }
     }
 
-    fn relation(&mut self, left: &Expression, right: &Expression) {
-        if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
+    fn relation(&mut self, [(_, left), (right, found)]: [Typed<'_>; 2]) {
+        if let (Some(a), Some(b)) = (left, found)
             && !self.same(a, b)
         {
             let message = format!("the other side of the relation is {}", self.name(a));
@@ -224,40 +230,7 @@ impl TypeCheck<'_, '_> {
 
     /// The type of an expression, where the class tells.
     fn kind(&self, expression: &Expression) -> Option<CheckedType> {
-        match &expression.kind {
-            ExpressionKind::Real(_) | ExpressionKind::Integer(_) => Some(CheckedType::Number),
-            ExpressionKind::Boolean(_) => Some(CheckedType::Boolean),
-            ExpressionKind::String(_) => Some(CheckedType::String),
-            ExpressionKind::Reference(reference) => self.kind_of_reference(reference),
-            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => {
-                Some(CheckedType::Boolean)
-            }
-            ExpressionKind::Binary { .. } => {
-                let known = self.operations.borrow().get(&std::ptr::from_ref(expression)).copied();
-                known.unwrap_or_else(|| self.kind_of_chain(expression))
-            }
-            ExpressionKind::Call { function, .. } => self.kind_of_call(function),
-            _ => None,
-        }
-    }
-
-    fn kind_of_chain(&self, expression: &Expression) -> Option<CheckedType> {
-        let (first, operations) = expression.chain();
-        operations.into_iter().fold(self.kind(first), |left, one| {
-            let right = self.kind(one.right);
-            let kind =
-                left.zip(right).and_then(|both| kind_of_operation(one.operator, both.into()));
-            self.operations.borrow_mut().insert(std::ptr::from_ref(one.whole), kind);
-            kind
-        })
-    }
-
-    fn kind_of_call(&self, function: &ComponentReference) -> Option<CheckedType> {
-        let [name] = function.parts.as_slice() else { return None };
-        let is_declared = self.class.class_named(&name.name.into()).is_some();
-        let value_type = functions::find(name.name.as_str())?.value_type;
-        (value_type == TypeRule::Boolean && !is_declared && !function.global)
-            .then_some(CheckedType::Boolean)
+        inference::type_of(&mut &*self, expression)
     }
 
     fn kind_of_reference(&self, reference: &ComponentReference) -> Option<CheckedType> {
@@ -292,18 +265,42 @@ impl TypeCheck<'_, '_> {
     }
 }
 
+impl ElementType for CheckedType {
+    fn elementary(which: Elementary) -> Option<CheckedType> {
+        match which {
+            Elementary::Real | Elementary::Integer => Some(CheckedType::Number),
+            Elementary::Boolean => Some(CheckedType::Boolean),
+            Elementary::String => Some(CheckedType::String),
+            Elementary::Clock => None,
+        }
+    }
+}
+
+impl TypesOfNames for &TypeCheck<'_, '_> {
+    type Type = CheckedType;
+
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<CheckedType> {
+        self.kind_of_reference(reference)
+    }
+
+    /// Those of the class are not looked at, nor is a function that hides one of the language.
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        _: &Arguments,
+    ) -> Option<Option<CheckedType>> {
+        let is_of_language = !function.global
+            && function
+                .as_ident()
+                .is_some_and(|name| self.class.class_named(&name.into()).is_none());
+        (!is_of_language).then_some(None)
+    }
+}
+
 impl Visit for TypeCheck<'_, '_> {
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
-            ExpressionKind::Binary { .. } => {
-                self.kind(expression);
-                for one in expression.chain().1 {
-                    match is_relation(one.operator) {
-                        true => self.relation(one.left, one.right),
-                        false => self.operands(one.operator, [one.left, one.right]),
-                    }
-                }
-            }
+            ExpressionKind::Binary { .. } => self.operations(expression),
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
                     if let Some(kind) =
@@ -378,28 +375,6 @@ fn kind_of(component: &Component<'_>) -> Option<CheckedType> {
         (Some(Predefined::Boolean), _) => Some(CheckedType::Boolean),
         (Some(Predefined::String), _) => Some(CheckedType::String),
         (None, Some(enumeration)) => Some(CheckedType::Enumeration(enumeration.class)),
-        _ => None,
-    }
-}
-
-fn is_relation(operator: BinaryOperator) -> bool {
-    use BinaryOperator::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
-    matches!(operator, Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual)
-}
-
-fn is_logical(operator: BinaryOperator) -> bool {
-    matches!(operator, BinaryOperator::And | BinaryOperator::Or)
-}
-
-fn kind_of_operation(operator: BinaryOperator, both: [CheckedType; 2]) -> Option<CheckedType> {
-    match operator {
-        _ if is_relation(operator) || is_logical(operator) => Some(CheckedType::Boolean),
-        BinaryOperator::Add
-        | BinaryOperator::Subtract
-        | BinaryOperator::Multiply
-        | BinaryOperator::Divide => {
-            (both == [CheckedType::Number; 2]).then_some(CheckedType::Number)
-        }
         _ => None,
     }
 }

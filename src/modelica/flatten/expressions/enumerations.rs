@@ -7,6 +7,7 @@ use crate::fault;
 use crate::flatten::BaseType;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::expressions::local::Local;
+use crate::flatten::flat_expression::subscripted;
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
@@ -20,6 +21,8 @@ use crate::syntax::ast::{
     Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, ReferencePart,
     Subscript,
 };
+use crate::value::EnumerationDefinition;
+use std::sync::Arc;
 
 /// How many short classes a type may lead through.
 const MAX_CHAIN: usize = 100;
@@ -177,50 +180,87 @@ impl Instantiation<'_> {
         }
     }
 
-    /// The name of a literal, or of the value of a variable of an enumeration.
+    /// The name of a literal, or of a value of an enumeration.
     fn literal_name(
         &mut self,
         argument: &Expression,
         context: ScopeId,
         local: &Local,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
-        let span = argument.span;
-        let resolved = self.resolve(argument, context, local)?;
-        let first = reference.parts[0].name;
-        let has_type = local.types.iter().any(|(name, _)| *name == first);
-        if local.get(first).is_some() && !has_type {
-            return Ok(None);
-        }
-        let definition = match self.types().value_type_of(&resolved, local) {
-            Some(ValueType::Enumeration(definition)) => definition,
-            Some(ValueType::Integer) => {
-                let prefix = crate::name::Name {
-                    parts: reference.name().parent().parts,
-                    global: reference.global,
-                };
-                if prefix.parts.is_empty() || self.classes.has_component(context, first)? {
+        match &argument.kind {
+            ExpressionKind::If { branches, otherwise } => {
+                return self.chosen_name((branches, otherwise), context, local, argument.span);
+            }
+            ExpressionKind::Reference(reference) => {
+                let first = reference.parts[0].name;
+                let has_type = local.types.iter().any(|(name, _)| *name == first);
+                if local.get(first).is_some() && !has_type {
                     return Ok(None);
                 }
-                let Some(found) = self.classes.lookup(context, &prefix)? else { return Ok(None) };
-                match self.classes.enumeration(found, span)? {
-                    Some(definition) => definition,
-                    None => return Ok(None),
-                }
             }
+            ExpressionKind::Call { .. } => {}
+            _ => return Ok(None),
+        }
+        let resolved = self.resolve(argument, context, local)?;
+        let definition = match self.types().value_type_of(&resolved, local) {
+            Some(ValueType::Enumeration(definition)) => definition,
+            Some(ValueType::Integer) => match self.enumeration_of(argument, context, local)? {
+                Some(definition) => definition,
+                None => return Ok(None),
+            },
             _ => return Ok(None),
         };
-        let name = |literal: &crate::name::Ident| {
+        let span = argument.span;
+        let name = |literal: &Ident| {
             let text = literal.as_str().trim_matches('\'');
             Expression::new(ExpressionKind::String(text.into()), span)
         };
         let names = ExpressionKind::Array(definition.literals.iter().map(name).collect());
         let base = Expression::new(names, span);
-        Ok(Some(crate::flatten::flat_expression::subscripted(
-            base,
-            vec![Subscript::Index(resolved)],
-            span,
-        )))
+        Ok(Some(subscripted(base, vec![Subscript::Index(resolved)], span)))
+    }
+
+    /// The names of the values of an expression with conditions; `None` unless all are of an
+    /// enumeration.
+    fn chosen_name(
+        &mut self,
+        (branches, otherwise): (&[(Expression, Expression)], &Expression),
+        context: ScopeId,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let mut names = Vec::with_capacity(branches.len());
+        for (condition, value) in branches {
+            let Some(name) = self.literal_name(value, context, local)? else { return Ok(None) };
+            names.push((self.resolve(condition, context, local)?, name));
+        }
+        let otherwise = self.literal_name(otherwise, context, local)?;
+        let chosen = otherwise
+            .map(Box::new)
+            .map(|otherwise| ExpressionKind::If { branches: names, otherwise });
+        Ok(chosen.map(|kind| Expression::new(kind, span)))
+    }
+
+    /// The enumeration of a literal that is written as such; it is an Integer when it is resolved.
+    fn enumeration_of(
+        &mut self,
+        argument: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Arc<EnumerationDefinition>>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
+        let first = reference.parts[0].name;
+        let prefix = Name { parts: reference.name().parent().parts, global: reference.global };
+        if prefix.parts.is_empty()
+            || local.get(first).is_some()
+            || self.classes.has_component(context, first)?
+        {
+            return Ok(None);
+        }
+        match self.classes.lookup(context, &prefix)? {
+            Some(found) => self.classes.enumeration(found, argument.span),
+            None => Ok(None),
+        }
     }
 }
 

@@ -11,6 +11,7 @@ use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::lookup::types::Type;
 use crate::flatten::types::Types;
+use crate::inference::{self, TypesOfNames};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -217,20 +218,12 @@ impl Instantiation<'_> {
 }
 
 impl Types<'_> {
-    /// The type of an expression, or of the elements of an array constructor.
-    fn element_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
-        match &e.kind {
-            ExpressionKind::Array(elements) => self.element_type_of(elements.first()?, local),
-            _ => self.value_type_of(e, local),
-        }
-    }
-
     /// The record that an expression, or the elements of an array constructor, are of.
     pub(crate) fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
         if !self.may_be_record(e, local) {
             return None;
         }
-        record_name(self.element_type_of(e, local).as_ref())
+        record_name(self.value_type_of(e, local).as_ref())
     }
 
     /// Whether a value, or the elements of an array constructor, may be records, judged by its outermost
@@ -289,7 +282,7 @@ impl Types<'_> {
     }
 
     fn fits_input(&self, input: &FunctionComponent, argument: &Expression, local: &Local) -> bool {
-        let found = self.element_type_of(argument, local);
+        let found = self.value_type_of(argument, local);
         let is_record = |t: Option<&ValueType>| matches!(t, Some(ValueType::Record(..)));
         let rank = constructor_rank(argument);
         if is_record(found.as_ref()) && rank.is_some_and(|rank| rank != input.dims.len()) {
@@ -311,48 +304,44 @@ impl Types<'_> {
         }
     }
 
-    /// The type of a resolved expression, records included; `None` where it does not follow from its text.
+    /// The type of the elements of a resolved expression, records included; `None` where it does not
+    /// follow from its text.
     pub(crate) fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
-        match &e.kind {
-            ExpressionKind::Call { function, .. } => {
-                if let Some(Some(function)) = self.functions.table.get(&function.name()) {
-                    let output = function.outputs.first()?;
-                    return output.dims.is_empty().then(|| output.value_type.clone());
-                }
-                self.type_of(e).map(plain)
+        inference::type_of(&mut LocalTypes { types: self, local }, e)
+    }
+}
+
+/// The types of variables and of the local ones of a function.
+struct LocalTypes<'t> {
+    types: &'t Types<'t>,
+    local: &'t Local,
+}
+
+impl TypesOfNames for LocalTypes<'_> {
+    type Type = ValueType;
+
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<ValueType> {
+        let (first, parts) = reference.parts.split_first()?;
+        match self.local.types.iter().find(|(name, _)| *name == first.name) {
+            Some((_, found)) => {
+                parts.iter().try_fold(found.clone(), |record, part| record.component(part.name))
             }
-            ExpressionKind::Reference(reference) => {
-                let mut parts = reference.parts.iter();
-                let first = parts.next()?;
-                match local.types.iter().find(|(name, _)| *name == first.name) {
-                    Some((_, found)) => {
-                        let mut found = found.clone();
-                        for part in parts {
-                            let ValueType::Record(_, fields) = &found else { return None };
-                            found = fields.get(&part.name)?.value_type.clone();
-                        }
-                        Some(found)
-                    }
-                    None => self.type_of(e).map(plain),
-                }
-            }
-            ExpressionKind::If { otherwise, .. } => self.value_type_of(otherwise, local),
-            ExpressionKind::Field { base, name } => match self.value_type_of(base, local)? {
-                ValueType::Record(_, fields) => Some(fields.get(name)?.value_type.clone()),
-                _ => None,
-            },
-            ExpressionKind::Unary { operand, .. } => self.value_type_of(operand, local),
-            ExpressionKind::Binary { operator, .. } if is_arithmetic(*operator) => {
-                let mut types =
-                    e.operands_of(is_arithmetic).map(|one| self.value_type_of(one, local));
-                types.try_fold(ValueType::Integer, |all, one| match (all, one?) {
-                    (ValueType::Integer, ValueType::Integer) => Some(ValueType::Integer),
-                    (_, ValueType::Real | ValueType::Integer) => Some(ValueType::Real),
-                    _ => None,
-                })
-            }
-            _ => self.type_of(e).map(plain),
+            None => TypesOfNames::of_reference(&mut &*self.types, reference).map(plain),
         }
+    }
+
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        _: &Arguments,
+    ) -> Option<Option<ValueType>> {
+        let function = self.types.functions.table.get(&function.name())?.as_ref()?;
+        let output = function.outputs.first().filter(|output| output.dims.is_empty());
+        Some(output.map(|output| output.value_type.clone()))
+    }
+
+    fn of_component(&mut self, record: &ValueType, name: Ident) -> Option<ValueType> {
+        record.component(name)
     }
 }
 
@@ -439,19 +428,6 @@ fn record_name(found: Option<&ValueType>) -> Option<Name> {
         Some(ValueType::Record(name, _)) => Some(name.clone()),
         _ => None,
     }
-}
-
-fn is_arithmetic(operator: BinaryOperator) -> bool {
-    use BinaryOperator as Op;
-    matches!(
-        operator,
-        Op::Add
-            | Op::Subtract
-            | Op::Multiply
-            | Op::ElementwiseAdd
-            | Op::ElementwiseSubtract
-            | Op::ElementwiseMultiply
-    )
 }
 
 /// The name of an operator's class.

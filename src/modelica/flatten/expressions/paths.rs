@@ -8,7 +8,7 @@ use crate::flatten::errors::{
     UNKNOWN_NAME,
 };
 use crate::flatten::expressions::local::Local;
-use crate::flatten::flat_expression::{at_end, flat_reference, literal, subscripted};
+use crate::flatten::flat_expression::{flat_reference, literal, subscripted};
 use crate::flatten::ids::NodeId;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instance::MemberState;
@@ -17,6 +17,7 @@ use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::flatten::instantiate::tree::Tree;
 use crate::flatten::lookup::classes::Classes;
 use crate::flatten::unknown;
+use crate::inference::at_end;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{

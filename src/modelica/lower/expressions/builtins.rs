@@ -341,8 +341,8 @@ impl<T: Target> Lowering<'_, T> {
         let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
             // The greatest and the least value (MLS §10.3.4.1), as the interpreter has them.
             let [greatest, least] = match self.type_of(element) {
-                Some(ValueType::Boolean) => [1.0, 0.0],
-                Some(ValueType::Integer) => [i64::MAX as f64, i64::MIN as f64],
+                ValueType::Boolean => [1.0, 0.0],
+                ValueType::Integer => [i64::MAX as f64, i64::MIN as f64],
                 _ => [f64::MAX, f64::MIN],
             };
             let none = if reduction == Reduction::Min { greatest } else { least };

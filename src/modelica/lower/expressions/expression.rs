@@ -336,7 +336,7 @@ impl<T: Target> Lowering<'_, T> {
     /// The type of a loop variable.
     pub(crate) fn type_of_index(&mut self, index: &ForIndex) -> ValueType {
         let range = index.range.as_ref();
-        range.and_then(|range| self.type_of(range)).unwrap_or(ValueType::Integer)
+        range.map_or(ValueType::Integer, |range| self.type_of(range))
     }
 
     /// Every element of `f(e for i in …)`, after the dimensions of the iterators those of `e`.

@@ -6,14 +6,12 @@ use super::{Array, Choice, Lowered, Lowering, StringPart, Target};
 use crate::diag::{At, Diagnostic};
 use crate::eval::ValueType;
 use crate::fault;
-use crate::functions::{self, TypeRule};
+use crate::inference::{self, TypesOfNames};
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::shape::UNKNOWN_TEXT;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{
-    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
-};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression};
 use crate::value::Value;
 use crate::value::format::text;
 
@@ -61,10 +59,10 @@ impl<T: Target> Lowering<'_, T> {
         let named = |name: &str| arguments.named.iter().find(|a| a.name.node == name);
         let Some(argument) = arguments.positional.first() else { return Ok(None) };
         let which = match self.type_of(argument) {
-            Some(ValueType::Real) => 0.0,
-            Some(ValueType::Integer) => 1.0,
-            Some(ValueType::Boolean) => 2.0,
-            Some(ValueType::Enumeration(definition)) => {
+            ValueType::Real => 0.0,
+            ValueType::Integer => 1.0,
+            ValueType::Boolean => 2.0,
+            ValueType::Enumeration(definition) => {
                 return self.literal_part(argument, &definition.literals, arguments);
             }
             _ => return Ok(None),
@@ -113,93 +111,33 @@ impl<T: Target> Lowering<'_, T> {
     }
 
     /// The type of a scalar or of the elements of an array; Real where it is not known.
-    pub(super) fn type_of(&mut self, e: &Expression) -> Option<ValueType> {
-        let both = |own: &mut Self, a: &Expression, b: &Expression| {
-            let types = [own.type_of(a)?, own.type_of(b)?];
-            let is_whole = types.iter().all(|t| matches!(t, ValueType::Integer));
-            Some(if is_whole { ValueType::Integer } else { ValueType::Real })
-        };
-        match &e.kind {
-            ExpressionKind::Integer(_) => Some(ValueType::Integer),
-            ExpressionKind::Boolean(_) => Some(ValueType::Boolean),
-            ExpressionKind::Reference(reference) => {
-                let variable = reference.as_ident().and_then(|name| self.loop_variable(name));
-                if let Some(variable) = variable {
-                    return Some(variable.value_type.clone());
-                }
-                let Ok(path) = self.path(reference) else { return Some(ValueType::Real) };
-                Some(self.target.value_type(&path).unwrap_or(ValueType::Real))
-            }
-            ExpressionKind::Array(elements) => self.type_of(elements.first()?),
-            ExpressionKind::Range { start, step, stop } => match step {
-                Some(step) if self.type_of(step)? != ValueType::Integer => Some(ValueType::Real),
-                _ => both(self, start, stop),
-            },
-            ExpressionKind::ArrayIteration { element, .. } => self.type_of(element),
-            ExpressionKind::Call { function, arguments } => {
-                self.type_of_call(function, &arguments.positional)
-            }
-            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(ValueType::Boolean),
-            ExpressionKind::Unary { operand, .. } => self.type_of(operand),
-            ExpressionKind::Binary { operator, .. } => match operator {
-                _ if is_of_numbers(*operator) => {
-                    let mut is_whole = true;
-                    for operand in e.operands_of(is_of_numbers) {
-                        is_whole &= self.type_of(operand)? == ValueType::Integer;
-                    }
-                    Some(if is_whole { ValueType::Integer } else { ValueType::Real })
-                }
-                BinaryOperator::Less
-                | BinaryOperator::LessEqual
-                | BinaryOperator::Greater
-                | BinaryOperator::GreaterEqual
-                | BinaryOperator::Equal
-                | BinaryOperator::NotEqual
-                | BinaryOperator::And
-                | BinaryOperator::Or => Some(ValueType::Boolean),
-                _ => Some(ValueType::Real),
-            },
-            ExpressionKind::If { branches, otherwise } => match branches.first() {
-                Some((_, value)) if self.type_of(value)? == ValueType::Boolean => {
-                    Some(ValueType::Boolean)
-                }
-                Some((_, value)) => both(self, value, otherwise),
-                None => self.type_of(otherwise),
-            },
-            _ => Some(ValueType::Real),
-        }
-    }
-
-    fn type_of_call(
-        &mut self,
-        function: &ComponentReference,
-        arguments: &[Expression],
-    ) -> Option<ValueType> {
-        let output = self.target.function(&function.name());
-        if let Some(output) = output.and_then(|f| f.outputs.first().map(|o| o.value_type.clone())) {
-            return Some(output);
-        }
-        let entry = function.as_ident().and_then(|name| functions::find(name.as_str()));
-        match entry.map_or(TypeRule::Unknown, |entry| entry.value_type) {
-            TypeRule::Real | TypeRule::Unknown => Some(ValueType::Real),
-            TypeRule::Integer => Some(ValueType::Integer),
-            TypeRule::Boolean | TypeRule::Sampled => Some(ValueType::Boolean),
-            TypeRule::String => Some(ValueType::String),
-            TypeRule::Clock => None,
-            TypeRule::As(at) => self.type_of(arguments.get(at)?),
-            TypeRule::Joined => {
-                let types = arguments.iter().map(|argument| self.type_of(argument));
-                let types = types.collect::<Option<Vec<_>>>()?;
-                match types.contains(&ValueType::Real) {
-                    true => Some(ValueType::Real),
-                    false => types.into_iter().next(),
-                }
-            }
-        }
+    pub(super) fn type_of(&mut self, e: &Expression) -> ValueType {
+        inference::type_of(self, e).unwrap_or(ValueType::Real)
     }
 }
 
-/// Whether the result is an Integer where both operands are.
-fn is_of_numbers(operator: BinaryOperator) -> bool {
-    matches!(operator, BinaryOperator::Add | BinaryOperator::Subtract | BinaryOperator::Multiply)
+impl<T: Target> TypesOfNames for Lowering<'_, T> {
+    type Type = ValueType;
+
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<ValueType> {
+        let variable = reference.as_ident().and_then(|name| self.loop_variable(name));
+        if let Some(variable) = variable {
+            return Some(variable.value_type.clone());
+        }
+        let path = self.path(reference).ok()?;
+        self.target.value_type(&path)
+    }
+
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        _: &Arguments,
+    ) -> Option<Option<ValueType>> {
+        let declared = self.target.function(&function.name())?;
+        Some(declared.outputs.first().map(|output| output.value_type.clone()))
+    }
+
+    fn of_component(&mut self, record: &ValueType, name: Ident) -> Option<ValueType> {
+        record.component(name)
+    }
 }
