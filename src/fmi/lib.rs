@@ -7,6 +7,7 @@
 //! Program ──export──▶ Unit: description, program, runtime ──▶ archive
 //! ```
 //!
+//! [`parameter_set`] has values of parameters in files of their own (SSP 1.0), with the intervals of a fit.
 //! [`import`] simulates the units of others, in processes of their own.
 //!
 //! Both versions of the standard have one [`Description`]: what refers to variables by their place in
@@ -24,7 +25,10 @@ pub mod description;
 mod errors;
 pub mod export;
 pub mod import;
+pub mod parameter_set;
+mod xml;
 
 pub use archive::Archive;
 pub use description::Description;
 pub use errors::FmuError;
+pub use parameter_set::ParameterSet;

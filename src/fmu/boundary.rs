@@ -52,23 +52,25 @@ impl Log {
             return;
         }
         let text = |text: &str| CString::new(text.replace('\0', " ")).unwrap_or_default();
-        let (category, message) = (text(category), text(message));
+        let category = text(category);
         match self.logger {
             Logger::Version2(Some(logger)) => {
-                // SAFETY: the importer's function has this signature by the standard; the text is an
-                // argument, since it may contain what formats consist of.
+                // The message is a format, without arguments: importers that cannot take any, such as
+                // those in other languages than C, show it as it is.
+                let message = text(&message.replace('%', "%%"));
+                // SAFETY: the importer's function has this signature by the standard.
                 unsafe {
                     logger(
                         self.environment,
                         self.name.as_ptr(),
                         status,
                         category.as_ptr(),
-                        c"%s".as_ptr(),
                         message.as_ptr(),
                     );
                 }
             }
             Logger::Version3(Some(logger)) => {
+                let message = text(message);
                 // SAFETY: the importer's function has this signature by the standard.
                 unsafe {
                     logger(self.environment, status, category.as_ptr(), message.as_ptr());

@@ -9,6 +9,7 @@ mod tests;
 
 pub use read::read;
 pub use words::{Causality, DependencyKind, Initial, Kind, Variability};
+pub(crate) use write::base_unit;
 pub use write::write;
 
 /// The major version of the standard.

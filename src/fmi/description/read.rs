@@ -10,9 +10,9 @@ use super::{
     Version,
 };
 use crate::FmuError;
-use roxmltree::{Document, Node};
+use crate::xml::Element;
+use roxmltree::Document;
 use std::collections::HashMap;
-use std::str::FromStr;
 
 /// The description in a text.
 ///
@@ -391,84 +391,5 @@ impl Places {
             None => (number as usize).checked_sub(1).filter(|at| *at < self.n),
         };
         found.ok_or_else(|| element.error(format!("there is no variable {number}")))
-    }
-}
-
-/// An element, with messages that say where it is.
-#[derive(Clone, Copy)]
-struct Element<'a, 'i>(Node<'a, 'i>);
-
-impl<'a, 'i> Element<'a, 'i> {
-    fn name(&self) -> &'a str {
-        self.0.tag_name().name()
-    }
-
-    fn error(&self, message: String) -> FmuError {
-        let line = self.0.document().text_pos_at(self.0.range().start).row;
-        FmuError::Description { line, message }
-    }
-
-    fn children(&self) -> Vec<Element<'a, 'i>> {
-        self.0.children().filter(Node::is_element).map(Element).collect()
-    }
-
-    fn child(&self, name: &str) -> Option<Element<'a, 'i>> {
-        self.children().into_iter().find(|child| child.name() == name)
-    }
-
-    /// The elements of a name in a group.
-    fn elements(&self, group: &str, name: &str) -> Vec<Element<'a, 'i>> {
-        let inside = self.child(group).map_or(Vec::new(), |group| group.children());
-        inside.into_iter().filter(|child| child.name() == name).collect()
-    }
-
-    fn get(&self, name: &str) -> Option<&'a str> {
-        self.0.attribute(name)
-    }
-
-    fn text(&self, name: &str) -> Option<String> {
-        self.get(name).map(str::to_owned)
-    }
-
-    fn required(&self, name: &str) -> Result<&'a str, FmuError> {
-        self.get(name)
-            .ok_or_else(|| self.error(format!("`{}` has no attribute `{name}`", self.name())))
-    }
-
-    fn wrong(&self, name: &str, value: &str) -> FmuError {
-        self.error(format!("`{value}` is not a value of the attribute `{name}`"))
-    }
-
-    fn word<T>(&self, name: &str, of: fn(&str) -> Option<T>) -> Result<Option<T>, FmuError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        of(value).map(Some).ok_or_else(|| self.wrong(name, value))
-    }
-
-    fn parsed<T: FromStr>(&self, name: &str) -> Result<Option<T>, FmuError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        value.trim().parse().map(Some).map_err(|_| self.wrong(name, value))
-    }
-
-    fn needed<T: FromStr>(&self, name: &str) -> Result<T, FmuError> {
-        let value = self.required(name)?;
-        value.trim().parse().map_err(|_| self.wrong(name, value))
-    }
-
-    fn list<T: FromStr>(&self, name: &str) -> Result<Option<Vec<T>>, FmuError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        let all = value.split_whitespace().map(str::parse).collect::<Result<_, _>>();
-        all.map(Some).map_err(|_| self.wrong(name, value))
-    }
-
-    fn truth(&self, name: &str) -> Result<Option<bool>, FmuError> {
-        self.word(name, |value| match value.trim() {
-            "true" | "1" => Some(true),
-            "false" | "0" => Some(false),
-            _ => None,
-        })
-    }
-
-    fn is_true(&self, name: &str) -> Result<bool, FmuError> {
-        Ok(self.truth(name)?.unwrap_or(false))
     }
 }

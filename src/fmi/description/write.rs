@@ -1,9 +1,10 @@
 //! Writes descriptions, as the schemas of the standard order their elements.
 
 use super::{
-    Attributes, BASE_UNITS, ClockInterval, Description, Dimension, Interface, Kind, Structure,
-    TypeDefinition, Unit, Unknown, Variable, Version,
+    Attributes, BASE_UNITS, BaseUnit, ClockInterval, Description, Dimension, Interface, Kind,
+    Structure, TypeDefinition, Unit, Unknown, Variable, Version,
 };
+use crate::xml::{Xml, number};
 use std::fmt::{Display, Write};
 
 /// The text of `modelDescription.xml`.
@@ -143,13 +144,7 @@ fn unit(xml: &mut Xml, unit: &Unit) {
     xml.element("Unit", |xml| {
         xml.attribute("name", &unit.name);
         if let Some(base) = &unit.base {
-            xml.element("BaseUnit", |xml| {
-                for (name, exponent) in BASE_UNITS.iter().zip(base.exponents) {
-                    xml.unless(name, exponent, 0);
-                }
-                xml.unless("factor", base.factor, 1.0);
-                xml.unless("offset", base.offset, 0.0);
-            });
+            base_unit(xml, "BaseUnit", base);
         }
         for shown in &unit.display_units {
             xml.element("DisplayUnit", |xml| {
@@ -159,6 +154,17 @@ fn unit(xml: &mut Xml, unit: &Unit) {
                 xml.unless("inverse", shown.is_inverse, false);
             });
         }
+    });
+}
+
+/// What a unit is in base units of SI.
+pub(crate) fn base_unit(xml: &mut Xml, element: &str, base: &BaseUnit) {
+    xml.element(element, |xml| {
+        for (name, exponent) in BASE_UNITS.iter().zip(base.exponents) {
+            xml.unless(name, exponent, 0);
+        }
+        xml.unless("factor", base.factor, 1.0);
+        xml.unless("offset", base.offset, 0.0);
     });
 }
 
@@ -336,89 +342,4 @@ fn list(values: impl IntoIterator<Item: Display>) -> String {
         let _ = write!(text, "{separator}{value}");
     }
     text
-}
-
-/// A number, very small and large ones with an exponent.
-fn number(value: f64) -> String {
-    match value {
-        f64::INFINITY => "INF".to_owned(),
-        f64::NEG_INFINITY => "-INF".to_owned(),
-        _ if value == 0.0 || (1e-4..1e15).contains(&value.abs()) => value.to_string(),
-        _ => format!("{value:e}"),
-    }
-}
-
-/// A text in XML while it is written.
-struct Xml {
-    text: String,
-    depth: usize,
-    /// Whether attributes of the last element may still come.
-    is_open: bool,
-}
-
-impl Xml {
-    fn new() -> Xml {
-        let text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_owned();
-        Xml { text, depth: 0, is_open: false }
-    }
-
-    fn element(&mut self, name: &str, content: impl FnOnce(&mut Xml)) {
-        self.close();
-        let _ = write!(self.text, "{:1$}<{name}", "", 2 * self.depth);
-        self.is_open = true;
-        self.depth += 1;
-        content(self);
-        self.depth -= 1;
-        if std::mem::take(&mut self.is_open) {
-            self.text.push_str("/>\n");
-        } else {
-            let _ = writeln!(self.text, "{:1$}</{name}>", "", 2 * self.depth);
-        }
-    }
-
-    /// An element with others inside, if there are any.
-    fn group<T>(&mut self, name: &str, all: &[T], mut each: impl FnMut(&mut Xml, &T)) {
-        if !all.is_empty() {
-            self.element(name, |xml| all.iter().for_each(|one| each(xml, one)));
-        }
-    }
-
-    fn close(&mut self) {
-        if std::mem::take(&mut self.is_open) {
-            self.text.push_str(">\n");
-        }
-    }
-
-    fn attribute(&mut self, name: &str, value: impl Display) {
-        let _ = write!(self.text, " {name}=\"");
-        for letter in value.to_string().chars() {
-            match letter {
-                '&' => self.text.push_str("&amp;"),
-                '<' => self.text.push_str("&lt;"),
-                '>' => self.text.push_str("&gt;"),
-                '"' => self.text.push_str("&quot;"),
-                // They would become blanks.
-                '\t' | '\n' | '\r' => {
-                    let _ = write!(self.text, "&#{};", u32::from(letter));
-                }
-                // No text of XML 1.0 has them.
-                _ if letter.is_control() && u32::from(letter) < 32 => self.text.push('\u{fffd}'),
-                '\u{fffe}' | '\u{ffff}' => self.text.push('\u{fffd}'),
-                _ => self.text.push(letter),
-            }
-        }
-        self.text.push('"');
-    }
-
-    fn optional(&mut self, name: &str, value: Option<&(impl Display + ?Sized)>) {
-        if let Some(value) = value {
-            self.attribute(name, value);
-        }
-    }
-
-    fn unless<T: Display + PartialEq>(&mut self, name: &str, value: T, default: T) {
-        if value != default {
-            self.attribute(name, value);
-        }
-    }
 }

@@ -24,6 +24,7 @@ use crate::lower::errors::NOT_SUPPORTED;
 use crate::{Archive, fault};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
+pub(crate) use units::base;
 use variables::Table;
 
 /// What a unit offers.
@@ -61,6 +62,14 @@ impl Model<'_> {
     fn value(&self, parameter: usize) -> f64 {
         let set = self.values.get(&parameter).copied();
         set.unwrap_or_else(|| self.program.parameters()[parameter].default)
+    }
+
+    /// The value of a parameter that importers may set: one with a value of its own, which does not follow
+    /// from those of others.
+    fn own_value(&self, parameter: usize) -> Option<f64> {
+        let follows = || self.program.follows_from_parameters(parameter);
+        let is_own = self.values.contains_key(&parameter) || !follows();
+        Some(self.value(parameter)).filter(|value| is_own && value.is_finite())
     }
 }
 
@@ -159,7 +168,7 @@ fn token(bytes: &[u8]) -> String {
 }
 
 /// The name of a class as an identifier in C.
-fn identifier(name: &str) -> String {
+pub fn identifier(name: &str) -> String {
     let class = name.split('(').next().unwrap_or(name).trim();
     let letters = class.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
     let identifier: String = letters.collect();

@@ -24,7 +24,7 @@ pub(super) fn units<'v>(variables: impl Iterator<Item = &'v Variable>) -> Vec<Un
 }
 
 /// What a unit is in base units of SI.
-fn base(name: &str) -> Option<BaseUnit> {
+pub(crate) fn base(name: &str) -> Option<BaseUnit> {
     let unit = units::unit(name)?;
     let [kg, m, s, a, k, mol, cd] = unit.dimension.exponents()?;
     let exponents = [kg, m, s, a, k, mol, cd, 0];

@@ -280,17 +280,16 @@ type Part = (Causality, Variability, Option<Initial>, Setter, Option<f64>);
 fn part_of(model: &Model, info: &VariableInfo, kind: ValueKind) -> Part {
     let program = model.program;
     let parameter = |name: &str| program.parameters().iter().position(|own| *own.name == *name);
-    let default = |parameter: usize| model.value(parameter);
+    let own = |name: &str| parameter(name).and_then(|at| Some((at, model.own_value(at)?)));
     match info.access {
         Access::Constant(value) => {
             let exact = Some(Initial::Exact);
             (Causality::Local, Variability::Constant, exact, Setter::None, Some(value))
         }
-        Access::Parameter => match parameter(&info.name).filter(|own| default(*own).is_finite()) {
-            Some(own) => {
-                let setter = Setter::Parameter(own);
-                let exact = Some(Initial::Exact);
-                (Causality::Parameter, Variability::Fixed, exact, setter, Some(default(own)))
+        Access::Parameter => match own(&info.name) {
+            Some((at, value)) => {
+                let (exact, setter) = (Some(Initial::Exact), Setter::Parameter(at));
+                (Causality::Parameter, Variability::Fixed, exact, setter, Some(value))
             }
             None => {
                 let part = Causality::CalculatedParameter;
@@ -300,11 +299,10 @@ fn part_of(model: &Model, info: &VariableInfo, kind: ValueKind) -> Part {
         Access::Time | Access::Observed { .. } => {
             let causality = if info.is_output() { Causality::Output } else { Causality::Local };
             let variability = variability_of(info, kind);
-            let start = model.starts.get(&*info.name).and_then(|name| parameter(name));
-            match start.filter(|start| default(*start).is_finite()) {
-                Some(start) => {
+            match model.starts.get(&*info.name).and_then(|name| own(name)) {
+                Some((start, value)) => {
                     let (exact, setter) = (Some(Initial::Exact), Setter::Parameter(start));
-                    (causality, variability, exact, setter, Some(default(start)))
+                    (causality, variability, exact, setter, Some(value))
                 }
                 None => (causality, variability, Some(Initial::Calculated), Setter::None, None),
             }

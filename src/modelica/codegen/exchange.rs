@@ -4,6 +4,7 @@
 use super::program::{Program, VariableInfo};
 use super::sequence::close;
 use crate::causalize::Block;
+use crate::lower::VariableKind;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId, evaluate};
 use rustc_hash::FxHashSet;
@@ -112,6 +113,30 @@ impl Program {
             block.assignments().iter().any(|assignment| reads(assignment.value))
                 || block.residuals().any(reads)
         })
+    }
+
+    /// Whether the default value of a parameter of [`Program::parameters`] follows from others that can
+    /// be set: from them directly, or from what cannot be set and follows from them.
+    pub fn follows_from_parameters(&self, parameter: usize) -> bool {
+        let dae = &self.sorted.dae;
+        let mut open: Vec<VarId> =
+            self.parameters().get(parameter).map(|p| p.variable).into_iter().collect();
+        let mut seen: FxHashSet<VarId> = open.iter().copied().collect();
+        while let Some(variable) = open.pop() {
+            let Some(binding) = dae.variable(variable).binding else { continue };
+            for needed in dae.pool.variables(binding) {
+                match dae.variable(needed).kind {
+                    VariableKind::Parameter { tunable: true } | VariableKind::Solved => {
+                        return true;
+                    }
+                    VariableKind::Parameter { tunable: false } if seen.insert(needed) => {
+                        open.push(needed);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        false
     }
 
     /// The number by which [`System::set_recorded`](crate::runtime::System::set_recorded) sets a

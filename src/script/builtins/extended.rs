@@ -1,13 +1,13 @@
 //! Simulations with given values that return values: once, or once for each row of values.
 
 use super::linearization::write_dslin;
-use super::simulation::{Request, result_path, run_model, translated_model};
+use super::simulation::{Request, Simulable, is_model, result_path, to_simulate};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::errors::BAD_ARGUMENT;
 use crate::models::linearization::linearized;
-use crate::models::simulation::{Simulated, Translated};
+use crate::models::simulation::Simulated;
 use crate::results::ResultTable;
 use crate::value::{ArrayValue, Elements, RealMatrix, Value, element_count};
 use crate::{Dialect, Session};
@@ -72,9 +72,10 @@ fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Valu
     let finals: Vec<String> = args.take("finalNames")?;
     check_count(&names, values.len())?;
     let failed = || Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]);
-    let Some(model) = translated_model(session, &request.problem) else { return Ok(failed()) };
-    let done =
-        for_this_call(session, |session| simulated(session, &model, &request, &names, &values))?;
+    let Some(mut model) = to_simulate(session, &request.problem) else { return Ok(failed()) };
+    let done = for_this_call(session, |session| {
+        simulated(session, &mut model, &request, &names, &values)
+    })?;
     let Some(simulated) = done else { return Ok(failed()) };
     Ok(Value::Tuple(vec![true.into(), last_values(&simulated.table, &finals)?.into()]))
 }
@@ -120,7 +121,7 @@ fn simulate_multi_results_model(session: &mut Session, mut args: Args) -> Result
     let names: Vec<String> = args.take("initialNames")?;
     let values: RealMatrix = args.take("initialValues")?;
     let results: Vec<String> = args.take("resultNames")?;
-    let Some(model) = translated_model(session, &request.problem) else {
+    let Some(model) = to_simulate(session, &request.problem) else {
         return Ok(Value::Tuple(vec![false.into(), cube([values.rows, results.len(), 0], vec![])]));
     };
     let grid = request.grid(&model)?;
@@ -172,14 +173,14 @@ fn each_row(
 ) -> Result<(bool, Vec<f64>), Failure> {
     check_count(names, values.columns)?;
     let mut all = Vec::with_capacity(values.rows * expected);
-    let Some(model) = translated_model(session, &request.problem) else {
+    let Some(mut model) = to_simulate(session, &request.problem) else {
         all.resize(values.rows * expected, f64::NAN);
         return Ok((false, all));
     };
     let mut ok = true;
     for row in 0..values.rows {
         let done = for_this_call(session, |session| {
-            simulated(session, &model, request, names, values.row(row))
+            simulated(session, &mut model, request, names, values.row(row))
         })?;
         match done {
             Some(run) => all.extend(take(&run)?),
@@ -195,7 +196,7 @@ fn each_row(
 /// Simulates with these values; `None` if it failed, which has been reported.
 fn simulated(
     session: &mut Session,
-    model: &Translated,
+    model: &mut Simulable,
     request: &Request,
     names: &[String],
     values: &[f64],
@@ -203,9 +204,9 @@ fn simulated(
     // Each row rewrites the file: that of the row before does not replace it.
     session.expect_file(&result_path(&request.file));
     for (name, value) in names.iter().zip(values) {
-        session.set_parameter(name, *value)?;
+        model.set(session, name, *value)?;
     }
-    let done = run_model(session, model, &request.options, &request.file);
+    let done = model.run(session, &request.options, &request.file);
     Ok(session.or_report_all(done))
 }
 
@@ -232,7 +233,7 @@ fn each_linearized(
     let mut all = Vec::with_capacity(values.rows * finals.len());
     let (mut ok, mut options) = (true, request.options.clone());
     options.stop = options.stop.or(options.start).or(Some(0.0));
-    let is_translated = translated_model(session, &request.problem).is_some();
+    let is_translated = is_model(session, &request.problem);
     for row in 0..values.rows {
         let numbers = values.row(row);
         let others = names.iter().zip(numbers).enumerate().filter(|(column, _)| *column != at);

@@ -3,7 +3,7 @@
 use super::methods::with_method_of_ours;
 use super::openmodelica::{completed, options, shown, simulation_result, write_results};
 use super::simflags::SimulationFlags;
-use super::simulation::{Request, translated_model};
+use super::simulation::{Request, is_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::flatten::Experiment;
@@ -49,7 +49,7 @@ end linearizeModel;
 
 fn linearize_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut request = Request::take(session, &mut args)?;
-    if translated_model(session, &request.problem).is_none() {
+    if !is_model(session, &request.problem) {
         return Ok(false.into());
     }
     request.options.stop = request.options.stop.or(request.options.start).or(Some(0.0));

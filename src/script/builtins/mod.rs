@@ -14,6 +14,7 @@ mod extended;
 pub(crate) mod extensions;
 mod files;
 mod final_states;
+mod fmus;
 mod gapilib;
 mod header;
 mod initial;
@@ -126,6 +127,8 @@ pub static FAMILIES: &[&Family] = &[
     &extended::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
+    &fmus::FAMILY,
+    &fmus::OPENMODELICA,
     &gapilib::FAMILY,
     &operators::FAMILY,
     &problem::FAMILY,

@@ -1,6 +1,7 @@
 //! Models as OpenModelica's scripts handle them.
 
 use super::built_models::{self, Executable};
+use super::fmus::{self, ImportedUnit};
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
@@ -72,6 +73,9 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
+        if let Some(unit) = fmus::unit_of(session, &class.to_string())? {
+            return run_unit(session, unit, &options, flags, (&file, &filter));
+        }
         let model = driven_model(session, &class.to_string(), &flags)?;
         run(session, &model, &options, flags, (&file, &filter))
     });
@@ -227,6 +231,30 @@ pub(super) fn run(
     }
     write_results(session, &done.table, file).at(at).map_err(one)?;
     Ok((options, file.to_owned()))
+}
+
+/// Simulates an imported unit and writes the results; the settings used, and the file.
+fn run_unit(
+    session: &mut Session,
+    mut unit: ImportedUnit,
+    options: &SimulationOptions,
+    mut flags: SimulationFlags,
+    (file, filter): (&str, &Regex),
+) -> Result<(SimulationOptions, String), Vec<Diagnostic>> {
+    let at = session.call_site();
+    let one = |error: Diagnostic| vec![error];
+    flags.read_override_files(session).at(at).map_err(one)?;
+    if let Some(inputs) = &flags.csv_input {
+        unit.follow(session, inputs).map_err(one)?;
+    }
+    let mut values = flags.values();
+    values.try_for_each(|(name, value)| unit.set_text(name, value)).at(at).map_err(one)?;
+    let options = completed(options, &unit.experiment());
+    let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
+    let table = unit.simulate(session, &applied)?.table.only(|name| filter.is_match(name));
+    let file = flags.result_file(file);
+    write_results(session, &table, &file).at(at).map_err(one)?;
+    Ok((options, file))
 }
 
 /// A simulation that ends where it begins has two rows, the beginning and the end.

@@ -24,12 +24,12 @@ pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: refused! {
-        "scripts export no FMUs; `gapi export-fmu` does":
-            translateModelFMU buildModelFMU exportFMU translateModelFMI;
+        "write FMUs with translateModelFMU or buildModelFMU":
+            exportFMU translateModelFMI;
         "models cannot be exported as C code":
             translateModelExport;
-        "scripts import no FMUs; `gapi simulate x.fmu` does":
-            importFMU importFMUModelDescription;
+        "`gapi check x.fmu` shows what an FMU is; importFMU makes one usable":
+            importFMUModelDescription;
         "diagrams are not supported":
             exportDiagram;
         "documentation export is not supported":

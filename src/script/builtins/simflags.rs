@@ -179,6 +179,12 @@ impl SimulationFlags {
         self.overrides.splice(0..0, values.iter().cloned());
     }
 
+    /// The values that they give, by name; later ones count.
+    pub(super) fn values(&self) -> impl Iterator<Item = (&str, &str)> {
+        let all = self.of_files.iter().chain(&self.overrides);
+        all.map(|(name, value)| (name.as_str(), value.as_str()))
+    }
+
     /// Sets the values of the model, and says which flags have no effect.
     pub(super) fn apply(&self, session: &mut Session) -> Result<(), Fault> {
         if !self.idle.is_empty() {

@@ -1,9 +1,12 @@
 //! Translating and simulating models.
 
+use super::fmus::{self, ImportedUnit};
 use super::methods::with_method_of_ours;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::errors::NO_TRANSLATED_MODEL;
+use crate::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
+use crate::fault;
+use crate::flatten;
 use crate::models::simulation;
 use crate::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::results::{self, ResultTable};
@@ -62,14 +65,62 @@ impl Request {
     }
 
     /// The times of the output grid.
-    pub(super) fn grid(&self, model: &Translated) -> Result<Vec<f64>, Fault> {
-        grid(model, &self.options)
+    pub(super) fn grid(&self, of: &Simulable) -> Result<Vec<f64>, Fault> {
+        grid(&of.experiment(), &self.options)
+    }
+}
+
+/// What can be simulated.
+pub(super) enum Simulable {
+    /// A model; its values are those that scripts set.
+    Model(Arc<Translated>),
+    /// A functional mock-up unit.
+    Unit(ImportedUnit),
+}
+
+impl Simulable {
+    fn experiment(&self) -> flatten::Experiment {
+        match self {
+            Simulable::Model(model) => model.program.experiment(),
+            Simulable::Unit(unit) => unit.experiment(),
+        }
+    }
+
+    /// Gives a parameter, or a variable with a start value, a value for the next simulations.
+    pub(super) fn set(
+        &mut self,
+        session: &mut Session,
+        name: &str,
+        value: f64,
+    ) -> Result<(), Fault> {
+        match self {
+            Simulable::Model(_) => session.set_parameter(name, value),
+            Simulable::Unit(unit) => unit.set(name, value),
+        }
+    }
+
+    /// Simulates and writes the result file.
+    pub(super) fn run(
+        &self,
+        session: &mut Session,
+        options: &SimulationOptions,
+        file: &str,
+    ) -> Result<Simulated, Vec<Diagnostic>> {
+        match self {
+            Simulable::Model(model) => run_model(session, model, options, file),
+            Simulable::Unit(unit) => {
+                let simulated = unit.simulate(session, options)?;
+                let written = write(session, simulated.table.clone(), file);
+                written.at(session.call_site()).map_err(|error| vec![error])?;
+                Ok(simulated)
+            }
+        }
     }
 }
 
 /// The times of the output grid.
-fn grid(model: &Translated, options: &SimulationOptions) -> Result<Vec<f64>, Fault> {
-    let settings = simulation::settings(&model.program.experiment(), options)?;
+fn grid(experiment: &flatten::Experiment, options: &SimulationOptions) -> Result<Vec<f64>, Fault> {
+    let settings = simulation::settings(experiment, options)?;
     let point = |number| settings.output.point(settings.start, settings.stop, number);
     Ok((0..).map_while(point).collect())
 }
@@ -200,7 +251,7 @@ fn positive(count: Option<i64>) -> Option<usize> {
 }
 
 /// The problem itself, or where it is empty that of the model used last.
-fn problem_in_use(session: &Session, problem: &str) -> Result<String, Vec<Diagnostic>> {
+pub(super) fn problem_in_use(session: &Session, problem: &str) -> Result<String, Vec<Diagnostic>> {
     if !problem.trim().is_empty() {
         return Ok(problem.trim().to_owned());
     }
@@ -212,16 +263,33 @@ fn problem_in_use(session: &Session, problem: &str) -> Result<String, Vec<Diagno
     last.map(|last| last.problem.clone())
 }
 
-/// The model of a problem, translated if need be.
-fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+/// The model of a problem, translated if need be, or the unit that was imported under its name.
+fn simulable(session: &mut Session, problem: &str) -> Result<Simulable, Vec<Diagnostic>> {
+    if let Some(unit) = fmus::unit_of(session, problem)? {
+        return Ok(Simulable::Unit(unit));
+    }
     let problem = problem_in_use(session, problem)?;
-    simulation::translate(session, &problem)
+    simulation::translate(session, &problem).map(Simulable::Model)
 }
 
-/// The model of a problem; `None` if it cannot be translated, which has been reported.
-pub(super) fn translated_model(session: &mut Session, problem: &str) -> Option<Arc<Translated>> {
-    let done = model(session, problem);
+/// What a problem means; `None` if it cannot be translated, which has been reported.
+pub(super) fn to_simulate(session: &mut Session, problem: &str) -> Option<Simulable> {
+    let done = simulable(session, problem);
     session.or_report_all(done)
+}
+
+/// Whether a problem is a model, which is translated now; what is wrong has been reported.
+pub(super) fn is_model(session: &mut Session, problem: &str) -> bool {
+    match to_simulate(session, problem) {
+        Some(Simulable::Model(_)) => true,
+        Some(Simulable::Unit(_)) => {
+            let fault = fault!(BAD_ARGUMENT, "`{problem}` is an FMU, which is not linearized here";
+                help: "linearize the Modelica model that it was made of");
+            session.report_fault(fault);
+            false
+        }
+        None => false,
+    }
 }
 
 fn run(
@@ -230,11 +298,10 @@ fn run(
     options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let model = model(session, problem)?;
-    run_model(session, &model, options, file)
+    simulable(session, problem)?.run(session, options, file)
 }
 
-/// Simulates and writes the result file.
+/// Simulates a model and writes the result file.
 pub(super) fn run_model(
     session: &mut Session,
     model: &Translated,
@@ -242,7 +309,9 @@ pub(super) fn run_model(
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
     let simulated = simulation::simulate(session, model, options).map_err(|error| vec![error])?;
-    let grid = grid(model, options).at(session.call_site()).map_err(|error| vec![error])?;
+    let grid = grid(&model.program.experiment(), options)
+        .at(session.call_site())
+        .map_err(|error| vec![error])?;
     let table = super::output::stored(session, model, &simulated.table, &grid);
     let written = write(session, table, file).at(session.call_site());
     written.map_err(|error| vec![error])?;
