@@ -2,15 +2,16 @@
 
 use super::options::{Global, Limits};
 use super::{limits, session};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::exported::exported;
-use crate::script::models::simulation;
+use crate::script::models::{parameter_sets, simulation};
 use crate::source::Span;
 use clap::{Args, ValueEnum, ValueHint};
 use gapilib_fmi::description::Version;
 use gapilib_fmi::export::Kinds;
+use gapilib_fmi::parameter_set;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -20,7 +21,8 @@ use std::process::ExitCode;
 Examples:
   gapi export-fmu Tank.mo --model Tank
   gapi export-fmu models --model CaseStudies.PolarizationCurve --fmi 2 --kind cs -o curve.fmu
-  gapi export-fmu Decay.mo --model Decay --set k=2.31     with the value that a fit has found
+  gapi export-fmu Decay.mo --model Decay --set k=2.31
+  gapi export-fmu Decay.mo --model Decay --set-file results/parameters.ssv     with the values of a fit
 
 The unit runs on the platform of this program and needs neither it nor a C compiler.")]
 pub(super) struct ExportFmuArgs {
@@ -40,6 +42,10 @@ pub(super) struct ExportFmuArgs {
     /// Set a parameter (repeatable): a number, true, false, a literal of an enumeration, or a String
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::simulate::name_and_value)]
     pub set: Vec<(String, String)>,
+    /// Set the parameters of a file of SSP, as `gapi identify` writes it, and write a copy of it beside
+    /// the unit; --set comes after it
+    #[arg(long, value_name = "FILE.ssv", value_hint = ValueHint::FilePath)]
+    pub set_file: Option<PathBuf>,
     /// Output file; the last part of the class's name with the extension .fmu if none is given
     #[arg(long, short, value_name = "FILE.fmu", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
@@ -75,6 +81,10 @@ pub(super) fn export_fmu(arguments: &ExportFmuArgs, global: &Global) -> ExitCode
         PathBuf::from(format!("{}.fmu", name.rsplit('.').next().unwrap_or(name)))
     });
     session.world.grant(Grant::Named(&output));
+    if let Some(file) = &arguments.set_file {
+        session.world.grant(Grant::Read(file));
+        session.world.grant(Grant::Named(&beside(&output)));
+    }
     if session::lists_permissions(&mut session, global) {
         return ExitCode::SUCCESS;
     }
@@ -90,9 +100,13 @@ fn run(
     arguments: &ExportFmuArgs,
     output: &Path,
 ) -> Result<(), Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
     simulation::translate(session, class)?;
+    if let Some(path) = &arguments.set_file {
+        parameter_sets::set(session, path).map_err(one)?;
+    }
     for (name, value) in &arguments.set {
-        session.set_parameter_text(name, value).map_err(|fault| vec![fault.at(Span::NONE)])?;
+        session.set_parameter_text(name, value).map_err(one)?;
     }
     let version = if arguments.fmi == 2 { Version::V2 } else { Version::V3 };
     let kinds = Kinds {
@@ -101,8 +115,20 @@ fn run(
     };
     let bytes = exported(session, class, version, kinds)?;
     session.permit_file(output);
-    session.write_file(output, &bytes).map_err(|fault| vec![fault.at(Span::NONE)])?;
+    session.write_file(output, &bytes).map_err(one)?;
     let size = bytes.len() as f64 / 1e6;
     session.print(&format!("wrote {} ({size:.1} MB)\n", output.display()));
+    if let Some(path) = &arguments.set_file {
+        let copy = beside(output);
+        let text = session.read_bytes(path).map_err(one)?;
+        session.permit_file(&copy);
+        session.write_file(&copy, &text).map_err(one)?;
+        session.print(&format!("wrote {}\n", copy.display()));
+    }
     Ok(())
+}
+
+/// The file with the parameters of a unit, beside it.
+fn beside(unit: &Path) -> PathBuf {
+    unit.with_extension(parameter_set::ENDING)
 }

@@ -16,8 +16,8 @@ use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::final_state::FinalState;
-use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
+use crate::script::models::{parameter_sets, simulation};
 use crate::script::runs::problem;
 use crate::script::runs::view::Progress;
 use crate::script::world::Screen as _;
@@ -71,6 +71,9 @@ pub(super) struct SimulateArgs {
     /// Set a parameter (repeatable): a number, true, false, a literal of an enumeration, or a String
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub set: Vec<(String, String)>,
+    /// Set the parameters of a file of SSP, as `gapi identify` writes it; --set comes after it
+    #[arg(long, value_name = "FILE.ssv", value_hint = ValueHint::FilePath)]
+    pub set_file: Option<PathBuf>,
     /// Let the inputs of the model follow the columns of this file that have their names; it has a
     /// column `time` or `t`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -116,6 +119,15 @@ fn pass_names() -> clap::builder::PossibleValuesParser {
 pub(super) fn name_and_value(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Gives parameters the values that the options say.
+fn set(session: &mut Session, arguments: &SimulateArgs) -> Result<(), Fault> {
+    if let Some(path) = &arguments.set_file {
+        parameter_sets::set(session, path)?;
+    }
+    let mut values = arguments.set.iter();
+    values.try_for_each(|(name, value)| session.set_parameter_text(name, value))
 }
 
 /// Most variables whose last values are shown when no file is asked for.
@@ -191,9 +203,7 @@ fn run(
         let begin = begin_with(session, &model, path, options.start).map_err(one)?;
         options.start = Some(begin);
     }
-    for (name, value) in &arguments.set {
-        session.set_parameter_text(name, value).map_err(one)?;
-    }
+    set(session, arguments).map_err(one)?;
     let settings = simulation::settings(&model.program.experiment(), &options).map_err(one)?;
     let span = (settings.start, settings.stop);
     if let Some(driven) = &driven {

@@ -1,4 +1,4 @@
-//! Documents of XML: elements with messages that say where they are, and texts while they are written.
+//! Documents of XML: elements with messages that say where they are, and what is being written.
 
 use crate::FmuError;
 use roxmltree::Node;

@@ -21,10 +21,8 @@ impl Instance {
         for unknown in unknowns {
             rows.push(self.row(*unknown, &mut variables)?);
         }
-        let state = &mut self.state;
-        let all = state.system.reduced_jacobian(&variables, state.time, &state.x);
-        let all = all.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;
         let n = self.state.x.len();
+        let all = self.whole_jacobian(variables)?;
         let entry = |row: usize, column: usize| {
             let (state, sign) = columns[column];
             sign * match rows[row] {
@@ -35,6 +33,21 @@ impl Instance {
             }
         };
         Ok(DMatrix::from_fn(unknowns.len(), knowns.len(), entry))
+    }
+
+    /// The derivatives of the states and of these variables by all states: computed once for the values
+    /// at hand, since importers ask for a direction at a time.
+    fn whole_jacobian(&mut self, variables: Vec<usize>) -> Result<&DMatrix<f64>, Wrong> {
+        let known = self.jacobian.take().filter(|(of, _)| *of == variables);
+        let all = match known {
+            Some((_, all)) => all,
+            None => {
+                let state = &mut self.state;
+                let all = state.system.reduced_jacobian(&variables, state.time, &state.x);
+                all.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?
+            }
+        };
+        Ok(&self.jacobian.insert((variables, all)).1)
     }
 
     fn column(&self, reference: u32) -> Result<(usize, f64), Wrong> {

@@ -4,6 +4,7 @@ use crate::fmi::export::{Exported, Place, Setter, ValueKind};
 use crate::loading::Loaded;
 use crate::runtime::System;
 use crate::sim::{EventOutcome, Events, Failure, Residual, SimError, SimErrorKind, Simulator};
+use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -81,6 +82,8 @@ pub(crate) struct Instance {
     pub(crate) stop: Option<f64>,
     pub(crate) tolerance: f64,
     pub(crate) simulator: Simulator,
+    /// The Jacobian at the values at hand with the variables of its further rows, once it was asked for.
+    pub(crate) jacobian: Option<(Vec<usize>, DMatrix<f64>)>,
     /// How many messages of the model have been passed on.
     passed_on: usize,
 }
@@ -120,11 +123,13 @@ impl Instance {
         let tolerance = model.content.tolerance;
         let simulator = Simulator::new();
         let start = model.program.experiment().start_time.unwrap_or(0.0);
-        Instance { model, state, start, stop: None, tolerance, simulator, passed_on: 0 }
+        let (stop, jacobian, passed_on) = (None, None, 0);
+        Instance { model, state, start, stop, tolerance, simulator, jacobian, passed_on }
     }
 
     pub(crate) fn reset(&mut self) {
         self.state = State::new(&self.model);
+        self.jacobian = None;
         self.passed_on = 0;
     }
 
@@ -185,6 +190,7 @@ impl Instance {
 
     pub(crate) fn forget_values(&mut self) {
         self.state.is_observed = false;
+        self.jacobian = None;
     }
 
     /// A failure in the model's words.

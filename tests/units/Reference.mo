@@ -69,16 +69,65 @@ package Reference "The models of the Reference-FMUs, in Modelica"
     annotation(experiment(StopTime = 2, Interval = 0.1));
   end Feedthrough;
 
-  model StateSpace "x' = A x + B u"
-    parameter Real a = -1;
-    input Real u(start = 1);
-    output Real y;
-    Real x(start = 0, fixed = true);
+  model StateSpace "x' = A x + B u, y = C x + D u"
+    parameter Real A[3, 3] = [1, 0, 0; 0, 1, 0; 0, 0, 1], B[3, 3] = [1, 0, 0; 0, 1, 0; 0, 0, 1];
+    parameter Real C[3, 3] = [1, 0, 0; 0, 1, 0; 0, 0, 1], D[3, 3] = [1, 0, 0; 0, 1, 0; 0, 0, 1];
+    parameter Real x0[3] = {0, 0, 0};
+    input Real u[3](start = {1, 2, 3});
+    output Real y[3];
+    Real x[3](start = x0, each fixed = true);
   equation
-    der(x) = a*x + u;
-    y = 2*x + 3*u;
-    annotation(experiment(StopTime = 2));
+    der(x) = A*x + B*u;
+    y = C*x + D*u;
+    annotation(experiment(StopTime = 10));
   end StateSpace;
+
+  model Roberts "The reaction of Robertson"
+    output Real y1(start = 1, fixed = true, nominal = 1e-4);
+    output Real y2(start = 0, fixed = true, nominal = 1e-2);
+    output Real y3(nominal = 1e-2);
+  equation
+    der(y1) = -0.04*y1 + 1e4*y2*y3;
+    der(y2) = 0.04*y1 - 1e4*y2*y3 - 3e7*y2^2;
+    y1 + y2 + y3 = 1;
+    annotation(experiment(StartTime = 1e-5, StopTime = 100));
+  end Roberts;
+
+  function readLine
+    input String fileName;
+    input Integer lineNumber = 1;
+    output String string;
+    output Boolean endOfFile;
+    external "C" string = ModelicaInternal_readLine(fileName, lineNumber, endOfFile);
+  end readLine;
+
+  model Resource "The code of the letter in a file, which becomes part of the unit"
+    parameter String line = readLine("y.txt");
+    output Integer y = if line == "a" then 97 else 0;
+    annotation(experiment(StopTime = 1));
+  end Resource;
+
+  model Clocks "Two periodic clocks and one with a condition"
+    output Integer fast(start = 0, fixed = true), slow(start = 0, fixed = true);
+    output Integer crossed(start = 0, fixed = true);
+    Real x(start = 0, fixed = true);
+    discrete Integer a(start = 0), b(start = 0), c(start = 0);
+  equation
+    der(x) = cos(time);
+    when Clock(1, 10) then
+      a = previous(a) + 1;
+    end when;
+    when Clock(3, 10) then
+      b = previous(b) + 1;
+    end when;
+    when Clock(x > 0.5) then
+      c = previous(c) + 1;
+    end when;
+    fast = hold(a);
+    slow = hold(b);
+    crossed = hold(c);
+    annotation(experiment(StopTime = 2.95));
+  end Clocks;
 
   model Pendulum "A loop and dynamic state selection"
     parameter Real L = 1;

@@ -27,6 +27,9 @@ MODELS = [
     "Stair",
     "Feedthrough",
     "StateSpace",
+    "Roberts",
+    "Resource",
+    "Clocks",
     "Pendulum",
     "Roots",
     "Relay",
@@ -37,7 +40,7 @@ MOST = 2e-5
 
 
 def gapi(*arguments):
-    done = subprocess.run([GAPI, *map(str, arguments)], capture_output=True, text=True)
+    done = subprocess.run([GAPI, *map(str, arguments)], capture_output=True, text=True, cwd=HERE)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -5,6 +5,7 @@
 //! the simulator has made.
 
 mod errors;
+mod fmu;
 mod forked;
 mod identification;
 mod model;
@@ -38,6 +39,7 @@ fn _gapilib(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(identification::identify, module)?)?;
     module.add_class::<session::Session>()?;
     module.add_class::<model::Model>()?;
+    module.add_class::<fmu::Fmu>()?;
     module.add_class::<model::SimulationResult>()?;
     module.add_class::<simulator::Simulator>()?;
     module.add_class::<search::Optimizer>()?;

@@ -58,17 +58,23 @@ impl Model {
     /// Its parameters: dicts with unit, min, max, tunable and top_level by their names.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        for parameter in self.compiled.parameters() {
-            let dict = PyDict::new(py);
-            dict.set_item("unit", parameter.unit)?;
-            dict.set_item("min", parameter.min)?;
-            dict.set_item("max", parameter.max)?;
-            dict.set_item("tunable", parameter.tunable)?;
-            dict.set_item("top_level", parameter.top_level)?;
-            all.set_item(parameter.name, dict)?;
-        }
-        Ok(all)
+        parameters(py, &*self.compiled)
+    }
+
+    /// Writes it, with values for parameters and start values by their names, as a functional mock-up
+    /// unit of FMI 3 or 2: for model exchange ("me"), co-simulation ("cs") or both.
+    #[pyo3(signature = (path, parameters=None, *, version=3, kind="both"))]
+    fn export_fmu(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        parameters: Option<IndexMap<String, f64>>,
+        version: u8,
+        kind: &str,
+    ) -> PyResult<()> {
+        let parameters = parameters.into_iter().flatten().collect();
+        let model = (self.translated.problem.clone(), parameters);
+        crate::fmu::export(py, &self.worker, model, (version, kind), path)
     }
 
     /// The names of its top-level outputs.
@@ -202,6 +208,24 @@ impl Model {
     }
 }
 
+/// The parameters of a model: dicts with unit, min, max, tunable and top_level by their names.
+pub(crate) fn parameters<'py>(
+    py: Python<'py>,
+    model: &dyn gapilib::internals::identify::Model,
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    for parameter in model.parameters() {
+        let dict = PyDict::new(py);
+        dict.set_item("unit", parameter.unit)?;
+        dict.set_item("min", parameter.min)?;
+        dict.set_item("max", parameter.max)?;
+        dict.set_item("tunable", parameter.tunable)?;
+        dict.set_item("top_level", parameter.top_level)?;
+        all.set_item(parameter.name, dict)?;
+    }
+    Ok(all)
+}
+
 /// Simulates on the thread of the session.
 fn simulated(
     engine: &mut Engine,
@@ -228,7 +252,7 @@ fn simulated(
 }
 
 /// Removes the variables that are not selected.
-fn keep_only(table: &mut ResultTable, selected: Option<&[String]>) -> Result<(), Fault> {
+pub(crate) fn keep_only(table: &mut ResultTable, selected: Option<&[String]>) -> Result<(), Fault> {
     let Some(selected) = selected else { return Ok(()) };
     let mut kept = ResultTable { series: Vec::new(), ..ResultTable::new(table.time.clone()) };
     for name in selected.iter().filter(|name| *name != "time") {

@@ -1,6 +1,7 @@
 //! Sessions: statements, classes, models.
 
 use crate::errors::{Reported, raised, reported};
+use crate::fmu::Fmu;
 use crate::model::Model;
 use crate::values;
 use crate::worker::{Worker, written};
@@ -191,6 +192,13 @@ impl Session {
             checked(engine, model)
         })?;
         Ok(Model::new(this.worker.clone(), translated, this.threads))
+    }
+
+    /// A functional mock-up unit. It runs, in a process of its own, if the session has
+    /// `allow_external=True`; with `co_simulation` it integrates itself.
+    #[pyo3(signature = (path, *, co_simulation=false))]
+    fn fmu(slf: &Bound<'_, Self>, path: PathBuf, co_simulation: bool) -> PyResult<Fmu> {
+        Fmu::open(slf.py(), slf.get().worker.clone(), path, co_simulation)
     }
 
     /// The declarations of a command, or of a loaded class; None for what is neither.

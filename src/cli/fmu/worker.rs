@@ -17,8 +17,11 @@ use std::time::{Duration, Instant};
 pub(super) const HUNG: u8 = 124;
 /// The line after what a unit has printed for an answer: this comes by another stream.
 pub(super) const ANSWERED: &str = "gapi fmu-worker: answered";
-/// How long a call may take: initializations of large models take seconds.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// How many seconds a call may take unless the environment says otherwise: initializations of large
+/// models take seconds.
+const PATIENCE: f64 = 60.0;
+/// The environment variable that says otherwise.
+const VARIABLE: &str = "GAPILIB_FMU_CALL_SECONDS";
 /// How often calls are looked at.
 const TICK: Duration = Duration::from_millis(100);
 
@@ -54,7 +57,8 @@ fn work(arguments: &FmuWorkerArgs) -> io::Result<()> {
     std::env::set_current_dir(&working)?;
     let calls = Arc::new(CallWatch::default());
     let watched = calls.clone();
-    std::thread::spawn(move || watch(&watched));
+    let patience = patience()?;
+    std::thread::spawn(move || watch(&watched, patience));
     let mut unit = Unit::new(&arguments.folder, description, calls);
     let (mut from, mut to) = (BufReader::new(io::stdin()), BufWriter::new(to));
     static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
@@ -77,17 +81,29 @@ fn own_output() -> io::Result<File> {
     Ok(File::from(io::stdout().as_handle().try_clone_to_owned()?))
 }
 
+/// How long a call may take.
+fn patience() -> io::Result<Duration> {
+    let Some(text) = std::env::var_os(VARIABLE) else {
+        return Ok(Duration::from_secs_f64(PATIENCE));
+    };
+    let seconds = text.to_str().and_then(|text| text.trim().parse::<f64>().ok());
+    let seconds = seconds.filter(|seconds| *seconds > 0.0);
+    seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).ok_or_else(|| {
+        io::Error::other(format!("the environment variable {VARIABLE} is not a number of seconds"))
+    })
+}
+
 /// Ends the process where a call does not return.
-fn watch(calls: &CallWatch) {
+fn watch(calls: &CallWatch, patience: Duration) {
     let mut running: Option<(u64, Instant)> = None;
     loop {
         std::thread::sleep(TICK);
         running = match (calls.running(), running) {
             (Some(call), Some((before, since))) if call == before => {
-                if since.elapsed() > PATIENCE {
+                if since.elapsed() > patience {
                     terminal::eprint(&format!(
                         "a call of the FMU has not returned for {} s\n",
-                        PATIENCE.as_secs()
+                        patience.as_secs_f64()
                     ));
                     #[allow(clippy::exit, reason = "the thread that works does not come back")]
                     std::process::exit(i32::from(HUNG));

@@ -11,6 +11,7 @@ use crate::registry::BAD_OPTION;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::imported::{self, Given};
+use crate::script::models::parameter_sets;
 use crate::script::models::simulation::{self, SimulationOptions};
 use crate::script::runs::problem;
 use crate::source::Span;
@@ -36,7 +37,7 @@ pub(super) fn simulate(path: &Path, arguments: &SimulateArgs, global: &Global) -
         session.world.grant(Grant::Named(file));
     }
     session.world.grant(Grant::Read(path));
-    if let Some(file) = &arguments.input {
+    for file in [&arguments.input, &arguments.set_file].into_iter().flatten() {
         session.world.grant(Grant::Read(file));
     }
     if session::lists_permissions(&mut session, global) {
@@ -65,6 +66,9 @@ fn run(
     let mut options = SimulationOptions { only, ..options(arguments) };
     let unit = imported::import(session, path, options.method.as_deref()).map_err(one)?;
     let mut given = Given::default();
+    if let Some(path) = &arguments.set_file {
+        parameter_sets::give(session, path, (&unit, &mut given)).map_err(one)?;
+    }
     for (name, value) in &arguments.set {
         given.add(&unit, name, value).map_err(one)?;
     }

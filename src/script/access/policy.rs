@@ -213,7 +213,7 @@ pub const KINDS: &[(&str, &[&str])] = &[
     ("data", &["mat", "csv", "tsv", "txt", "dat"]),
     ("figures", &["svg", "png", "pdf", "eps"]),
     ("text and logs", &["txt", "md", "tex", "log"]),
-    ("models and scripts", &["mo", "mos"]),
+    ("models and scripts", &["mo", "mos", "fmu"]),
 ];
 
 /// Names of these kinds that other programs execute, or that stand for a library in later runs.

@@ -1,25 +1,18 @@
-//! Functional mock-up units in scripts: models written as units, and units simulated under the names
-//! with which they were imported.
+//! Commands that write models as functional mock-up units, and that import units.
 
+use super::imported_units;
 use super::{Args, Builtin, Failure, Family};
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::Fault;
 use crate::errors::BAD_ARGUMENT;
 use crate::fmi::description::Version;
 use crate::fmi::export::{Kinds, identifier};
-use crate::fmi::import::{Imported, InterfaceKind, Samples};
+use crate::fmi::import::{Imported, InterfaceKind};
 use crate::models::exported::exported;
-use crate::models::imported::{self, CO_SIMULATION, Given};
-use crate::models::simulation::{Simulated, SimulationOptions};
+use crate::models::imported::{self, CO_SIMULATION};
 use crate::name::Name;
-use crate::runs::problem::inputs_of;
-use crate::source::SourceId;
-use crate::syntax::ast::{Argument, Binding};
-use crate::syntax::{parse_class_with_modification, print};
 use crate::value::Value;
 use crate::{Dialect, Session, bail, fault};
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Dymola's commands.
 pub(super) const FAMILY: Family = Family {
@@ -41,87 +34,6 @@ pub(super) const OPENMODELICA: Family = Family {
         Builtin { header: IMPORT_FMU_OPENMODELICA, run: import_fmu_openmodelica },
     ],
 };
-
-/// Units that a script has imported, by the names under which it simulates them.
-#[derive(Default)]
-struct Units(BTreeMap<String, Arc<Imported>>);
-
-/// An imported unit with values for its variables.
-pub(super) struct ImportedUnit {
-    unit: Arc<Imported>,
-    given: Given,
-    inputs: Vec<Samples>,
-}
-
-impl ImportedUnit {
-    /// What its description says of the experiment.
-    pub(super) fn experiment(&self) -> crate::flatten::Experiment {
-        imported::experiment(&self.unit.description)
-    }
-
-    /// Gives a variable a value, which is written as text.
-    pub(super) fn set_text(&mut self, name: &str, text: &str) -> Result<(), Fault> {
-        self.given.add(&self.unit, name, text)
-    }
-
-    /// Gives a variable a value.
-    pub(super) fn set(&mut self, name: &str, value: f64) -> Result<(), Fault> {
-        self.given.set(&self.unit, name, value)
-    }
-
-    /// Lets its inputs follow the columns of a file.
-    pub(super) fn follow(&mut self, session: &mut Session, file: &str) -> Result<(), Diagnostic> {
-        self.inputs = inputs_of(session, &self.unit, Path::new(file))?.samples;
-        Ok(())
-    }
-
-    /// Simulates it.
-    pub(super) fn simulate(
-        &self,
-        session: &mut Session,
-        options: &SimulationOptions,
-    ) -> Result<Simulated, Vec<Diagnostic>> {
-        let at = session.call_site();
-        let model = imported::model(&self.unit, self.given.clone(), self.inputs.clone());
-        let done = model.and_then(|model| imported::simulate(session, &model, options));
-        done.at(at).map_err(|error| vec![error])
-    }
-}
-
-/// The unit that a problem, `Name` or `Name(modification)`, means; `None` where no unit was imported
-/// under this name.
-///
-/// # Errors
-/// Values that the unit does not take.
-pub(super) fn unit_of(
-    session: &mut Session,
-    problem: &str,
-) -> Result<Option<ImportedUnit>, Vec<Diagnostic>> {
-    let name = problem.split('(').next().unwrap_or(problem).trim();
-    let Some(unit) = session.extension::<Units>().0.get(name).cloned() else { return Ok(None) };
-    let at = session.call_site();
-    let parsed = parse_class_with_modification(SourceId::NONE, problem);
-    let (_, arguments) = parsed.map_err(|error| vec![error.or_at(at)])?;
-    let mut own = ImportedUnit { unit, given: Given::default(), inputs: Vec::new() };
-    give(&mut own, "", &arguments).at(at).map_err(|error| vec![error])?;
-    Ok(Some(own))
-}
-
-/// Gives the values of a modification.
-fn give(unit: &mut ImportedUnit, prefix: &str, arguments: &[Argument]) -> Result<(), Fault> {
-    for argument in arguments {
-        let Argument::Element(element) = argument else {
-            bail!(BAD_ARGUMENT, "nothing of `{}` can be redeclared: it is an FMU", unit.unit.file);
-        };
-        let name = format!("{prefix}{}", element.name.node);
-        let Some(modification) = &element.modification else { continue };
-        give(unit, &format!("{name}."), &modification.arguments)?;
-        if let Some(Binding::Expression(value)) = &modification.binding {
-            unit.set_text(&name, &print::expression(value))?;
-        }
-    }
-    Ok(())
-}
 
 fn version(text: &str) -> Result<Version, Fault> {
     match text {
@@ -236,7 +148,7 @@ fn import(
     let unit = imported::import(session, Path::new(file), method);
     let unit = session.or_report(unit)?;
     let name = name(&unit);
-    session.extension::<Units>().0.insert(name.clone(), unit);
+    imported_units::keep(session, name.clone(), unit);
     Some(name)
 }
 

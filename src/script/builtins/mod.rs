@@ -17,6 +17,7 @@ mod final_states;
 mod fmus;
 mod gapilib;
 mod header;
+mod imported_units;
 mod initial;
 mod inputs;
 mod installation;

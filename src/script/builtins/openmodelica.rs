@@ -1,7 +1,7 @@
 //! Models as OpenModelica's scripts handle them.
 
 use super::built_models::{self, Executable};
-use super::fmus::{self, ImportedUnit};
+use super::imported_units::{self, ImportedUnit};
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
@@ -73,7 +73,7 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
-        if let Some(unit) = fmus::unit_of(session, &class.to_string())? {
+        if let Some(unit) = imported_units::unit_of(session, &class.to_string())? {
             return run_unit(session, unit, &options, flags, (&file, &filter));
         }
         let model = driven_model(session, &class.to_string(), &flags)?;

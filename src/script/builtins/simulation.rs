@@ -1,6 +1,6 @@
 //! Translating and simulating models.
 
-use super::fmus::{self, ImportedUnit};
+use super::imported_units::{self, ImportedUnit};
 use super::methods::with_method_of_ours;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
@@ -265,7 +265,7 @@ pub(super) fn problem_in_use(session: &Session, problem: &str) -> Result<String,
 
 /// The model of a problem, translated if need be, or the unit that was imported under its name.
 fn simulable(session: &mut Session, problem: &str) -> Result<Simulable, Vec<Diagnostic>> {
-    if let Some(unit) = fmus::unit_of(session, problem)? {
+    if let Some(unit) = imported_units::unit_of(session, problem)? {
         return Ok(Simulable::Unit(unit));
     }
     let problem = problem_in_use(session, problem)?;

@@ -195,18 +195,25 @@ fn parameter(
 
 /// An input becomes a state: der(u) = rate, a parameter that is zero.
 fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Result<(), Diagnostic> {
-    if !input.dims.is_empty() {
-        return Err(array(input));
-    }
-    let zero = || Expression::new(ExpressionKind::Real(0.0), Span::NONE);
+    let unreadable = || fault!(NOT_SUPPORTED, "`{}` cannot be an input", input.name).at(input.span);
+    let filled = |value: &str| {
+        let sizes: String = input.dims.iter().map(|size| format!(", {size}")).collect();
+        let text =
+            if sizes.is_empty() { value.to_owned() } else { format!("fill({value}{sizes})") };
+        syntax::parse_expression(SourceId::NONE, &text).map_err(|_| unreadable())
+    };
     if flat.to_string().contains(&format!("der({})", input.name)) {
         return Err(reads_derivative(&input.name).at(input.span));
     }
-    let unreadable = || fault!(NOT_SUPPORTED, "`{}` cannot be an input", input.name).at(input.span);
-    let start = input.attributes.get("start").map_or_else(zero, |start| start.value.clone());
+    let start = match input.attributes.get("start").map(|start| &start.value) {
+        None => filled("0.0")?,
+        // One number for all elements.
+        Some(one) if is_number(one) => filled(&syntax::print::expression(one))?,
+        Some(all) => all.clone(),
+    };
     let (start_name, start_value) = parameter(flat, input, "start", made).ok_or_else(unreadable)?;
     let (rate_name, rate) = parameter(flat, input, "rate", made).ok_or_else(unreadable)?;
-    for (name, value) in [(&start_name, start), (&rate_name, zero())] {
+    for (name, value) in [(&start_name, start), (&rate_name, filled("0.0")?)] {
         if let Some(own) = flat.variables.get_mut(name.as_str()) {
             own.binding = Some(value);
         }
@@ -221,9 +228,20 @@ fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Resul
     let left = derivative.map_err(|_| unreadable())?;
     let kind = EquationKind::Equal { left, right: rate };
     flat.equations.push(Equation { kind, comment: Comment::default(), span: input.span });
-    made.inputs.insert(input.name.to_string(), Input::State(start_name));
-    made.rates.push((input.name.to_string(), rate_name));
+    for name in element_names(input) {
+        let of = |parameter: &str| format!("{parameter}{}", &name[input.name.len()..]);
+        made.rates.push((name.clone(), of(&rate_name)));
+        made.inputs.insert(name.clone(), Input::State(of(&start_name)));
+    }
     Ok(())
+}
+
+fn is_number(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Real(_) | ExpressionKind::Integer(_) => true,
+        ExpressionKind::Unary { operand, .. } => is_number(operand),
+        _ => false,
+    }
 }
 
 fn reads_derivative(input: &str) -> Fault {
@@ -237,7 +255,7 @@ fn reads_derivative(input: &str) -> Fault {
 fn array(input: &Variable) -> Diagnostic {
     fault!(
         NOT_SUPPORTED,
-        "the input `{}` is an array, which units do not have yet", input.name;
+        "the input `{}` is an array, and does not vary continuously", input.name;
         help: "declare an input for each element"
     )
     .at(input.span)

@@ -22,6 +22,7 @@ pub(crate) mod linearization;
 mod loading;
 mod measured_units;
 pub mod modification;
+pub mod parameter_sets;
 mod parameters;
 mod reading;
 mod resources;

@@ -524,6 +524,7 @@ fn one_thread_and_two_write_the_same_bytes() {
         "history.csv",
         "individuals.csv",
         "origin.json",
+        "parameters.ssv",
         "report.html",
         "result.json",
         "run.lock",

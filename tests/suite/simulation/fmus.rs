@@ -273,6 +273,156 @@ fn faults_of_a_unit_are_said() {
     assert!(code == 0 && !here.path().join("remaining.txt").exists(), "{out}{errors}");
 }
 
+/// A call that does not return is ended after the seconds that the environment gives it.
+#[test]
+fn a_call_that_does_not_return_is_ended() {
+    let Some(here) = with_unit(3) else { return };
+    let hang = format!("fault={HANG}");
+    let simulate = ["simulate", "unit.fmu", "--allow-external", "--set", &hang];
+    for (seconds, said) in [
+        (
+            "0.5",
+            "a call of it did not return; it printed last: a call of the FMU has not returned for 0.5 s",
+        ),
+        ("soon", "GAPILIB_FMU_CALL_SECONDS is not a number of seconds"),
+    ] {
+        let mut child = command(here.path(), &simulate);
+        let output = child.env("GAPILIB_FMU_CALL_SECONDS", seconds).output().expect("it ends");
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(1) && errors.contains(said), "{seconds}: {errors}");
+    }
+}
+
+/// The runtime of exported units, as the build has left it.
+fn runtime() -> PathBuf {
+    let here = std::env::current_exe().expect("this program");
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    here.with_file_name(format!("{prefix}gapilib_fmu{suffix}"))
+}
+
+/// What a run left, with the runtime of exported units.
+fn exporting(here: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let mut child = command(here.path(), arguments);
+    let output = child.env("GAPILIB_FMU_RUNTIME", runtime()).output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code().unwrap_or(-1), text(output.stdout), text(output.stderr))
+}
+
+const DECAY: &str = "package P model Decay parameter Real k(unit = \"1/s\") = 1; \
+                     parameter Real level = 3; output Real y = level*x; \
+                     Real x(start = 1, fixed = true); equation der(x) = -k*x; \
+                     annotation(experiment(StopTime = 1, Tolerance = 1e-9)); end Decay; end P;\n";
+
+/// Scripts of both dialects write units with the values that they have set, and simulate them.
+#[test]
+fn scripts_write_and_simulate_units() {
+    if platform(3).is_none() {
+        return;
+    }
+    let dymola = "openModel(\"P.mo\")\ntranslateModel(\"P.Decay\")\nk = 2\n\
+                  name = translateModelFMU(\"P.Decay\", fmiVersion=\"3\")\n\
+                  importFMU(name + \".fmu\")\n\
+                  simulateModel(\"P_Decay_fmu(level = 5)\", stopTime=0.5, resultFile=\"a\")\n\
+                  y = readTrajectory(\"a.mat\", {\"y\"}, readTrajectorySize(\"a.mat\"))\n\
+                  print(String(y[1, end], significantDigits=9))\n\
+                  (ok, z) = simulateExtendedModel(\"P_Decay_fmu\", stopTime=1, \
+                  initialNames={\"k\", \"x\"}, initialValues={1, 2}, finalNames={\"y\"})\n\
+                  print(String(z[1], significantDigits=9))\n\
+                  importFMU(name + \".fmu\", integrate=false, packageName=\"Own\")\n\
+                  simulateModel(\"Own.P_Decay_fmu\", stopTime=1, resultFile=\"b\")\n\
+                  linearizeModel(\"P_Decay_fmu\")\n\
+                  simulateModel(\"P_Decay_fmu(kk = 1)\")\n";
+    let here = folder(&[("P.mo", DECAY), ("s.mos", dymola)]);
+    let run = ["run", "s.mos", "--allow-external", "--out", "out"];
+    let (_, out, errors) = exporting(&here, &run);
+    let text = format!("{out}{errors}");
+    near(number_after(&text, 0), 15.0 * (-1.0f64).exp() / 3.0, 1e-6);
+    near(number_after(&text, 1), 6.0 * (-1.0f64).exp(), 1e-6);
+    assert!(text.contains("is an FMU, which is not linearized here"), "{text}");
+    assert!(text.contains("has no variable `kk`"), "{text}");
+
+    let openmodelica = "loadFile(\"P.mo\");\nfile := buildModelFMU(P.Decay, version=\"2.0\", \
+                        fmuType=\"me_cs\", fileNamePrefix=\"unit\");\n\
+                        name := importFMU(\"unit.fmu\");\nprint(name + \"\\n\");\n\
+                        simulate(P_Decay_me_FMU, stopTime=1, simflags=\"-override=k=2,x=4\");\n\
+                        print(String(val(y, 1.0)) + \"\\n\");\n";
+    fs::write(here.path().join("o.mos"), openmodelica).expect("written");
+    let run = ["run", "o.mos", "--allow-external", "--out", "own"];
+    let (_, out, errors) = exporting(&here, &run);
+    let text = format!("{out}{errors}");
+    assert!(text.contains("P_Decay_me_FMU"), "{text}");
+    near(number_after(&text, 0), 12.0 * (-2.0f64).exp(), 1e-5);
+}
+
+/// The number that stands alone in a line, the one of this number.
+fn number_after(text: &str, which: usize) -> f64 {
+    let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
+    numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
+}
+
+/// The estimates of a fit go into a unit and into a second fit by the file that the first has left.
+#[test]
+fn the_estimates_of_a_fit_are_given_away() {
+    if platform(3).is_none() {
+        return;
+    }
+    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-3 * (37.0 * t).sin());
+    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
+    let problem = "model = \"P.Decay\"\nfiles = [\"P.mo\"]\n[parameters]\n\
+                   k = { min = 0.1, max = 10 }\nlevel = { min = 0.1, max = 10 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { y = \"y\" }\n";
+    let data = format!("time,y\n{data}");
+    let here = folder(&[("P.mo", DECAY), ("p.toml", problem), ("d.csv", &data)]);
+    let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let set = fs::read_to_string(here.path().join("o/parameters.ssv")).expect("estimates");
+    let read = gapilib::internals::fmi::ParameterSet::read(&set).expect("a set");
+    let [k, level] = &read.parameters[..] else { panic!("{set}") };
+    assert_eq!((k.name.as_str(), k.unit.as_deref()), ("k", Some("1/s")));
+    let interval = k.estimate.and_then(|own| own.interval).expect("an interval");
+    assert!(interval[0] < 2.0 && 2.0 < interval[1], "{interval:?}");
+    let base = ["export-fmu", "P.mo", "--model", "P.Decay", "--set-file", "o/parameters.ssv"];
+    let (code, out, errors) = exporting(&here, &[&base[..], &["-o", "unit.fmu"]].concat());
+    assert_eq!(code, 0, "{out}{errors}");
+    assert_eq!(fs::read_to_string(here.path().join("unit.ssv")).expect("a copy"), set);
+    let all = simulated(&here, &["--tolerance", "1e-9"]);
+    let number = |own: &gapilib::internals::fmi::parameter_set::Parameter| match own.value {
+        gapilib::internals::fmi::parameter_set::ParameterValue::Number(value) => value,
+        _ => f64::NAN,
+    };
+    let (k, level) = (number(k), number(level));
+    let last = |all: &[(String, Vec<f64>)]| *column(all, "y").last().expect("a row");
+    near(last(&all), level * (-k).exp(), 1e-6);
+    let set_file = ["--set-file", "o/parameters.ssv"];
+    let model = ["simulate", "P.mo", "--model", "P.Decay", "--output", "m.csv"];
+    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
+    assert_eq!(code, 0, "{out}{errors}");
+    near(last(&columns(&here.path().join("m.csv"))), level * (-k).exp(), 1e-6);
+
+    // A second fit of another parameter with the values of the first.
+    for model in ["P.Decay\"\nfiles = [\"P.mo\"]", "unit.fmu\""] {
+        let second = format!(
+            "model = \"{model}\n[parameters]\nx = {{ min = 0.1, max = 10, initial = true }}\n\
+             [[experiment]]\ndata = \"d.csv\"\nset = \"o/parameters.ssv\"\n\
+             outputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("q.toml"), &second).expect("written");
+        let identify = ["identify", "q.toml", "--allow-external", "--out", "q"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("q/result.json")).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), 1.0, 1e-3);
+    }
+    let wrong = set.replace("unit=\"1/s\"", "unit=\"K\"");
+    fs::write(here.path().join("o/parameters.ssv"), wrong).expect("written");
+    let (code, out, errors) =
+        gapi(&here, &["identify", "q.toml", "--allow-external", "--out", "r"]);
+    assert!(code == 1 && errors.contains("`k` in `o/parameters.ssv` is in K"), "{out}{errors}");
+    let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
+    assert!(code == 1 && errors.contains("cannot be converted to 1/s"), "{out}{errors}");
+}
+
 const PROBLEM: &str = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
                        x0 = { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\n\
                        outputs = { y = \"y\" }\n";

@@ -6,7 +6,7 @@
 use gapilib::Session;
 use gapilib::internals::script::models::exported::unit;
 use gapilib::world::MemoryWorld;
-use gapilib_fmi::description::{Causality, Description, Version};
+use gapilib_fmi::description::{Causality, Description, Initial, Version};
 use gapilib_fmi::export::{FILE, Kinds};
 use libloading::{Library, Symbol};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -74,6 +74,53 @@ model Fast
   input Real u;
   output Real y = der(u);
 end Fast;
+model Bound
+  parameter Real a = 1;
+  parameter Real b = 2*a;
+  final parameter Real c = b + 1;
+  parameter Real d = c;
+  parameter Real e(fixed = false);
+  Real x(start = b, fixed = true);
+  Real z(start = 4, fixed = true);
+initial equation
+  e = 3*a;
+equation
+  der(x) = -d*x;
+  der(z) = e;
+end Bound;
+model Clocked
+  output Real y = hold(n);
+  discrete Real n(start = 0);
+equation
+  when Clock(1, 4) then
+    n = previous(n) + interval(n);
+  end when;
+end Clocked;
+model Triggered
+  Real x(start = 0, fixed = true);
+  output Integer k(start = 0, fixed = true);
+  discrete Integer n(start = 0);
+equation
+  der(x) = 1;
+  when Clock(sin(3*x) > 0.5) then
+    n = previous(n) + 1;
+  end when;
+  k = hold(n);
+end Triggered;
+model Vector
+  input Real u[3](start = {1, 2, 3});
+  input Real v[2](each start = 0.5);
+  output Real y = u[1] + 10*u[2] + 100*u[3] + v[1] - v[2];
+  Real x(start = 0, fixed = true);
+equation
+  der(x) = u[2] - v[1];
+end Vector;
+model Percent
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -1;
+  assert(x > 0.5, \"only 50 % are left: %s\", AssertionLevel.warning);
+end Percent;
 ";
 
 const BOTH: Kinds = Kinds { model_exchange: true, co_simulation: true };
@@ -551,6 +598,82 @@ fn inputs_of_every_type_are_followed() {
     assert!(own.get::<bool>("Boolean", "high"));
 }
 
+/// A parameter that follows from others cannot be set, and changes with them; so does a start value.
+#[test]
+fn what_follows_from_parameters_is_calculated() {
+    let unit = export("Bound", Version::V3).unwrap();
+    let part = |name: &str| {
+        let own = unit.description.find(name).unwrap();
+        (own.causality, own.initial)
+    };
+    let calculated = (Causality::CalculatedParameter, Some(Initial::Calculated));
+    assert_eq!(part("a"), (Causality::Parameter, Some(Initial::Exact)));
+    assert_eq!(["b", "c", "d", "e"].map(part), [calculated; 4]);
+    assert_eq!(part("x"), (Causality::Local, Some(Initial::Calculated)));
+    assert_eq!(part("z"), (Causality::Local, Some(Initial::Exact)));
+    let unknowns = &unit.description.structure.initial_unknowns;
+    for name in ["b", "c", "d", "e", "x"] {
+        let place = unit.description.variables.iter().position(|own| own.name == name);
+        assert!(unknowns.iter().any(|own| Some(own.variable) == place), "{name}");
+    }
+    let own = Instance::new(&unit, true);
+    own.set("Float64", "a", 3.0);
+    assert_eq!(own.try_set("Float64", own.reference("b"), 5.0), 3);
+    own.begin();
+    assert_eq!(
+        ["b", "c", "d", "e", "x"].map(|name| own.get::<f64>("Float64", name)),
+        [6.0, 7.0, 7.0, 9.0, 6.0]
+    );
+    own.plain("fmi3ExitInitializationMode");
+    own.step(0.0, 0.5);
+    close(own.get("Float64", "x"), 6.0 * (-3.5f64).exp(), 1e-7);
+    close(own.get("Float64", "z"), 8.5, 1e-7);
+}
+
+/// Periodic clocks tick at announced times, whatever the start time is; clocks of a condition at events.
+#[test]
+fn clocks_of_a_model_tick_in_its_unit() {
+    let unit = export("Clocked", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    for (step, ticks) in [(1, 1), (2, 2), (3, 3), (4, 4), (5, 5), (6, 5), (7, 6)] {
+        own.step(0.2 * f64::from(step - 1), 0.2);
+        // The first tick, at the start, adds the interval, too.
+        close(own.get("Float64", "y"), 0.25 * f64::from(ticks), 1e-12);
+    }
+    let exchange = Instance::new(&unit, false);
+    exchange.initialize();
+    let next = exchange.update().next;
+    assert_eq!(next, Some(0.25));
+
+    let unit = export("Triggered", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    // sin(3 t) rises through 0.5 at t = (pi/6 + 2 pi n)/3.
+    for step in 0..50 {
+        own.step(0.2 * f64::from(step), 0.2);
+        let t = 0.2 * f64::from(step + 1);
+        let rises = ((3.0 * t - std::f64::consts::FRAC_PI_6) / std::f64::consts::TAU).floor() + 1.0;
+        assert_eq!(own.get::<i64>("Int64", "k"), rises as i64, "{t}");
+    }
+}
+
+#[test]
+fn elements_of_array_inputs_are_inputs() {
+    let unit = export("Vector", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.begin();
+    assert_eq!(own.get::<f64>("Float64", "y"), 321.0);
+    own.set("Float64", "u[3]", 0.25);
+    own.set("Float64", "v[2]", 2.5);
+    assert_eq!(own.get::<f64>("Float64", "y"), 44.0);
+    own.plain("fmi3ExitInitializationMode");
+    own.step(0.0, 1.0);
+    close(own.get("Float64", "x"), 1.5, 1e-7);
+    assert_eq!(own.derivative("y", "u[2]", false), 10.0);
+    assert_eq!(own.derivative("der(x)", "v[1]", true), -1.0);
+}
+
 #[test]
 fn derivatives_through_a_loop_are_exact() {
     let unit = export("Loop", Version::V3).unwrap();
@@ -598,9 +721,59 @@ fn a_unit_has_the_same_bytes_again_and_no_path() {
     assert!(!content.contains("Classes.mo"));
 }
 
-/// `fmi2CallbackFunctions` without functions.
+/// `fmi2CallbackFunctions`, with the logger at most.
 #[repr(C)]
 struct Callbacks([*mut c_void; 5]);
+
+static FORMATS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// The messages of FMI 2.0 are formats: what an importer in C hands to `printf`.
+unsafe extern "C" fn note_format(
+    _: *mut c_void,
+    _: *const c_char,
+    _: c_int,
+    _: *const c_char,
+    format: *const c_char,
+) {
+    let format = unsafe { CStr::from_ptr(format) }.to_string_lossy().into_owned();
+    FORMATS.lock().unwrap().push(format);
+}
+
+#[test]
+fn messages_of_fmi_2_are_formats_without_arguments() {
+    type Instantiate = unsafe extern "C" fn(
+        *const c_char,
+        c_int,
+        *const c_char,
+        *const c_char,
+        *const Callbacks,
+        c_int,
+        c_int,
+    ) -> *mut c_void;
+    type Setup = unsafe extern "C" fn(*mut c_void, c_int, f64, f64, c_int, f64) -> c_int;
+    type Step = unsafe extern "C" fn(*mut c_void, f64, f64, c_int) -> c_int;
+    let unit = export("Percent", Version::V2).unwrap();
+    let text = |text: &str| CString::new(text).unwrap();
+    let (token, resources) =
+        (text(&unit.description.token), text(unit.folder.path().to_str().unwrap()));
+    let nothing = std::ptr::null_mut();
+    let callbacks = Callbacks([note_format as *mut c_void, nothing, nothing, nothing, nothing]);
+    let instantiate: Symbol<Instantiate> = function("fmi2Instantiate");
+    let (setup, step): (Symbol<Setup>, Symbol<Step>) =
+        (function("fmi2SetupExperiment"), function("fmi2DoStep"));
+    unsafe {
+        let (token, resources) = (token.as_ptr(), resources.as_ptr());
+        let one = instantiate(c"one".as_ptr(), 1, token, resources, &raw const callbacks, 0, 1);
+        assert_eq!(setup(one, 1, 1e-6, 0.0, 0, 0.0), 0);
+        for name in ["fmi2EnterInitializationMode", "fmi2ExitInitializationMode"] {
+            assert_eq!(function::<Plain>(name)(one), 0, "{name}");
+        }
+        assert_eq!(step(one, 0.0, 0.8, 1), 0);
+        function::<unsafe extern "C" fn(*mut c_void)>("fmi2FreeInstance")(one);
+    }
+    let formats = FORMATS.lock().unwrap().join("\n");
+    assert!(formats.contains("only 50 %% are left: %%s"), "{formats}");
+}
 
 #[test]
 fn the_functions_of_fmi_2_simulate_as_well() {

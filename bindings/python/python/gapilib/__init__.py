@@ -12,12 +12,13 @@ models natively.
 """
 
 from . import ga
-from ._gapilib import GapilibError, Model, Session, SimulationResult, Simulator, __version__
+from ._gapilib import Fmu, GapilibError, Model, Session, SimulationResult, Simulator, __version__
 from ._run import run
 from ._solution import Figure, Solution, identify
 
 __all__ = [
     "Figure",
+    "Fmu",
     "GapilibError",
     "Model",
     "Session",

@@ -95,6 +95,7 @@ class Session:
     def check(self, name: str) -> List[Dict[str, Any]]: ...
     def flatten(self, name: str) -> str: ...
     def model(self, name: str) -> Model: ...
+    def fmu(self, path: _Path, *, co_simulation: bool = False) -> Fmu: ...
     def allow_read(self, path: _Path) -> None: ...
     def complete(self, beginning: str) -> List[str]: ...
     def help(self, name: str) -> Optional[str]: ...
@@ -145,6 +146,39 @@ class Model:
         tolerance: Optional[float] = None,
         threads: Optional[int] = None,
     ) -> Simulator: ...
+
+    def export_fmu(
+        self,
+        path: _Path,
+        parameters: Optional[Mapping[str, float]] = None,
+        *,
+        version: int = 3,
+        kind: str = "both",
+    ) -> None: ...
+
+@final
+class Fmu:
+    @property
+    def name(self) -> str: ...
+    @property
+    def parameters(self) -> Dict[str, Dict[str, Any]]: ...
+    @property
+    def outputs(self) -> List[str]: ...
+    @property
+    def names(self) -> List[str]: ...
+    def simulate(
+        self,
+        parameters: Optional[Mapping[str, float]] = None,
+        *,
+        start: Optional[float] = None,
+        stop: Optional[float] = None,
+        intervals: Optional[int] = None,
+        interval: Optional[float] = None,
+        tolerance: Optional[float] = None,
+        method: Optional[str] = None,
+        variables: Optional[Sequence[str]] = None,
+        inputs: Optional[_Path] = None,
+    ) -> SimulationResult: ...
 
 @final
 class SimulationResult:

@@ -10,7 +10,7 @@ use super::file::{ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::inputs::Undecided;
 use super::operators::{self, Named};
 use super::segments::Segment;
-use super::{experiment, imported, own_fitness};
+use super::{experiment, imported, own_fitness, set_file};
 use crate::Session;
 use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
@@ -86,6 +86,9 @@ pub(super) fn build(
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_models(session, file, &folder)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
+    for entry in &mut file.experiment {
+        set_file::read(session, entry, &folder, &mut origins).map_err(one)?;
+    }
     let file = &*file;
     let unit = imported::unit(session, file, &folder)?;
     if unit.is_none() {
@@ -199,6 +202,7 @@ fn experiments(
             Some(unit) => imported::build(&source, (session, unit), notes).map_err(|e| vec![e])?,
             None => source.build(session, notes)?,
         };
+        set_file::check(entry, &*built.experiment.model).map_err(one)?;
         all.noise = all.noise.max(built.error);
         if let Some(program) = &built.program {
             all.calibration.get_or_insert_with(|| Calibration::of(file, program));

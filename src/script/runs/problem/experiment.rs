@@ -501,7 +501,7 @@ fn drive(
     (x_name, x): (&str, &[f64]),
     enclosing: &mut EnclosingClass,
 ) -> bool {
-    let is_bound = entry.inputs.contains_key(x_name) || entry.set.contains_key(x_name);
+    let is_bound = entry.inputs.contains_key(x_name) || entry.set.values.contains_key(x_name);
     if is_bound || !static_curve::is_open_input(flat, x_name) {
         return false;
     }

@@ -115,7 +115,7 @@ pub(super) struct ExperimentEntry {
     pub(crate) input_time: Option<String>,
     /// Values of parameters in this experiment.
     #[serde(default)]
-    pub set: IndexMap<String, ValueEntry>,
+    pub set: SetEntry,
     /// Initial values of states in this experiment.
     #[serde(default)]
     pub start: IndexMap<String, ValueEntry>,
@@ -140,6 +140,15 @@ pub(super) struct ExperimentEntry {
     /// Where its entries are written.
     #[serde(skip)]
     pub places: ExperimentPlaces,
+}
+
+/// Values of parameters: a table, or the name of a file of SSP, whose values are read into it.
+#[derive(Debug, Default)]
+pub(super) struct SetEntry {
+    pub file: Option<PathBuf>,
+    pub values: IndexMap<String, ValueEntry>,
+    /// The units in which the values of the file are.
+    pub units: IndexMap<String, String>,
 }
 
 /// The weight of a series.

@@ -3,9 +3,10 @@
 
 use super::file::{
     BandsEntry, Column, ColumnEntry, DelayEntry, FitnessEntry, OneOrMany, OperatorEntry,
-    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry, SigmaEntry,
+    ParameterEntry, ParameterTable, PriorEntry, PriorNumbers, SegmentsEntry, SetEntry, SigmaEntry,
     ValueEntry, WeightEntry,
 };
+use indexmap::IndexMap;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -217,5 +218,17 @@ in_forms!(
             "a number, the `weight` of the whole series; for points of different precision, name \
              a column of standard deviations, `sigma = \"s\"`",
         )
+    }
+);
+
+in_forms!(
+    SetEntry,
+    Forms {
+        text: Some(|file: String| SetEntry { file: Some(file.into()), ..SetEntry::default() }),
+        table: Some(|values: IndexMap<String, ValueEntry>| SetEntry {
+            values,
+            ..SetEntry::default()
+        }),
+        ..Forms::new("a table of parameters with their values, or the name of a file `.ssv`")
     }
 );

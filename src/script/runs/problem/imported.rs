@@ -162,7 +162,7 @@ fn values(
             }
         }
     }
-    for (name, value) in entry.set.iter().chain(&entry.start) {
+    for (name, value) in entry.set.values.iter().chain(&entry.start) {
         let place = entry.places.value(name);
         if file.parameters.contains_key(name) {
             let fault = fault!(BAD_OPTION, "`{name}` is set both in {label} and in `[parameters]`";

@@ -40,6 +40,7 @@ mod search;
 mod searches;
 mod segments;
 mod series;
+mod set_file;
 mod shards;
 mod sigma;
 mod time_axis;
@@ -47,9 +48,11 @@ mod time_axis;
 use super::checkpoint::{self, Checkpoint, keep_old};
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
+use crate::fmi::ParameterSet;
+use crate::fmi::parameter_set::{Estimate, Parameter, ParameterValue};
 use crate::identify::problem::{
     self as solving, EndingKind, Importance, ModelSimulator, Origins, Run, Simulate, Solution,
-    SolvedSeries,
+    SolvedParameter, SolvedSeries,
 };
 use crate::identify::ranks::{Ranks, Traffic};
 use crate::models::imported::{is_unit, note_messages};
@@ -626,6 +629,7 @@ fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String
     ]
     .map(|(name, text)| (name.to_owned(), text))
     .into();
+    files.push(("parameters.ssv".to_owned(), parameter_set(solution).to_xml()));
     // A unit is not a class that others could extend.
     if !is_unit(Path::new(&solution.subject.model)) {
         files.push(("Calibrated.mo".to_owned(), solution.modelica()));
@@ -641,6 +645,20 @@ fn files_of(session: &Session, solution: &Solution, seconds: f64) -> Vec<(String
         files.push(("searches.csv".to_owned(), solution.searches_csv()));
     }
     files
+}
+
+/// The estimates that all experiments share, with their intervals, as a file of SSP.
+fn parameter_set(solution: &Solution) -> ParameterSet {
+    let shared = solution.parameters.iter().filter(|own| !own.name.contains('@'));
+    let parameter = |own: &SolvedParameter| Parameter {
+        name: own.name.clone(),
+        value: ParameterValue::Number(own.value),
+        unit: Some(own.unit.clone()).filter(|unit| !unit.is_empty()),
+        estimate: (own.interval.is_some() || own.deviation.is_some())
+            .then_some(Estimate { interval: own.interval, deviation: own.deviation }),
+    };
+    let name = solution.subject.title.clone();
+    ParameterSet { name, parameters: shared.map(parameter).collect() }
 }
 
 /// A file of an earlier run that this one does not write.

@@ -144,7 +144,7 @@ impl Setting<'_> {
     /// The values that the experiment itself sets.
     fn values(&self, enclosing: &mut EnclosingClass) -> Result<(), Diagnostic> {
         let (entry, parameters) = (self.entry, &self.file.parameters);
-        for (name, value) in &entry.set {
+        for (name, value) in &entry.set.values {
             let place = entry.places.value(name);
             if parameters.contains_key(name) {
                 let experiment = self.label;
@@ -214,7 +214,7 @@ pub(super) fn check_taken(
         let value = parameter.fixed.filter(|_| is_value)?;
         Some((name, value, file.places.parameter(name)))
     });
-    let set = entry.set.iter().map(|(name, value)| (name, *value, entry.places.value(name)));
+    let set = entry.set.values.iter().map(|(name, value)| (name, *value, entry.places.value(name)));
     for (name, value, place) in fixed.chain(set) {
         let requested = match value {
             ValueEntry::Number(number) => number,

@@ -3,8 +3,10 @@
 
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
-use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
 use toml::Spanned;
 
 /// The places of a file.
@@ -95,9 +97,35 @@ struct Experiment {
     #[serde(default)]
     inputs: Named,
     #[serde(default)]
-    set: Named,
+    set: Set,
     #[serde(default)]
     start: Named,
+}
+
+/// The values of a table; none where a file is named.
+#[derive(Debug, Default)]
+struct Set(Named);
+
+impl<'de> Deserialize<'de> for Set {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Set, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Set;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a table, or the name of a file")
+            }
+
+            fn visit_str<E>(self, _: &str) -> Result<Set, E> {
+                Ok(Set::default())
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<Set, A::Error> {
+                Named::deserialize(MapAccessDeserializer::new(entries)).map(Set)
+            }
+        }
+        reader.deserialize_any(Either)
+    }
 }
 
 /// The places in a text that has been read as a problem: what could be read once can be read again.
@@ -130,7 +158,7 @@ pub(super) fn places(source: SourceId, text: &str) -> Places {
         data: of(&experiment.data),
         x: of(&experiment.x),
         columns: all(&experiment.outputs, &experiment.inputs),
-        values: all(&experiment.set, &experiment.start),
+        values: all(&experiment.set.0, &experiment.start),
     });
     let tied = parameters
         .iter()
