@@ -156,7 +156,8 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
     for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
         session.world.grant(Grant::Named(file));
     }
-    for file in [&arguments.from, &arguments.input].into_iter().flatten() {
+    let read = [&arguments.from, &arguments.input, &arguments.set_file];
+    for file in read.into_iter().flatten() {
         session.world.grant(Grant::Read(file));
     }
     if session::lists_permissions(&mut session, global) {
