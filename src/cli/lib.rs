@@ -70,6 +70,7 @@ mod teach;
 mod teach_screen;
 mod terminal;
 mod test;
+mod thread_time;
 mod translations;
 mod verify;
 mod world;

@@ -1,9 +1,10 @@
 //! Many cases on few threads, each within its time.
 
+use super::thread_time::ThreadTime;
 use crate::script::models::verification::Stage;
 use crate::script::with_stack;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, mpsc};
+use std::sync::{Arc, Mutex, OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,11 +14,19 @@ const STACK: usize = 128 << 20;
 /// Waiting time for a case that was asked to end, before the next one begins.
 const GRACE: Duration = Duration::from_secs(5);
 
+/// How often the time of a case is looked at.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A case that waits instead of working ends after so many times its limit.
+const WAITING: u32 = 10;
+
 /// Who works on a case, and how far the work is.
 #[derive(Default)]
 pub(super) struct Watch {
-    /// The stages entered and when, seconds after the beginning.
-    entered: Mutex<Vec<(Stage, Instant)>>,
+    /// The time of the thread that works.
+    time: OnceLock<ThreadTime>,
+    /// The stages entered, and the time of the thread then.
+    entered: Mutex<Vec<(Stage, Duration)>>,
     /// Whether the work is cancelled.
     pub cancel: Arc<AtomicBool>,
 }
@@ -35,7 +44,13 @@ pub(super) enum Ended<T> {
 impl Watch {
     /// Notes that a stage begins now.
     pub(super) fn enter(&self, stage: Stage) {
-        self.entered.lock().expect("no panic under the lock").push((stage, Instant::now()));
+        let now = self.elapsed();
+        self.entered.lock().expect("no panic under the lock").push((stage, now));
+    }
+
+    /// The time that the work has taken.
+    fn elapsed(&self) -> Duration {
+        self.time.get().map_or(Duration::ZERO, ThreadTime::elapsed)
     }
 
     /// The stage that the work is in.
@@ -47,7 +62,7 @@ impl Watch {
     pub(super) fn seconds(&self, from: Stage, to: Stage) -> Option<f64> {
         let entered = self.entered.lock().expect("no panic under the lock");
         let begin = |sought| Some(entered.iter().find(|(stage, _)| *stage == sought)?.1);
-        Some(begin(to)?.duration_since(begin(from)?).as_secs_f64())
+        Some(begin(to)?.saturating_sub(begin(from)?).as_secs_f64())
     }
 }
 
@@ -87,6 +102,7 @@ fn within<T: Send + 'static>(
     let (sender, receiver) = mpsc::channel();
     let shared = watch.clone();
     let worker = move || {
+        shared.time.get_or_init(ThreadTime::of_this_thread);
         let result = with_stack(STACK - (4 << 20), || job(&shared));
         // The receiver is gone if it took too long.
         let _ = sender.send(result);
@@ -94,14 +110,18 @@ fn within<T: Send + 'static>(
     if thread::Builder::new().stack_size(STACK).spawn(worker).is_err() {
         return Ended::Panicked;
     }
-    match receiver.recv_timeout(budget) {
-        Ok(result) => Ended::Done(result),
-        Err(mpsc::RecvTimeoutError::Disconnected) => Ended::Panicked,
-        Err(mpsc::RecvTimeoutError::Timeout) => {
+    let began = Instant::now();
+    loop {
+        match receiver.recv_timeout(LOOK.min(budget)) {
+            Ok(result) => return Ended::Done(result),
+            Err(mpsc::RecvTimeoutError::Disconnected) => return Ended::Panicked,
+            Err(mpsc::RecvTimeoutError::Timeout) => {}
+        }
+        if watch.elapsed() >= budget || began.elapsed() >= WAITING * budget {
             watch.cancel.store(true, Ordering::Relaxed);
             // What cannot be asked to end is left alone.
             let _ = receiver.recv_timeout(GRACE);
-            Ended::TimedOut
+            return Ended::TimedOut;
         }
     }
 }

@@ -37,8 +37,9 @@ impl Case {
 /// All cases below a folder whose models' names contain a text, by name. The classes are those
 /// that files with underscores may be named after.
 pub(super) fn find(root: &Path, filter: Option<&str>, classes: Classes) -> io::Result<Vec<Case>> {
-    let mut cases = Vec::new();
-    collect(root, &mut Vec::new(), &mut cases)?;
+    let mut folders = Folders::default();
+    folders.collect(root)?;
+    let mut cases = folders.cases;
     for name in list_named(root)? {
         let Some(flat) = name.strip_suffix(".txt") else { continue };
         let path = root.join(&name);
@@ -78,20 +79,35 @@ fn class_of(classes: Classes, flat: &str) -> Option<Name> {
     None
 }
 
-fn collect(folder: &Path, parts: &mut Vec<String>, cases: &mut Vec<Case>) -> io::Result<()> {
-    cases.extend(case(folder, parts));
-    if parts.len() == MAX_DEPTH {
-        return Ok(());
-    }
-    for name in list_named(folder)? {
-        let path = folder.join(&name);
-        if path.is_dir() && !path.is_symlink() && !name.starts_with('.') {
-            parts.push(name);
-            collect(&path, parts, cases)?;
-            parts.pop();
+/// The cases in folders below a collection.
+#[derive(Default)]
+struct Folders {
+    cases: Vec<Case>,
+    /// The names of the folders from the collection to the one at hand.
+    parts: Vec<String>,
+    /// Where links on this way lead: a link back is not followed.
+    above: Vec<PathBuf>,
+}
+
+impl Folders {
+    fn collect(&mut self, folder: &Path) -> io::Result<()> {
+        self.cases.extend(case(folder, &self.parts));
+        let real = folder.canonicalize()?;
+        if self.parts.len() == MAX_DEPTH || self.above.contains(&real) {
+            return Ok(());
         }
+        self.above.push(real);
+        for name in list_named(folder)? {
+            let path = folder.join(&name);
+            if path.is_dir() && !name.starts_with('.') {
+                self.parts.push(name);
+                self.collect(&path)?;
+                self.parts.pop();
+            }
+        }
+        self.above.pop();
+        Ok(())
     }
-    Ok(())
 }
 
 fn case(folder: &Path, parts: &[String]) -> Option<Case> {
@@ -127,6 +143,22 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert_eq!(found[0].model, "A.B_C.D");
         assert!(found[0].is_sampled());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_to_folders_are_followed_but_not_back() {
+        let root = tempfile::tempdir().unwrap();
+        let (elsewhere, links) = (root.path().join("elsewhere/Decay"), root.path().join("links"));
+        fs::create_dir_all(&elsewhere).unwrap();
+        fs::create_dir_all(&links).unwrap();
+        fs::write(elsewhere.join("Decay.csv"), "time,x\n0,1\n").unwrap();
+        let link = std::os::unix::fs::symlink::<&Path, PathBuf>;
+        link(&elsewhere, links.join("Decay")).unwrap();
+        link(&links, links.join("Back")).unwrap();
+        let found = find(&links, None, &|_: &Name| Vec::new()).unwrap();
+        let models: Vec<&str> = found.iter().map(|case| &*case.model).collect();
+        assert_eq!(models, ["Decay"]);
     }
 
     #[test]

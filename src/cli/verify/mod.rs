@@ -53,7 +53,8 @@ pub(crate) struct VerifyArgs {
     /// Half width and half height of the tubes, relative to the range of the reference
     #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
     pub tolerance: f64,
-    /// Time limit per case in seconds
+    /// Limit per case in seconds of CPU time, where the system tells that of a thread (Linux), so that
+    /// other work on the machine does not count; else in seconds
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     pub budget: f64,
     /// Number of threads [default: all cores]
@@ -88,6 +89,10 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    if cases.is_empty() {
+        terminal::eprint(&no_cases(references, filter));
+        return ExitCode::FAILURE;
+    }
     let rows = run(&mut session, &cases, arguments, global);
     session.print(&report::table(&rows));
     for path in &arguments.output {
@@ -98,6 +103,15 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
     }
     let all_good = rows.iter().all(|row| row.outcome.is_good());
     if all_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn no_cases(references: &Path, filter: Option<&str>) -> String {
+    let named = filter.map_or(String::new(), |text| format!(" whose name contains `{text}`"));
+    format!(
+        "error: `{}` has no case{named}\n  = help: a case is a folder NAME with NAME.csv, or a file \
+         Library_Examples_Model.txt with `time=[…]`, for a class of a library that is loaded\n",
+        references.display()
+    )
 }
 
 /// Loads the libraries that the collection is about, if they are found by name: what a folder or a

@@ -14,9 +14,9 @@ pub(super) struct Row {
     /// What became of it.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// Seconds from the class to the program, if it got there.
+    /// Seconds (CPU time where known) from the class to the program, if it got there.
     pub(crate) compile_seconds: Option<f64>,
-    /// Seconds of the simulation, if it got to its end.
+    /// Seconds (the same) of the simulation, if it got to its end.
     pub(crate) simulate_seconds: Option<f64>,
 }
 
