@@ -275,7 +275,7 @@ impl Compilation {
         let crossings_vary_in_time = depend_on_time(pool, &needed, &differences);
         let crossings =
             compile_continuous(pool, registers, sequence, &differences, Hoisting::Total);
-        let rates = oscillations(pool, causalized, &needed, &differences);
+        let rates = oscillations(pool, causalized, &differences);
         let oscillations = compile_outputs(pool, registers, &[], &rates);
         let time_rests = time_rests.tape;
         let switching = Switching {

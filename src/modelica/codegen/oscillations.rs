@@ -1,7 +1,7 @@
 //! How fast crossing functions oscillate in time by themselves: the rates at which the arguments of
 //! sin, cos and tan in them change. Steps, which are as long as the states allow, do not tell.
 
-use crate::causalize::{Assignment, CausalizedDae};
+use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::codegen::event_code::changes_at_events_only;
 use crate::symbolic::{Expr, Node, Pool, Substitution, VarId, derivative};
 use indexmap::IndexSet;
@@ -11,19 +11,18 @@ const TIME: VarId = VarId(0);
 /// More arguments are not looked at: sources of one model share a few frequencies.
 const MOST_ARGUMENTS: usize = 200;
 
-/// The rates, in radians per second, of time and of what changes at events only. `needed` are the
-/// assignments that the functions need.
+/// The rates, in radians per second, of time and of what changes at events only; also those that the
+/// functions follow as unknowns of loops do.
 pub(super) fn oscillations(
     pool: &mut Pool,
     causalized: &CausalizedDae,
-    needed: &[Assignment],
     functions: &[Expr],
 ) -> Vec<Expr> {
-    let values: Vec<Expr> =
-        needed.iter().map(|a| a.value).chain(functions.iter().copied()).collect();
-    let arguments = arguments(pool, &values);
+    let (needed, residuals) = with_loops(pool, causalized, functions);
+    let values = needed.iter().map(|a| a.value).chain(functions.iter().copied()).chain(residuals);
+    let arguments = arguments(pool, &values.collect::<Vec<Expr>>());
     let mut by_time: FxHashMap<VarId, Expr> = FxHashMap::default();
-    for assignment in dependencies(pool, needed, &arguments) {
+    for assignment in dependencies(pool, &needed, &arguments) {
         if let Some(value) = in_time(pool, causalized, &by_time, assignment.value) {
             by_time.insert(assignment.variable, value);
         }
@@ -37,6 +36,32 @@ pub(super) fn oscillations(
         }
     }
     rates.into_iter().collect()
+}
+
+/// The assignments that functions need, in order, and the residuals of the loops among them.
+fn with_loops(
+    pool: &Pool,
+    causalized: &CausalizedDae,
+    functions: &[Expr],
+) -> (Vec<Assignment>, Vec<Expr>) {
+    let mut read: FxHashSet<VarId> = FxHashSet::default();
+    pool.visit_variables(functions, |v| read.extend([v]));
+    let (mut needed, mut residuals) = (Vec::new(), Vec::new());
+    for block in causalized.blocks.iter().rev() {
+        let iteration: &[VarId] = match block {
+            Block::Loop(torn) => &torn.iteration,
+            Block::Assignment(_) | Block::Linear(_) => &[],
+        };
+        let mut solved = iteration.iter().chain(block.assignments().iter().map(|a| &a.variable));
+        if solved.any(|v| read.contains(v)) {
+            let values = block.assignments().iter().map(|a| a.value).chain(block.residuals());
+            pool.visit_variables(&values.collect::<Vec<Expr>>(), |v| read.extend([v]));
+            needed.extend(block.assignments().iter().rev());
+            residuals.extend(block.residuals());
+        }
+    }
+    needed.reverse();
+    (needed, residuals)
 }
 
 /// The arguments of trigonometric functions.

@@ -58,6 +58,8 @@ pub(crate) struct CrossingSearch {
     is_near: Vec<bool>,
     /// Steps in a row at whose ends a function had another sign within its margin, and has grown.
     lasting: Vec<u32>,
+    /// Whether loops are solved for them where a step is searched, if they have a solution there.
+    pub(super) solves_loops: bool,
     perturbed: Vec<f64>,
     /// The functions before `left`, and when; none after an event.
     earlier: Vec<f64>,
@@ -89,6 +91,24 @@ fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64
     let t = 0.5 * (a + b - second / curvature);
     let z = left + second * (t - a) + curvature * (t - a) * (t - b);
     (t > a && t < b && z.is_finite()).then_some((t, z))
+}
+
+/// The crossing functions at (t, y), with loops solved for them if that is asked for and possible.
+fn functions(
+    problem: &mut Problem,
+    solves_loops: bool,
+    (t, y): (f64, &[f64]),
+    out: &mut [f64],
+) -> Result<(), Failure> {
+    if solves_loops && problem.system.n_algebraic() > problem.system.n_auxiliary() {
+        problem.system.solve_loops(true);
+        let solved = problem.system.crossings(t, y, out);
+        problem.system.solve_loops(false);
+        if solved.is_ok() {
+            return solved;
+        }
+    }
+    problem.system.crossings(t, y, out)
 }
 
 pub fn sign(z: f64) -> i8 {
@@ -176,7 +196,7 @@ impl CrossingSearch {
             return Ok(None);
         }
         let end = b;
-        problem.system.crossings(b, y, &mut self.right)?;
+        functions(problem, self.solves_loops, (b, y), &mut self.right)?;
         self.is_near.fill(true);
         self.note_lasting();
         // Also before a change of sign at b: another function may have turned twice until there.
@@ -236,7 +256,7 @@ impl CrossingSearch {
             let t = if t > a && t < b && !is_slow { t } else { 0.5 * (a + b) };
             lengths = [b - a, if is_slow { f64::INFINITY } else { lengths[0] }];
             integrator.interpolate(t, y);
-            problem.system.crossings(t, y, &mut self.trial)?;
+            functions(problem, self.solves_loops, (t, y), &mut self.trial)?;
             let end = if self.changed(&self.trial) {
                 outside = Some(std::mem::replace(&mut b, t));
                 &mut self.right
@@ -328,7 +348,7 @@ impl CrossingSearch {
             return Ok(None);
         };
         integrator.interpolate(vertex, y);
-        problem.system.crossings(vertex, y, &mut self.trial)?;
+        functions(problem, self.solves_loops, (vertex, y), &mut self.trial)?;
         if self.changed(&self.trial) {
             std::mem::swap(&mut self.right, &mut self.trial);
             return Ok(Some(vertex));
@@ -356,7 +376,7 @@ impl CrossingSearch {
         let mut distance = 0.5 * (b - a);
         for point in 0..MOST_POINTS {
             integrator.interpolate(a + distance, y);
-            problem.system.crossings(a + distance, y, &mut self.trial)?;
+            functions(problem, self.solves_loops, (a + distance, y), &mut self.trial)?;
             if self.changed(&self.trial) {
                 std::mem::swap(&mut self.right, &mut self.trial);
                 return Ok(Some(a + distance));
