@@ -6,7 +6,8 @@
 //! up to 6     the same factors without a workspace where no pivot is small
 //! singular    A S V = W with orthogonal columns wⱼ; x = S Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
 //!             zero, less its part in the null space, which the other S vⱼ span: of all solutions
-//!             the one of least norm; S makes the largest entry of every column of A one
+//!             the one nearest to given values (zero unless there are any), from which x and b are
+//!             counted; S makes the largest entry of every column of A one
 //! ```
 //!
 //! A singular system without a solution fails, unless its pivots are more than rounding errors:
@@ -54,6 +55,8 @@ pub(crate) struct LinearSystem {
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
     right: Vec<f64>,
+    /// The right side less what the values below make of it.
+    rest: Vec<f64>,
     x: Vec<f64>,
     is_singular: bool,
     /// Whether the last solution was one of many.
@@ -65,6 +68,8 @@ pub(crate) struct LinearSystem {
     w: Vec<f64>,
     /// An orthonormal basis of the null space of A, one vector after the other.
     null: Vec<f64>,
+    /// The values to which one of many solutions is nearest.
+    near: Vec<f64>,
 }
 
 impl LinearSystem {
@@ -79,6 +84,7 @@ impl LinearSystem {
             row_scale: vec![1.0; n],
             column_scale: vec![1.0; n],
             right: vec![0.0; n],
+            rest: vec![0.0; n],
             x: vec![0.0; n],
             is_singular: false,
             is_one_of_many: false,
@@ -86,6 +92,14 @@ impl LinearSystem {
             v: square.clone(),
             w: square,
             null: Vec::new(),
+            near: vec![0.0; n],
+        }
+    }
+
+    /// From here on, one of many solutions is that nearest to these values.
+    pub(crate) fn prefer(&mut self, values: impl Iterator<Item = f64>) {
+        for (near, value) in self.near.iter_mut().zip(values) {
+            *near = if value.is_finite() { value } else { 0.0 };
         }
     }
 
@@ -288,11 +302,18 @@ impl LinearSystem {
         (0..n).filter(|i| null.iter().any(|v| v[*i].abs() > SMALLEST_PART)).collect()
     }
 
-    /// Replaces the scaled b in x by the smallest solution.
+    /// Replaces the scaled b in x by the solution nearest to the values preferred; a derivative by the
+    /// smallest one.
     fn solve_singular(&mut self, is_derivative: bool) -> Result<(), NoSolution> {
         let n = self.n;
-        let b = &mut self.right;
-        b.copy_from_slice(&self.x);
+        self.right.copy_from_slice(&self.x);
+        let b = &mut self.rest;
+        b.copy_from_slice(&self.right);
+        if !is_derivative {
+            for (column, near) in self.matrix.chunks_exact(n).zip(&self.near) {
+                b.iter_mut().zip(column).for_each(|(b, entry)| *b -= entry * near);
+            }
+        }
         self.x.fill(0.0);
         let shortest = shortest_column(&self.w, n);
         let mut rank = 0;
@@ -306,14 +327,18 @@ impl LinearSystem {
         }
         self.x.iter_mut().zip(&self.column_scale).for_each(|(x, scale)| *x *= scale);
         self.null.chunks_exact(n).for_each(|null| remove_part(&mut self.x, null));
-        if is_derivative || is_solved(&self.matrix, &self.x, b) {
-            self.is_one_of_many = rank < n && !is_derivative;
+        if is_derivative {
+            return Ok(());
+        }
+        self.x.iter_mut().zip(&self.near).for_each(|(x, near)| *x += near);
+        if is_solved(&self.matrix, &self.x, &self.right) {
+            self.is_one_of_many = rank < n;
             return Ok(());
         }
         if !self.has_factors {
             return Err(NoSolution);
         }
-        self.x.copy_from_slice(b);
+        self.x.copy_from_slice(&self.right);
         self.lu.solve(&mut self.x);
         Ok(())
     }
@@ -411,6 +436,31 @@ mod tests {
         let plane = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 3.0, 6.0, 9.0];
         let x = solve(&plane, &[14.0, 28.0, 42.0], false).unwrap();
         x.iter().zip(1..).for_each(|(x, k)| assert!((x - f64::from(k)).abs() < 1e-12, "{x}"));
+    }
+
+    #[test]
+    fn of_many_solutions_the_one_nearest_to_given_values_is_taken() {
+        // No flow: 0 (T - 300) = 0 leaves T where it was, and x + y = 4 the difference of x and y.
+        for (a, b, near, nearest) in [
+            ([0.0, 0.0, 0.0, 1.0], [0.0, 2.0], [350.0, 0.0], [350.0, 2.0]),
+            ([1.0, 1.0, 2.0, 2.0], [4.0, 8.0], [5.0, 3.0], [3.0, 1.0]),
+        ] {
+            let mut r: Vec<f64> = a.iter().chain(&b).copied().chain([0.0; 2]).collect();
+            let entries = (0..4).map(|place| (place, place)).collect();
+            let solve = LinearSolve {
+                system: 0,
+                entries: Some(entries),
+                right: vec![4, 5].into(),
+                d: 6,
+                is_derivative: false,
+            };
+            let mut system = LinearSystem::new(2);
+            system.prefer(near.into_iter());
+            system.run(&solve, &mut r).unwrap();
+            for (x, nearest) in r[6..].iter().zip(nearest) {
+                assert!((x - nearest).abs() < 1e-12, "{r:?}");
+            }
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::execution::run;
 use super::instants::Stage;
+use super::singular_systems::loops_of;
 use super::system::System;
 use crate::lower::Homotopy;
 use crate::sim::Failure;
@@ -22,6 +23,24 @@ impl System {
             return Ok(());
         }
         self.take_start_values(t)?;
+        let outcome = self.iterate_events(t, Stage::Initial).map(|_| ());
+        let is_domain = matches!(outcome, Err(Failure::Domain { .. }));
+        if is_domain { self.solve_from_nominal_values(t).or(outcome) } else { outcome }
+    }
+
+    /// Where something has no value with the solution of a loop that zero starts lead to, as a mole
+    /// fraction n/N of a solution with N = 0 particles: the same with unknowns of loops at their
+    /// nominal values instead of zero.
+    fn solve_from_nominal_values(&mut self, t: f64) -> Result<(), Failure> {
+        self.take_start_values(t)?;
+        let program = self.program.clone();
+        let loops = loops_of(&program.initial_steps).zip(&self.loops.initial_solvers);
+        for (torn, solver) in loops {
+            for (unknown, nominal) in torn.unknowns.iter().zip(solver.nominal()) {
+                let value = &mut self.registers[*unknown as usize];
+                *value = if *value == 0.0 { *nominal } else { *value };
+            }
+        }
         self.iterate_events(t, Stage::Initial).map(|_| ())
     }
 

@@ -21,7 +21,7 @@ use super::execution::run_loop;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
 use super::multiple_roots::is_isolated;
-use super::open_loops::{is_on_a_line, is_open, polish};
+use super::open_loops::{is_on_a_line, is_open, polish, return_from_leap};
 use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure, Pattern, gather};
@@ -71,6 +71,11 @@ impl LoopSolver {
             solutions: 0,
             evaluations: 0,
         }
+    }
+
+    /// The magnitudes of its unknowns.
+    pub(super) fn nominal(&self) -> &[f64] {
+        &self.nominal
     }
 
     /// A new simulation begins.
@@ -160,12 +165,19 @@ impl LoopSolver {
         self.attempt(equations, initial).or(outcome)
     }
 
+    /// Newton's method from `start`; what leaps there because nothing determines it stays.
+    fn newton_from_start(&mut self, equations: &mut Evaluation) -> Result<(), NewtonFailure> {
+        self.newton.solve(equations, &mut self.x, &self.nominal)?;
+        let from = (&self.start[..], &self.nominal[..]);
+        self.is_singular = return_from_leap(equations, from, &mut self.x);
+        Ok(())
+    }
+
     fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
         let block = equations.torn.block;
         self.is_singular = false;
         self.start.copy_from_slice(&self.x);
-        let first = self.newton.solve(equations, &mut self.x, &self.nominal);
-        let Err(failure) = first else { return Ok(()) };
+        let Err(failure) = self.newton_from_start(equations) else { return Ok(()) };
         self.x.copy_from_slice(&self.start);
         let n = self.x.len();
         let least_squares = self.least_squares.get_or_insert_with(|| LeastSquares::new(n).into());
@@ -178,7 +190,7 @@ impl LoopSolver {
         }
         if near.is_ok() {
             self.start.copy_from_slice(&self.x);
-            match self.newton.solve(equations, &mut self.x, &self.nominal) {
+            match self.newton_from_start(equations) {
                 Ok(()) => return Ok(()),
                 Err(NewtonFailure::Singular)
                     if is_isolated(equations, &self.start, &self.nominal) =>

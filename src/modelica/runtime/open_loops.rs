@@ -73,6 +73,42 @@ pub(super) fn is_on_a_line(equations: &mut dyn Equations, x: &[f64], nominal: &[
     !kernel.is_empty() && kernel.iter().all(|at| continues(*at, 1.0) && continues(*at, -1.0))
 }
 
+/// Unknowns that Newton's method moves by so many of their magnitudes have leapt: a pivot was a rounding
+/// error. The acceleration of an excavator's swing, which no initial equation determines, became 2e21.
+const LEAP: f64 = 1e9;
+
+/// How often [`polish`] is repeated for a solution near the start.
+const MOST_POLISHED: usize = 5;
+
+/// Where unknowns have leapt from `start` to `x` because equations that depend on each other do not
+/// determine them: the solution nearest to `start`, in x. Whether that was so.
+pub(super) fn return_from_leap(
+    equations: &mut dyn Equations,
+    (start, nominal): (&[f64], &[f64]),
+    x: &mut [f64],
+) -> bool {
+    let n = x.len();
+    let scale: Vec<f64> = start.iter().zip(nominal).map(|(x, n)| x.abs().max(*n)).collect();
+    let mut moved = x.iter().zip(start).zip(&scale);
+    if n > MOST_UNKNOWNS || !moved.any(|((x, start), scale)| (x - start).abs() > LEAP * scale) {
+        return false;
+    }
+    let (mut near, mut residual) = (start.to_vec(), vec![0.0; n]);
+    for _ in 0..MOST_POLISHED {
+        polish(equations, &mut near, nominal);
+        let Some((matrix, rows)) = scaled_jacobian(equations, &near, &scale) else { return false };
+        let values = matrix.singular_values();
+        if values.min() > RANK * values.max() || equations.residual(&near, &mut residual).is_err() {
+            return false;
+        }
+        if residual.iter().zip(&rows).all(|(f, row)| (f * row).abs() <= ALONG) {
+            x.copy_from_slice(&near);
+            return true;
+        }
+    }
+    false
+}
+
 /// Improves a solution by steps of Gauss and Newton, the shortest ones in units of the unknowns: least
 /// squares end when residuals are small, here they become rounding errors.
 pub(super) fn polish(equations: &mut dyn Equations, x: &mut [f64], nominal: &[f64]) {

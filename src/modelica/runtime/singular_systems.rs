@@ -1,13 +1,17 @@
 //! Systems that are structurally regular and yet singular: equations that depend on each other leave
-//! unknowns open. They are reported to the listener of a simulation, once for each loop.
+//! unknowns open. They are reported to the listener of a simulation, once for each loop. Of the
+//! solutions of a linear system that is taken which is nearest to the values after the event before, at
+//! first to the start values: where no fluid flows, its temperature is not 0 K.
 
 use super::simulation_log::OpenLoop;
 use super::system::System;
 use crate::causalize::{Block, LinearLoop, Loop};
 use crate::codegen::code::{CompiledLoop, Step};
+use crate::codegen::memory::Memory;
 use crate::codegen::program::Program;
 use crate::source::Span;
 use crate::symbolic::{Node, VarId};
+use std::collections::BTreeMap;
 
 /// More names are counted only.
 const MOST_NAMES: usize = 6;
@@ -21,7 +25,7 @@ pub struct Undetermined {
     pub names: Vec<String>,
     /// How many more there are.
     pub omitted: usize,
-    /// Whether they are those of a linear system: of its solutions that of least norm was taken.
+    /// Whether they are those of a linear system: of its solutions the nearest was taken.
     pub is_linear: bool,
     /// Where one of the equations is written.
     pub span: Span,
@@ -35,7 +39,8 @@ impl Undetermined {
     }
 }
 
-fn loops_of(steps: &[Step]) -> impl Iterator<Item = &CompiledLoop> {
+/// The torn loops among steps, in order.
+pub(super) fn loops_of(steps: &[Step]) -> impl Iterator<Item = &CompiledLoop> {
     steps.iter().filter_map(|step| match step {
         Step::Solve(torn) => Some(torn),
         Step::Run(_) => None,
@@ -43,6 +48,14 @@ fn loops_of(steps: &[Step]) -> impl Iterator<Item = &CompiledLoop> {
 }
 
 impl System {
+    /// From here on, one of many solutions of a linear system is that nearest to the present values.
+    pub(super) fn prefer_present_values(&mut self) {
+        let Memory { registers, systems, .. } = &mut self.registers;
+        for (system, unknowns) in &self.loops.linear {
+            systems[*system as usize].prefer(unknowns.iter().map(|v| registers[v.0 as usize]));
+        }
+    }
+
     /// Notes linear systems and torn loops that had many solutions in the evaluation before.
     pub(super) fn note_open(&mut self, t: f64) {
         let Some(log) = &mut self.messages.log else { return };
@@ -100,18 +113,32 @@ impl System {
 }
 
 impl Program {
+    /// All linear loops that are solved in workspaces, with the numbers of these.
+    fn linear_loops(&self) -> impl Iterator<Item = (u32, &LinearLoop)> {
+        let sorted = &self.sorted;
+        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
+        blocks.filter_map(|block| match block {
+            Block::Linear(solved) => Some((self.workspace_of(solved)?, solved)),
+            Block::Assignment(_) | Block::Loop(_) => None,
+        })
+    }
+
+    /// The unknowns of linear systems, by their workspaces; not those of loops that share one, as
+    /// equal components may.
+    pub(super) fn linear_unknowns(&self) -> Vec<(u32, Vec<VarId>)> {
+        let mut unknowns: BTreeMap<u32, Option<&[VarId]>> = BTreeMap::new();
+        for (system, solved) in self.linear_loops() {
+            let known = unknowns.entry(system).or_insert(Some(&solved.unknowns));
+            *known = known.filter(|known| *known == solved.unknowns);
+        }
+        unknowns.into_iter().filter_map(|(system, of)| Some((system, of?.to_vec()))).collect()
+    }
+
     /// The unknowns of the linear loops that are solved in a workspace; `None` where that is a
     /// derivative of loops only.
     fn open_linear(&self, system: u32, places: &[usize], time: f64) -> Option<Undetermined> {
-        let sorted = &self.sorted;
-        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
-        let loops: Vec<&LinearLoop> = blocks
-            .filter_map(|block| match block {
-                Block::Linear(solved) => Some(solved),
-                Block::Assignment(_) | Block::Loop(_) => None,
-            })
-            .filter(|solved| self.workspace_of(solved) == Some(system))
-            .collect();
+        let loops = self.linear_loops().filter(|(workspace, _)| *workspace == system);
+        let loops: Vec<&LinearLoop> = loops.map(|(_, solved)| solved).collect();
         let mut names: Vec<String> = Vec::new();
         for solved in &loops {
             for variable in self.open_variables(solved, places) {

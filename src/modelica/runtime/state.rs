@@ -11,6 +11,7 @@ use super::transport_record::Record;
 use crate::codegen::code::Outputs;
 use crate::codegen::program::Program;
 use crate::sim::{Failure, Pattern};
+use crate::symbolic::VarId;
 use std::sync::OnceLock;
 
 /// What is known of the relations between events.
@@ -82,6 +83,8 @@ pub(super) struct LoopState {
     pub(super) event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
     pub(super) choices: Vec<Choice>,
+    /// The unknowns of linear systems, by their workspaces.
+    pub(super) linear: Vec<(u32, Vec<VarId>)>,
     /// Whether the iteration variables are solved for in every evaluation.
     pub(super) solves_loops: bool,
     /// That of the Jacobian of the states alone, where loops are solved inside: full.

@@ -68,7 +68,7 @@ impl System {
             sensitivity: None,
             relations: RelationState::new(&program),
             literal: LiteralRelations::default(),
-            loops: LoopState::default(),
+            loops: LoopState { linear: program.linear_unknowns(), ..LoopState::default() },
             delays: DelayState::new(&program),
             events: EventState::new(&program),
             outputs: OutputState::new(&program),
@@ -394,6 +394,7 @@ impl System {
         for (_, tape) in &program.values.starts {
             run(tape, &mut self.registers)?;
         }
+        self.prefer_present_values();
         self.take_start_values_of_events();
         self.start_recordings(t);
         self.relations.has_changed.fill(false);
@@ -627,6 +628,7 @@ impl Events for System {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
         self.leave_event(outcome)?;
+        self.prefer_present_values();
         self.note_open(t);
         self.reschedule();
         self.unload(y);

@@ -51,6 +51,14 @@ fn guesses_of_zero_are_not_divided_by() {
 }
 
 #[test]
+fn a_solution_with_which_something_has_no_value_is_left_for_another() {
+    // Particles n of a mixture: zero is a solution as well, but not for the fractions.
+    let text = "model N Real n; parameter Real m = 2; Real y(start = 0, fixed = true);
+        equation n*(n - 0.5) = 0; der(y) = m/n; end N;";
+    Run::of(text, 1.0).follows("y", 1e-6, |t| 4.0 * t);
+}
+
+#[test]
 fn a_loop_without_a_solution_is_named() {
     let text = "model S Real x(start = 3); Real y(start = 1); parameter Real k = 1;
         equation x + y = 2 + k*time; x*exp(0*time) + k*y = 3 + time; end S;";

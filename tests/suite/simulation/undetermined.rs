@@ -145,6 +145,32 @@ fn what_nothing_determines_any_more_stays_as_it_was() {
     near(last(pump, "v"), 0.0, 1e-12);
 }
 
+/// The end of a heat exchanger without flow: m (T - 300) = Q is 0 = 0.
+#[test]
+fn what_a_linear_system_leaves_open_stays_as_it_was() {
+    let exchanger = |end: f64| {
+        format!(
+            "Real T(start = 350); Boolean on = time >= 0.25 and time < 0.75 and time < {end};
+             Real m = if on then 2 else 0; Real q = if on then 20 else 0;
+             equation m*T - m*300 = q;"
+        )
+    };
+    warns(&exchanger(1.0), "do not determine `T`");
+    // 310 with flow, and afterwards as well; 350 where there never was any.
+    near(last(&exchanger(1.0), "T"), 310.0, 1e-9);
+    near(last(&exchanger(0.0), "T"), 350.0, 1e-9);
+}
+
+/// The torque of an axis about which nothing turns: its coefficient is what rounding leaves of zero, and
+/// a Newton step that divides by it would be as long as it likes.
+#[test]
+fn what_rounding_alone_determines_stays_at_its_start() {
+    let text = "parameter Real k = 1e-30; Real a(start = 5), b(start = 0.5);
+        equation b + b^3 + k*a*b = 0.101; 2*b + b^3 + k*a*b = 0.201;";
+    near(last(text, "b"), 0.1, 1e-12);
+    near(last(text, "a"), 5.0, 1e-6);
+}
+
 #[test]
 fn a_turning_point_is_an_error() {
     let text = "Real x(start = 1), y; equation x^2 + y = 1 - time; y = 0.5*time;";
