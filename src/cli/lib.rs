@@ -67,6 +67,7 @@ mod session;
 mod signals;
 mod simulate;
 mod teach;
+mod teach_run;
 mod teach_screen;
 mod terminal;
 mod test;

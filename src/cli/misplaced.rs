@@ -71,7 +71,7 @@ pub(super) fn refusal(command: &Command) -> Option<String> {
                 unfinished_name(path).or_else(|| other_kind(path, FileKind::Problem))
             })
         }
-        Command::Teach(arguments) => other_kind(&arguments.input, FileKind::Script),
+        Command::Teach(arguments) => other_kind(&arguments.run.input, FileKind::Script),
         Command::New(arguments) => {
             other_kind(&arguments.data, FileKind::Table).or_else(|| missing_model(&arguments.model))
         }

@@ -2,15 +2,11 @@
 
 use super::disk;
 use super::options::{Global, at_least_one};
-use super::output::{Output, RESULTS, latest_of, shown};
-use super::session;
-use super::teach_screen;
+use super::output::{RESULTS, latest_of, shown};
+use super::teach_run::{Again, Change, Recording, RunArgs, Running, Trouble, output, read};
+use super::teach_screen::{self, Source};
 use super::terminal::{self, Terminal};
-use super::world::SystemWorld;
-use crate::script::access::faults::cannot;
 use crate::script::world::Screen as _;
-use crate::script::{Echo, Options, Reporting, Session};
-use crate::source::Span;
 use clap::{Args, ValueHint};
 use gapilib_script::teach::bands::{self, Repeated};
 use gapilib_script::teach::branches::Branches;
@@ -21,7 +17,8 @@ use gapilib_script::teach::{Trace, TraceCursor, page, picture, plain};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Arguments of `gapi teach`.
 #[derive(Debug, Args)]
@@ -35,9 +32,6 @@ Examples:
   gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0\" --what-if \"F_Mut := 1\" --runs 20
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
-    /// A script (.mos), which is run first, or a trace written by `gapi run --trace`
-    #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
-    pub input: PathBuf,
     /// Print the steps as text, even on a terminal
     #[arg(long)]
     pub plain: bool,
@@ -62,23 +56,9 @@ pub(super) struct TeachArgs {
     /// Write an HTML page with all steps, instead of text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,
-    /// Folder for the results and the trace of the run [default: one per script in `results`]
-    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: Option<PathBuf>,
-    /// Overwrite the results of another problem in that folder
-    #[arg(long)]
-    pub overwrite: bool,
-}
-
-/// What changes a run: from which generation on, counted from 1, and the statement.
-type Change<'a> = (usize, &'a str);
-
-/// How a script is run again.
-#[derive(Debug, Clone, Copy, Default)]
-struct Again<'a> {
-    change: Option<Change<'a>>,
-    /// Which of the runs with different seeds it is, from 0; `None` where there is one.
-    run: Option<usize>,
+    /// What is run, and where its results go
+    #[command(flatten)]
+    pub run: RunArgs,
 }
 
 /// Runs the script, or reads the trace, and shows its steps.
@@ -93,15 +73,8 @@ pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
     }
 }
 
-/// Why there is nothing to show.
-enum Trouble {
-    /// The session has reported it.
-    Reported(ExitCode),
-    Message(String),
-}
-
 fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
-    let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
+    let is_script = arguments.run.input.extension().is_some_and(|extension| extension == "mos");
     if arguments.runs > 1 || arguments.what_if.len() > 1 {
         if arguments.html.is_some() {
             let message = "a page compares with one change in one run: give --what-if once and no \
@@ -110,10 +83,12 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
         }
         return compare_many(arguments, global);
     }
-    let (trace, session) = match is_script {
-        true => recorded(arguments, global, &Again::default())
-            .map(|(trace, session)| (trace, Some(session)))?,
-        false => (read(&arguments.input, &arguments.input)?, None),
+    if is_script && is_on_screen(arguments) {
+        return show_run(arguments, global);
+    }
+    let trace = match is_script {
+        true => recorded(arguments, global, Again::default())?,
+        false => read(&arguments.run.input, &arguments.run.input)?,
     };
     if let (Some(statement), None) = (arguments.what_if.first(), &arguments.html) {
         return compare(arguments, global, &trace, statement);
@@ -126,80 +101,24 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
             let what_if = what_if(arguments, global)?;
             write_page(trace, page, (&results(arguments)?, is_script), what_if.as_ref())
         }
-        None => show(TraceCursor::new(trace), session, arguments, global),
+        None => show(trace, arguments, global),
     }
-}
-
-/// Reads a trace; messages name the file that the user has given, `input`.
-fn read(file: &Path, input: &Path) -> Result<Trace, Trouble> {
-    let read = super::named::read(file).map_err(|error| cannot("read", input, &error).message);
-    read.and_then(|bytes| {
-        Trace::read(&bytes).map_err(|fault| {
-            let helps: String = fault.helps.iter().map(|help| format!("\nhelp: {help}")).collect();
-            format!("`{}`: {}{helps}", input.display(), fault.message)
-        })
-    })
-    .map_err(Trouble::Message)
-}
-
-/// The folder of the run.
-fn output(arguments: &TeachArgs) -> Result<Output, Trouble> {
-    let (folder, overwrite) = (arguments.out.as_deref(), arguments.overwrite);
-    Output::of("gapi teach", &arguments.input, folder, overwrite).map_err(Trouble::Message)
 }
 
 /// Where the report of the run may lie: that of a recorded trace is the one that is named, or the
 /// one written last.
 fn results(arguments: &TeachArgs) -> Result<PathBuf, Trouble> {
-    let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
-    match &arguments.out {
+    let is_script = arguments.run.input.extension().is_some_and(|extension| extension == "mos");
+    match &arguments.run.out {
         Some(folder) => Ok(folder.clone()),
-        None if is_script => output(arguments).map(|output| output.folder),
+        None if is_script => output(&arguments.run).map(|output| output.folder),
         None => Ok(latest_of(Path::new(RESULTS))),
     }
 }
 
-/// Runs the script with a trace beside its results, and reads the trace; the session remains.
-fn recorded(
-    arguments: &TeachArgs,
-    global: &Global,
-    again: &Again<'_>,
-) -> Result<(Trace, Session), Trouble> {
-    let change = again.change;
-    let output = output(arguments)?;
-    let is_other = change.is_some() || again.run.is_some_and(|run| run > 0);
-    let output = if is_other { output.within("what_if") } else { output };
-    let out = output.folder.clone();
-    let mut terminal = Terminal::new(global.color, false);
-    terminal.show_progress_only();
-    let world = SystemWorld::for_results(terminal, output, None)
-        .map_err(|error| Trouble::Message(error.to_string()))?;
-    world.catch_interrupts();
-    let reporting = if again.run.is_some() { Reporting::Off } else { Reporting::Usual };
-    // A quiet session reports errors only.
-    let options = Options { echo: Echo::Nothing, quiet: true, reporting, ..Options::default() };
-    let mut session = session::open(global, world).with_options(options);
-    session.use_stream(again.run.unwrap_or(0) as u64);
-    let file = out.join("run.trace");
-    // It lies in the folder of results: a link in its place is not followed.
-    let prepared = session.trace_to(&file).map_err(|fault| fault.at(Span::NONE));
-    let prepared = prepared.and_then(|()| match change {
-        Some((generation, statement)) => session.branch_at(generation, statement),
-        None => Ok(()),
-    });
-    if let Err(error) = prepared {
-        return Err(Trouble::Reported(session::failed(&mut session, vec![error])));
-    }
-    let status = session.run_file(&arguments.input);
-    session.world.end_view();
-    if status.code != 0 && !status.interrupted {
-        return Err(Trouble::Reported(status.code.into()));
-    }
-    if session.branch_is_pending() {
-        let generation = change.map_or(0, |(generation, _)| generation);
-        return Err(Trouble::Message(format!("the run has no generation {generation}")));
-    }
-    Ok((read(&file, &arguments.input)?, session))
+/// Runs the script with a trace beside its results, and reads the trace.
+fn recorded(arguments: &TeachArgs, global: &Global, again: Again<'_>) -> Result<Trace, Trouble> {
+    Recording::new(&arguments.run, global, again, false)?.run_to_end().map(|(trace, _)| trace)
 }
 
 /// Runs the script once more with a change, and shows both runs on one chart.
@@ -213,7 +132,7 @@ fn compare(
     let changed = branch(arguments, global, (generation, change))?;
     let branches = Branches { original, changed: &changed, generation, change };
     let figure = branches.figure();
-    let file = shown(&output(arguments)?.folder.join("what_if.svg"));
+    let file = shown(&output(&arguments.run)?.folder.join("what_if.svg"));
     terminal::print_report(&format!("{}\n\n{}\n", branches.summary(), figure.text(64, 14)));
     write(&file, &figure.svg())?;
     terminal::print(&format!("written to {}\n", file.display()));
@@ -222,17 +141,17 @@ fn compare(
 
 /// The run with a change.
 fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<Trace, Trouble> {
-    if arguments.input.extension().is_none_or(|extension| extension != "mos") {
+    if arguments.run.input.extension().is_none_or(|extension| extension != "mos") {
         let message = "a recorded run cannot be changed; give the script instead";
         return Err(Trouble::Message(message.to_owned()));
     }
     let again = Again { change: Some(change), run: None };
-    recorded(arguments, global, &again).map(|(trace, _)| trace)
+    recorded(arguments, global, again)
 }
 
 /// Runs the script as it is and with each change, with many seeds, and shows the bands of all.
 fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
-    if arguments.input.extension().is_none_or(|extension| extension != "mos") {
+    if arguments.run.input.extension().is_none_or(|extension| extension != "mos") {
         let message = "a recorded run cannot be repeated; give the script instead";
         return Err(Trouble::Message(message.to_owned()));
     }
@@ -241,14 +160,14 @@ fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
         let curves = (0..arguments.runs).map(|run| {
             let change = statement.map(|statement| (arguments.generation, statement));
             let again = Again { change, run: Some(run) };
-            recorded(arguments, global, &again).map(|(trace, _)| bands::curve(&trace))
+            recorded(arguments, global, again).map(|trace| bands::curve(&trace))
         });
         let name = statement.unwrap_or("original script").to_owned();
         Ok(Repeated { name, curves: curves.collect::<Result<_, Trouble>>()? })
     });
     let repeated = repeated.collect::<Result<Vec<_>, Trouble>>()?;
     let figure = bands::figure(&repeated);
-    let file = shown(&output(arguments)?.folder.join("what_if.svg"));
+    let file = shown(&output(&arguments.run)?.folder.join("what_if.svg"));
     terminal::print_report(&format!(
         "{}\n{}\n",
         bands::summary(&repeated),
@@ -307,48 +226,121 @@ fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// On the screen of a terminal; as text where there is none.
-fn show(
-    mut walk: TraceCursor,
-    mut session: Option<Session>,
-    arguments: &TeachArgs,
-    global: &Global,
-) -> Result<(), Trouble> {
+/// Whether the steps are shown on the screen of a terminal.
+fn is_on_screen(arguments: &TeachArgs) -> bool {
+    let is_other = arguments.plain || arguments.html.is_some() || arguments.svg.is_some();
+    let is_terminal = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+    !is_other && arguments.what_if.is_empty() && is_terminal
+}
+
+/// The walk at the generation that is shown first.
+fn walk(trace: Trace, arguments: &TeachArgs) -> Result<TraceCursor, Trouble> {
+    let mut walk = TraceCursor::new(trace);
     if !walk.go_to(arguments.generation - 1) {
         let has = walk.trace().generations.len();
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
-    if arguments.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+    Ok(walk)
+}
+
+/// A recorded run: on the screen of a terminal, as text where there is none.
+fn show(trace: Trace, arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+    let walk = walk(trace, arguments)?;
+    if !is_on_screen(arguments) {
         print(walk, arguments);
         return Ok(());
     }
+    on_screen(walk, arguments, global, &mut Recorded)
+}
+
+/// Runs a script and shows it on the screen, from what is recorded so far while it continues.
+fn show_run(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+    std::thread::scope(|scope| {
+        let mut running = Running::begin(scope, &arguments.run, global)?;
+        let walk = walk(running.first(arguments.generation)?, arguments)?;
+        let mut source = OfRun { running, arguments, global, trouble: None };
+        on_screen(walk, arguments, global, &mut source)?;
+        source.trouble.map_or(Ok(()), Err)
+    })
+}
+
+fn on_screen(
+    walk: TraceCursor,
+    arguments: &TeachArgs,
+    global: &Global,
+    source: &mut dyn Source,
+) -> Result<(), Trouble> {
     let colour = Terminal::new(global.color, true).colour();
-    let run_again = |generation, statement: &str| {
-        branch(arguments, global, (generation, statement)).map_err(|trouble| match trouble {
-            Trouble::Reported(_) => {
-                "the changed run failed; the reason is printed after this screen closes".to_owned()
-            }
-            Trouble::Message(message) => message,
-        })
-    };
     // An interrupt during the run has ended the run; from here on it ends the screen.
-    let interrupt = session.as_ref().and_then(|session| session.world.interrupt_flag());
-    let interrupt = interrupt.unwrap_or_default();
+    let interrupt = source.interrupt();
     interrupt.store(false, Ordering::SeqCst);
-    let simulate = |genes: &[f64]| match &mut session {
-        Some(session) => session.simulate_again(genes),
-        None => Err("a trace contains only the curve of the best of each generation; give the \
-                     script instead to see all curves"
-            .to_owned()),
-    };
     let screen = Screen::new(walk, colour);
+    let screen = if source.continues() { screen.while_running() } else { screen };
     let screen = if arguments.quiz { screen.with_quiz() } else { screen };
-    let score = teach_screen::walk_through(screen, run_again, simulate, &interrupt)
+    let score = teach_screen::walk_through(screen, source, &interrupt)
         .map_err(|error| Trouble::Message(format!("cannot draw on the terminal: {error}")))?;
     if let Some(score) = score {
         terminal::print_report(&format!("{score}\n"));
     }
     Ok(())
+}
+
+/// A trace that was recorded earlier.
+struct Recorded;
+
+impl Source for Recorded {
+    fn run_again(&mut self, _generation: usize, _change: &str) -> Result<Trace, String> {
+        Err("a recorded run cannot be changed; give the script instead".to_owned())
+    }
+
+    fn curve(&mut self, _genes: &[f64]) -> Result<Vec<f64>, String> {
+        Err("a trace contains only the curve of the best of each generation; give the script \
+             instead to see all curves"
+            .to_owned())
+    }
+}
+
+/// A run of this program.
+struct OfRun<'a> {
+    running: Running,
+    arguments: &'a TeachArgs,
+    global: &'a Global,
+    /// What the run has failed with.
+    trouble: Option<Trouble>,
+}
+
+impl Source for OfRun<'_> {
+    fn run_again(&mut self, generation: usize, change: &str) -> Result<Trace, String> {
+        if self.continues() {
+            return Err("the run continues: try a change when it has ended".to_owned());
+        }
+        branch(self.arguments, self.global, (generation, change)).map_err(|trouble| match trouble {
+            Trouble::Reported(_) => {
+                "the changed run failed; the reason is printed after this screen closes".to_owned()
+            }
+            Trouble::Message(message) => message,
+        })
+    }
+
+    fn curve(&mut self, genes: &[f64]) -> Result<Vec<f64>, String> {
+        self.running.curve(genes)
+    }
+
+    fn continues(&self) -> bool {
+        !self.running.has_ended()
+    }
+
+    fn ended(&mut self) -> Option<Result<Trace, String>> {
+        let ended = self.running.ended()?;
+        Some(ended.map_err(|trouble| {
+            self.trouble = Some(trouble);
+            "the run has failed; the reason is printed after this screen closes".to_owned()
+        }))
+    }
+
+    fn interrupt(&self) -> Arc<AtomicBool> {
+        self.running.interrupt()
+    }
 }
 
 /// So many evaluations of a script without a genetic algorithm are printed.

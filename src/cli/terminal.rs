@@ -28,6 +28,8 @@ pub(super) struct Terminal {
     draws: bool,
     /// Whether what scripts print is left out, and progress is shown all the same.
     silent: bool,
+    /// Whether another screen is shown during the run: there is no progress then.
+    aside: bool,
     /// What is said while a run is drawn: for standard output or not, and the text.
     kept: Vec<(bool, String)>,
 }
@@ -52,6 +54,7 @@ impl Terminal {
             interrupt,
             draws,
             silent: false,
+            aside: false,
             kept: Vec::new(),
         }
     }
@@ -72,6 +75,12 @@ impl Terminal {
         self.silent = true;
     }
 
+    /// Another screen is shown: what is said is kept until the end.
+    pub(super) fn stand_aside(&mut self) {
+        self.show_progress_only();
+        self.aside = true;
+    }
+
     /// Takes the progress bar away.
     pub(super) fn finish_progress(&mut self) {
         if let Some(bar) = self.bar.take() {
@@ -89,7 +98,7 @@ impl Terminal {
 
 impl Screen for Terminal {
     fn status(&mut self) -> Option<Status> {
-        if self.quiet || !std::io::stderr().is_terminal() {
+        if self.quiet || self.aside || !std::io::stderr().is_terminal() {
             return None;
         }
         self.end_view();
@@ -117,6 +126,9 @@ impl Screen for Terminal {
     fn end_view(&mut self) {
         self.finish_progress();
         self.live.close();
+        if self.aside {
+            return;
+        }
         for (out, text) in std::mem::take(&mut self.kept) {
             if out { self.print_of_script(&text) } else { self.eprint(&text) }
         }
@@ -152,7 +164,7 @@ impl Screen for Terminal {
         if self.silent {
             return;
         }
-        if self.live.is_shown() && std::io::stdout().is_terminal() {
+        if self.aside || self.live.is_shown() && std::io::stdout().is_terminal() {
             self.kept.push((true, text.to_owned()));
             return;
         }
@@ -164,7 +176,7 @@ impl Screen for Terminal {
     }
 
     fn eprint(&mut self, text: &str) {
-        if self.live.is_shown() {
+        if self.aside || self.live.is_shown() {
             self.kept.push((false, text.to_owned()));
             return;
         }
@@ -175,7 +187,8 @@ impl Screen for Terminal {
     }
 
     fn progress(&mut self, progress: &Progress) {
-        if self.quiet || self.live.is_shown() || !std::io::stderr().is_terminal() {
+        let is_hidden = self.quiet || self.aside || self.live.is_shown();
+        if is_hidden || !std::io::stderr().is_terminal() {
             return;
         }
         let bar = self.bar.get_or_insert_with(|| new_bar(progress));
@@ -194,6 +207,8 @@ impl Screen for Terminal {
 /// What was said while a run was drawn is said although the run ended otherwise.
 impl Drop for Terminal {
     fn drop(&mut self) {
+        self.aside = false;
+        self.silent = false;
         self.end_view();
     }
 }

@@ -5,7 +5,7 @@
 use crate::support::program::{command, folder};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{Read as _, Write as _};
 use std::os::unix::ffi::OsStrExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -104,6 +104,20 @@ fn a_run_saves_what_it_has_when_its_terminal_is_closed() {
     for name in ["result.json", "script.journal"] {
         assert!(written.iter().any(|file| file == name), "{name}: {written:?}");
     }
+}
+
+/// The first generations of a run are shown while it continues, and leaving the screen ends it.
+#[test]
+fn an_endless_run_is_shown_and_left() {
+    let here = folder(FILES);
+    let shown = "the run continues; ";
+    let (mut child, mut terminal) = started(command(here.path(), &["teach", "long.mos"]), shown);
+    terminal.write_all(b"q").expect("it reads");
+    let mut rest = Vec::new();
+    // A terminal whose other side is gone gives an error instead of an end.
+    let _ = terminal.read_to_end(&mut rest);
+    assert!(ends(&mut child), "it continues without its screen");
+    assert!(child.wait().expect("a status").success(), "{}", String::from_utf8_lossy(&rest));
 }
 
 /// A run that was started with `nohup` goes on, and does nothing but its work.

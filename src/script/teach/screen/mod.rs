@@ -111,6 +111,29 @@ impl Screen {
         }
     }
 
+    /// The run continues while its first generations are shown.
+    #[must_use]
+    pub fn while_running(mut self) -> Screen {
+        let has = self.walk.trace().generations.len();
+        self.message = format!("the run continues; {has} generations are recorded so far");
+        self
+    }
+
+    /// Takes the whole trace when the run has ended, or says why there is none.
+    pub fn ended(&mut self, run: Result<Trace, String>) {
+        let trace = match run {
+            Ok(trace) => trace,
+            Err(why) => return self.message = why,
+        };
+        let (number, (step, _)) = (self.walk.number(), self.walk.progress());
+        self.message = format!("the run has ended after {} generations", trace.generations.len());
+        self.walk = TraceCursor::new(trace);
+        self.walk.go_to(number);
+        // A step of this generation, wherever the next one begins.
+        while self.walk.progress().0 < step && self.walk.number() == number && self.walk.forward() {
+        }
+    }
+
     /// Answers a key; whether the learner continues.
     pub fn press(&mut self, key: Key) -> bool {
         self.message.clear();

@@ -76,6 +76,24 @@ fn keys_move() {
     assert!(first_line(&typed('u', "stop")).starts_with("Generation 3 of 3"));
 }
 
+/// The whole trace takes the place of its beginning: the step stays.
+#[test]
+fn the_step_stays_when_the_run_has_ended() {
+    let whole = sample::walk().into_trace();
+    let mut begun = whole.clone();
+    begun.generations.truncate(2);
+    let mut screen = Screen::new(crate::teach::TraceCursor::new(begun), false).while_running();
+    assert!(drawn(&screen).contains("the run continues; 2 generations"), "{}", drawn(&screen));
+    [Key::Right, Key::Right, Key::Right].into_iter().for_each(|key| assert!(screen.press(key)));
+    let place = |screen: &Screen| (screen.walk.number(), screen.walk.step());
+    let before = place(&screen);
+    screen.ended(Err("the run has failed".to_owned()));
+    assert!(place(&screen) == before && drawn(&screen).contains("the run has failed"));
+    screen.ended(Ok(whole));
+    assert!(place(&screen) == before && drawn(&screen).contains("ended after 3 generations"));
+    assert!(drawn(&screen).contains("Generation 1 of 3"), "{}", drawn(&screen));
+}
+
 /// On a wide terminal genes are numbers, and every row can be reached on a low one.
 #[test]
 fn the_population_uses_the_room_there_is() {
