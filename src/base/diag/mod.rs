@@ -193,6 +193,26 @@ impl Diagnostic {
         self.with_spans(|known| if known.is_known() { known } else { span })
     }
 
+    /// The same at this place alone.
+    #[must_use]
+    pub fn moved_to(mut self, span: Span) -> Diagnostic {
+        self.0.labels = vec![Label { span, text: String::new(), primary: true }];
+        self
+    }
+
+    /// The same at this place; where it was before is related, in these words unless it has its own.
+    #[must_use]
+    pub fn seen_from(mut self, span: Span, words: &str) -> Diagnostic {
+        for label in &mut self.0.labels {
+            label.primary = false;
+            if label.text.is_empty() {
+                words.clone_into(&mut label.text);
+            }
+        }
+        self.0.labels.insert(0, Label { span, text: String::new(), primary: true });
+        self
+    }
+
     /// Adds an action.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {

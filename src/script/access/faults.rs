@@ -23,7 +23,7 @@ pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
 }
 
 /// What a path with a letter of a drive means on other systems.
-fn drive_help(path: &Path) -> Option<String> {
+pub(crate) fn drive_help(path: &Path) -> Option<String> {
     let text = path.to_string_lossy();
     let mut letters = text.chars();
     let is_drive = letters.next().is_some_and(|letter| letter.is_ascii_alphabetic())

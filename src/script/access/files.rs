@@ -1,6 +1,6 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
-use super::faults::{cannot, escape_help, plain, shown};
+use super::faults::{cannot, drive_help, escape_help, plain, shown};
 use super::policy::{Access, Grant, Refusal, refusal_of};
 use crate::Session;
 use crate::bail;
@@ -193,7 +193,8 @@ impl Session {
             return refused;
         }
         let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", shown(path)));
-        fault.help_if(escape_help(path)).help_if(self.similar_file(path)).help(format!(
+        let fault = fault.help_if(escape_help(path)).help_if(drive_help(path));
+        fault.help_if(self.similar_file(path)).help(format!(
             "relative paths start from the working directory `{}` or the script's folder",
             self.world.current_dir().display()
         ))

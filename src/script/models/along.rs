@@ -1,6 +1,6 @@
 //! Expressions in variables of a simulation, at every point in time.
 
-use super::simulation::placed;
+use super::places::placed;
 use crate::Session;
 use crate::builtins::Failure;
 use crate::diag::{At, Fault};

@@ -24,6 +24,7 @@ mod measured_units;
 pub mod modification;
 pub mod parameter_sets;
 mod parameters;
+mod places;
 mod reading;
 mod resources;
 mod restart;

@@ -5,6 +5,7 @@ use super::compiled::Current;
 use super::continuation::Continued;
 use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
+use super::places::{in_argument, placed, texts, where_named};
 use super::stored::Request;
 pub use super::translated::Translated;
 use super::translated::declarations;
@@ -250,7 +251,8 @@ pub(super) fn compiled(
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
     let roots = session.classes.library.uses();
-    let one = |error: Diagnostic| vec![session.classes.in_users_terms(error)];
+    let named = texts(&flat);
+    let one = |error: Diagnostic| vec![session.classes.in_users_terms(where_named(error, &named))];
     let sorted = causalize::causalize(&flat).map_err(one)?;
     let (declarations, flat) = (declarations(&flat), Some(flat));
     let flat = flat.filter(|flat| flat.equations.len() <= MOST_KEPT);
@@ -289,8 +291,8 @@ pub(crate) fn flattened(
     problem: &str,
 ) -> Result<flatten::Flattened, Vec<Diagnostic>> {
     let source = session.sources.add("problem", problem);
-    let (name, modification) =
-        syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
+    let (name, modification) = syntax::parse_class_with_modification(source, problem)
+        .map_err(|error| vec![in_argument(error, source, session.call_site())])?;
     session.autoload(&name)?;
     loop {
         let resources = session.resources_for(&name);
@@ -307,7 +309,8 @@ pub(crate) fn flattened(
                 let error = session.classes.with_misnamed_file(error, &name);
                 session.classes.in_users_terms(error)
             });
-            errors.map(|error| placed(error, session.call_site())).collect::<Vec<_>>()
+            let call = session.call_site();
+            errors.map(|error| in_argument(placed(error, call), source, call)).collect::<Vec<_>>()
         })?;
         if let Some(enclosing) = session.classes.enclosing_named(&name) {
             enclosing.model.clone_into(&mut flattened.model.name);
@@ -320,15 +323,6 @@ pub(crate) fn flattened(
         warn(session, &flattened.warnings);
         return Ok(flattened);
     }
-}
-
-/// The diagnostic at the place of the call, if it has none of its own.
-pub(super) fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
-    if diagnostic.span().is_known() || !diagnostic.is_error() {
-        return diagnostic;
-    }
-    let fault = Fault::new(diagnostic.code, diagnostic.message.clone());
-    diagnostic.helps.iter().cloned().fold(fault, Fault::help).at(call)
 }
 
 /// The most intervals of an output: its columns are arrays of scripts, which have no more elements.

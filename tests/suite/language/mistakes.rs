@@ -111,6 +111,44 @@ fn names_of_other_languages_are_answered_with_those_of_modelica() {
     );
 }
 
+/// What is wrong is shown where the user wrote it, not in a library or a text that was made of it.
+#[test]
+fn places_are_those_of_the_user() {
+    let table = "Modelica.Blocks.Sources.CombiTimeTable t(tableOnFile = true,\n\
+                 tableName = \"a\", fileName = \"none.txt\");\nReal x = t.y[1];";
+    model(table, &["there is no file `none.txt`", "A.mo:3:29"]);
+    model(
+        "model B final parameter Real k = 1; end B;\nB b(k = 2);",
+        &["is final", "declared final here"],
+    );
+    let script = "openModel(\"Decay.mo\");\nsimulateModel(\"Decay(k = 0,5)\");\n";
+    let here = folder(&[("Decay.mo", DECAY), ("s.mos", script)]);
+    let (code, _, errors) = gapi(&here, &["run", "s.mos"]);
+    assert!(
+        code != 0 && errors.contains("s.mos:2:1") && errors.contains("write `0.5`"),
+        "{errors}"
+    );
+    let script = "openModel(\"C:/work/Decay.mo\");\n";
+    let (code, _, errors) = gapi(&folder(&[("s.mos", script)]), &["run", "s.mos"]);
+    assert!(code != 0 && (cfg!(windows) || errors.contains("no drive `C:`")), "{errors}");
+}
+
+/// A run without a result leaves nothing that the corrected problem stumbles over.
+#[test]
+fn a_corrected_problem_runs_at_once() {
+    let failing =
+        DECAY.replace("der(x) = -k*x;", "der(x) = -k*x;\n  assert(k > 5, \"k is small\");");
+    let problem = "model = \"Decay\"\nfiles = [\"Decay.mo\"]\n[parameters]\nk = { min = 0.1, max = 2 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { x = \"x\" }\n";
+    let table = "time,x\n0,1\n1,0.4\n2,0.1\n3,0.05\n";
+    let here = folder(&[("Decay.mo", &failing), ("p.toml", problem), ("d.csv", table)]);
+    let (code, _, errors) = gapi(&here, &["identify", "p.toml"]);
+    assert!(code != 0 && errors.contains("k is small"), "{errors}");
+    std::fs::write(here.path().join("Decay.mo"), DECAY).unwrap();
+    let (code, _, errors) = gapi(&here, &["identify", "p.toml"]);
+    assert_eq!(code, 0, "{errors}");
+}
+
 #[test]
 fn scripts_are_answered_with_the_call_that_is_meant() {
     for (text, words) in [

@@ -222,6 +222,10 @@ impl Classes<'_> {
         };
         let declared_final = clause.prefixes.is_final;
         own.is_final = declared_final;
+        if declared_final {
+            // Where a modification is refused.
+            own.span.get_or_insert(component.name.span);
+        }
         let is_final = declared_final || outer.is_final;
         let outer = Modifier { redeclaration: None, ..outer };
         let outer_span = outer.span;
