@@ -13,9 +13,14 @@ crate::codes! {
          ## What to do\nCheck the equations and variables listed: one equation is redundant, and another is missing.",
     /// Something of the language that the compiler cannot treat.
     NOT_SUPPORTED = "not-supported":
-        "## What it means\nThe model uses a part of the language that this program does not support in equations. It reports an error rather than wrong numbers. As a warning: an input of the model has neither a connection nor data, and keeps its start value.\n\n\
+        "## What it means\nThe model uses a part of the language that this program does not support in equations. It reports an error rather than wrong numbers.\n\n\
          ## Example\n`Clock(Clock(1, 10), \"ExplicitRungeKutta4\")`\n\n\
-         ## What to do\nRewrite the model without it; the message gives the position and the reason. Give an input data with `inputs` of a problem file or `gapi simulate --input`.",
+         ## What to do\nRewrite the model without it; the message gives the position and the reason.",
+    /// An input that nothing determines.
+    INPUT_WITHOUT_DATA = "input-without-data":
+        "## What it means\nAn input of the model has neither a connection nor data, and keeps its start value.\n\n\
+         ## Example\n`model M input Real u; Real x; equation der(x) = u; end M;` is simulated without data for `u`.\n\n\
+         ## What to do\nGive it data with `inputs` of a problem file or `gapi simulate --input`, or connect it.",
     /// Clocks that do not go together, or one that nothing gives.
     CLOCK_CONFLICT = "clock-conflict":
         "## What it means\nThe clocks of a model cannot be inferred, or contradict each other: variables in one equation belong to one clock, and what is clocked meets continuous time only through `sample` and `hold`.\n\n\

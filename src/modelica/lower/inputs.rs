@@ -2,7 +2,7 @@
 
 use super::dae::{Dae, VariableKind};
 use super::equation::Equation;
-use super::errors::NOT_SUPPORTED;
+use super::errors::INPUT_WITHOUT_DATA;
 use super::recordings::follow;
 use super::used_variables::used_variables;
 use crate::fault;
@@ -64,10 +64,11 @@ fn keep_start(dae: &mut Dae, position: usize, is_top_level: bool) {
     let zero = dae.pool.constant(0.0);
     let right = variable.start.unwrap_or(zero);
     let span = variable.span;
-    let how = if is_top_level { "not connected" } else { "neither connected nor used" };
+    let how = if is_top_level { "has no data" } else { "is neither connected nor used" };
     let name = &variable.name;
-    let warning = fault!(NOT_SUPPORTED, "the input `{name}` is {how}; it keeps its start value");
-    let data = "connect it, or give it data: `inputs` of a problem file, `gapi simulate --input`";
+    let warning = fault!(INPUT_WITHOUT_DATA, "the input `{name}` {how}; it keeps its start value");
+    let data =
+        "give it data with `inputs` of a problem file or `gapi simulate --input`, or connect it";
     let warning = warning.help_if(is_top_level.then(|| data.to_owned()));
     dae.warnings.push(warning.at(span).warning());
     let left = dae.pool.variable(VarId(position as u32));
