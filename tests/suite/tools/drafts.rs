@@ -119,3 +119,14 @@ fn a_unit_of_another_quantity_is_no_match() {
     );
     assert!(text.contains("# not used: column \"v_wind\""), "{text}");
 }
+
+/// A table in the model is not estimated number by number: the draft says how one of them could be.
+#[test]
+fn tables_keep_their_numbers() {
+    let model = "model M\n  parameter Real k = 1;\n  parameter Real c[2] = {1, 2};\n\
+                 parameter Real ocv[3,2] = [0, 3; 0.5, 3.5; 1, 4];\n  Real x(start = 1, fixed = true);\n\
+                 output Real y;\nequation\n  der(x) = -k*x;\n  y = ocv[1,2] + c[1]*x + c[2];\nend M;\n";
+    let table = format!("time,y\n{}", rows(10, |k| format!("{},{}", k / 10.0, 7.0 - k / 20.0)));
+    let text = drafted(&table, model, &["\nk = {", "\n\"c[1]\" = {", "# ocv keeps its 6 values"]);
+    assert!(!text.contains("\n\"ocv["), "{text}");
+}

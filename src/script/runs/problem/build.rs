@@ -394,6 +394,11 @@ fn with_units(mut free: Vec<Free>, experiments: &[Experiment]) -> Vec<Free> {
             let Some((_, name)) = known else { continue };
             let own = experiment.model.parameters().into_iter().find(|p| p.name == *name);
             parameter.unit = own.map_or_else(String::new, |own| own.unit);
+            if parameter.unit.is_empty() {
+                // An initial value has the unit of its variable.
+                let variable = parameter.name.split_once('@').map_or(&*parameter.name, |(v, _)| v);
+                parameter.unit = experiment.model.unit(variable).unwrap_or_default();
+            }
             break;
         }
     }

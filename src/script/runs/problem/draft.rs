@@ -247,11 +247,23 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
          [parameters]\n",
     );
     let mut count = 0;
+    let mut whole: Vec<&str> = Vec::new();
     for parameter in model.program.parameters().iter().filter(|parameter| parameter.top_level) {
         let is_number = matches!(parameter.base, crate::flatten::BaseType::Real);
         let is_data =
             roles.outputs.iter().chain(&roles.inputs).any(|own| *own.variable == *parameter.name);
         if !is_number || is_data {
+            continue;
+        }
+        if let Some((array, elements)) = array_of(model, &parameter.name) {
+            if !whole.contains(&array) {
+                whole.push(array);
+                _ = writeln!(
+                    text,
+                    "# {array} keeps its {elements} values; to estimate one, add: {} = {{ min = …, max = … }}",
+                    key(&parameter.name)
+                );
+            }
             continue;
         }
         count += 1;
@@ -262,6 +274,18 @@ fn parameters(text: &mut String, model: &Translated, flat: &FlatModel, roles: &R
     if count == 0 {
         text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
     }
+}
+
+/// The array of which a parameter is an element, and its number of elements, where these are a table
+/// or a polynomial rather than quantities to be estimated one by one: matrices, and vectors of more
+/// than a few.
+fn array_of<'p>(model: &Translated, element: &'p str) -> Option<(&'p str, usize)> {
+    /// Longer vectors are tables.
+    const FEW: usize = 4;
+    let (array, _) = element.strip_suffix(']')?.rsplit_once('[')?;
+    let dims = &model.declarations.get(array)?.dims;
+    let elements = dims.iter().product();
+    (dims.len() > 1 || elements > FEW).then_some((array, elements))
 }
 
 /// What the model computes a parameter from; `None` where it depends on no other one.

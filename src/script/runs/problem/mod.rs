@@ -198,6 +198,11 @@ fn solve_stated(
     if let Some(unit) = unit {
         note_messages(session, &unit);
     }
+    if solved.is_err() && why.is_some() {
+        // Nothing was simulated: there is nothing to continue.
+        let folder = session.world.output_dir().join(&options.folder);
+        discard(session, &folder.join(JOURNAL));
+    }
     solved.map_err(|fault| why.map_or_else(|| one(fault), |why| vec![why]))
 }
 
@@ -464,7 +469,9 @@ fn open(
 ) -> Result<Checkpoint, Fault> {
     let origins = files.origins;
     let exists = session.world.exists(path);
-    if exists && !options.resume && !options.fresh {
+    let asks = exists && !options.resume && !options.fresh;
+    let left = if asks { changed_since(session, path, origins)? } else { None };
+    if asks && left.is_none() {
         bail!(
             BAD_OPTION,
             "`{}` contains an earlier run that did not finish", path.display();
@@ -507,11 +514,38 @@ fn open(
         bytes = old[..whole].to_vec();
     }
     if exists && !options.resume {
-        keep_old(session, path)?;
+        set_aside(session, path, left)?;
     }
     session.write_safely(path, &bytes)?;
     discard(session, &finished);
     Ok(Checkpoint::new(path.to_owned(), files.every, run.seconds).after(bytes))
+}
+
+/// Keeps the journal of an earlier run that is not continued; `changed` says why it could not be.
+fn set_aside(session: &mut Session, path: &Path, changed: Option<String>) -> Result<(), Fault> {
+    let kept = keep_old(session, path)?;
+    if let Some(changed) = changed {
+        session.print(&format!(
+            "an earlier run did not finish, and these have changed since: {changed}; its checkpoint \
+             is kept in `{}`\n",
+            kept.display()
+        ));
+    }
+    Ok(())
+}
+
+/// What has changed since a run that did not finish, so that it cannot be continued; none where it
+/// can.
+fn changed_since(
+    session: &mut Session,
+    path: &Path,
+    origins: &Origins,
+) -> Result<Option<String>, Fault> {
+    let bytes = session.read_bytes(path)?;
+    let journal = solving::decode(&bytes);
+    let before = journal.as_ref().and_then(|journal| journal.origins());
+    let changed = before.map_or_else(Vec::new, |before| origins.changed_since(before));
+    Ok((!changed.is_empty()).then(|| solving::listed(&changed)))
 }
 
 /// The journal that an earlier run has left, for a run that resumes; without one it says that it begins.

@@ -226,6 +226,12 @@ fn resumes_with(problem: &str, other: (&str, String)) {
         assert!(refused.contains("did not finish"), "{refused}");
         assert_eq!(run(with_journal(), &resume).unwrap(), whole, "cut at {cut}");
     }
+    // With other data it cannot be resumed: it is put aside.
+    let mut changed = files.clone();
+    changed[1].1 += "100,0\n";
+    let changed = world(&changed);
+    let path = changed.output_dir().join(JOURNAL);
+    assert!(run(changed.with_file(path, &*journal), &RunOptions::default()).is_ok());
     let other = world(&files);
     let path = other.output_dir().join(JOURNAL);
     let other = other.with_file(path, "something");
