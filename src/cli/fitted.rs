@@ -19,6 +19,8 @@ static WHOLE: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(\d) (to|×|±) ([-+\d])| (=) ").expect("it is an expression"));
 /// What begins a quoted line of a file, which keeps its columns.
 const QUOTED: [char; 2] = ['│', '┌'];
+/// Follows the sign that begins an action.
+const HELP: &str = " help: ";
 /// Begins a colour. Diagnostics have colours, and no tables.
 const COLOUR: char = '\u{1b}';
 
@@ -48,7 +50,11 @@ fn sentence(line: &str, width: usize) -> String {
         return line.to_owned();
     }
     let own = content.len() - content.trim_start().len();
-    let label = content.find("= help: ").map(|at| display_width(&content[..at]) + "= help: ".len());
+    // The sign before it may be coloured.
+    let is_label =
+        |at: &usize| content[..*at].contains('=') && display_width(&content[own..*at]) == "=".len();
+    let label = content.find(HELP).filter(is_label);
+    let label = label.map(|at| display_width(&content[..at]) + HELP.len());
     wrapped(content.trim_start(), own, label.unwrap_or(own), width) + end
 }
 
@@ -151,6 +157,13 @@ mod tests {
         let expected = "  k is determined: its\n  interval\n  1.5e-3 to 2.5e-3 is\n  narrow\n\
                          = help: give more data\n         here\n";
         assert_eq!(fitted(text, 24), expected.replace("\n= help", "\n = help"));
+    }
+
+    #[test]
+    fn coloured_actions_wrap_below_themselves() {
+        let text = "   \u{1b}[36m=\u{1b}[0m help: give more data here\n";
+        let expected = "   \u{1b}[36m=\u{1b}[0m help: give more\n           data here\n";
+        assert_eq!(fitted(text, 20), expected);
     }
 
     #[test]

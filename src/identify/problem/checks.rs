@@ -15,6 +15,7 @@ use super::statistics::resolution::resolution;
 use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };
+use crate::diag::suggest;
 use crate::elementary;
 use crate::ga::optimizer::FROM_THE_SOLVER;
 use crate::table::significant;
@@ -239,7 +240,8 @@ fn of_series(
         .filter(|test| test.runs_probability < alpha || test.autocorrelation_probability < alpha);
     let alike = serial.is_some_and(|test| test.autocorrelation > 0.0);
     findings.extend(bias(own, &residuals, serial.filter(|_| alike), alpha));
-    findings.extend(serial.map(|test| correlated(own, &test, alpha)));
+    let left_out = own.points.len() - kept.len();
+    findings.extend(serial.map(|test| correlated(own, (&test, left_out), alpha)));
     if alike {
         // Part of the pattern unless it stands alone.
         suspects.retain(|j| !own.points.contains(j) || stands_alone(own, *j));
@@ -328,25 +330,30 @@ fn bias(
     })
 }
 
-fn correlated(own: &Own<'_>, test: &ResidualTest, alpha: f64) -> Finding {
+/// `left_out`: the outliers that the test does not count, unlike the line of the series.
+fn correlated(own: &Own<'_>, (test, left_out): (&ResidualTest, usize), alpha: f64) -> Finding {
     let rho = test.autocorrelation;
     let factor = significant(((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt(), 2);
     let numbers = format!(
-        "lag-1 autocorrelation {}, {} runs of the same sign, {} expected",
+        "lag-1 autocorrelation {}, {} of the same sign, {} expected",
         significant(rho, 2),
-        test.runs,
+        suggest::counted(test.runs as u64, "run"),
         significant(test.expected_runs, 3)
     );
+    let without = match left_out {
+        0 => String::new(),
+        count => format!(" without {}", suggest::counted(count as u64, "outlier")),
+    };
     let sentence = if rho > 0.0 {
         format!(
-            "The residuals of {} have a pattern: {numbers}. Either the model does not describe \
+            "The residuals of {}{without} have a pattern: {numbers}. Either the model does not describe \
              part of these data (lack of fit), or their noise is autocorrelated; standard errors \
              are too small, by a factor of about {factor} for slowly varying sensitivities.",
             own.label
         )
     } else {
         format!(
-            "The residuals of {} alternate: {numbers}. The noise is autocorrelated; standard \
+            "The residuals of {}{without} alternate: {numbers}. The noise is autocorrelated; standard \
              errors are too large, by a factor of about {factor} for slowly varying sensitivities.",
             own.label
         )
@@ -506,6 +513,10 @@ fn saturated(series: &super::Series, own: &Own<'_>, suspects: &mut Vec<usize>) -
         let mut others: Vec<f64> = rest.iter().map(|&j| value(own.points[j])).collect();
         others.sort_by(f64::total_cmp);
         others.dedup();
+        if rest.is_empty() {
+            // Data that are all equal show no end, and are named before the search.
+            return None;
+        }
         // Rounded data have equal values everywhere.
         let usual = rest.len() as f64 / others.len().max(1) as f64;
         let beyond =

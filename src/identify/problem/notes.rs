@@ -8,6 +8,7 @@ use super::{
     ErrorModel, FailureRegion, Finding, FindingKind, Form, NonIdentifiable, OtherMinimum, Run,
     Severity, Solution, SolvedSeries, Statistics,
 };
+use crate::diag::suggest;
 use crate::elementary;
 use crate::table::{digits_of, ends, significant};
 use crate::uncertainty_given;
@@ -330,9 +331,10 @@ fn about_missing(run: &Run) -> Vec<Finding> {
         let n = series.missing.len();
         let rows: Vec<String> = series.missing.iter().take(10).map(usize::to_string).collect();
         let sentence = format!(
-            "{} of {} without a number {} omitted (row{} {}{}); {} points are used.",
-            if n == 1 { "1 point".to_owned() } else { format!("{n} points") },
+            "{} of {} {} no number and {} left out (row{} {}{}); {} points are used.",
+            suggest::counted(n as u64, "point"),
             series.label(),
+            if n == 1 { "has" } else { "have" },
             if n == 1 { "is" } else { "are" },
             if n == 1 { "" } else { "s" },
             rows.join(", "),

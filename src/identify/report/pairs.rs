@@ -126,7 +126,7 @@ fn matrix(view: &View, shown: &[usize]) -> Markup {
     let with_profile = shown.iter().any(|k| view.solution.profile_of(of(*k)).is_some());
     html! {
         figure.matrix {
-            (scrolling("Pairs of parameters", &PreEscaped(drawn.inline(&label))))
+            (scrolling("Matrix of all pairs", &PreEscaped(drawn.inline(&label))))
             figcaption {
                 "Below the diagonal: 95 % ellipse, individuals (orange: the best 10 %), and the result. \
                  On the diagonal: the sum of squares of the linearized model (thin)"

@@ -191,9 +191,9 @@ fn cross(generation: &Generation, rank: usize) -> String {
     let Some(crossed) = &generation.crossed else { return String::new() };
     let mate = mate(rank, crossed.parents);
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
-    let children = if mate < rank { "a child" } else { "two children" };
+    let children = if mate < rank { "a child: they" } else { "two children that" };
     format!(
-        "Ranks {} and {} have {children}: they exchange the genes after gene {} (Cross_Point).",
+        "Parents {} and {} (by rank) have {children} exchange the genes after gene {} (Cross_Point).",
         rank + 1,
         mate + 1,
         points.join(" and after gene ")

@@ -27,7 +27,7 @@ fn a_recorded_run_is_walked_through() {
         "Generation 1, step 1 of",
         "search.mos:38  ",
         "Fit is the sum of squared residuals",
-        "Ranks 1 and 2 have two children",
+        "Parents 1 and 2 (by rank) have two children",
         "below F_Mut = 0.5",
         "Individual 9 of the next generation is sampled at random",
     ] {
