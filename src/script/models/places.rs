@@ -25,7 +25,7 @@ pub(super) fn in_argument(error: Diagnostic, text: SourceId, call: Span) -> Diag
 }
 
 /// The Strings that a model gives its parameters, and where.
-pub(super) fn texts(flat: &FlatModel) -> Vec<(Arc<str>, Span)> {
+pub(super) fn strings(flat: &FlatModel) -> Vec<(Arc<str>, Span)> {
     let bindings = flat.variables.values().filter_map(|variable| variable.binding.as_ref());
     let text = |binding: &Expression| match &binding.kind {
         ExpressionKind::String(text) => Some((text.clone(), binding.span)),
@@ -35,9 +35,9 @@ pub(super) fn texts(flat: &FlatModel) -> Vec<(Arc<str>, Span)> {
 }
 
 /// A file that is not there: at the String that names it, not in the library that reads it.
-pub(super) fn where_named(error: Diagnostic, texts: &[(Arc<str>, Span)]) -> Diagnostic {
+pub(super) fn where_named(error: Diagnostic, strings: &[(Arc<str>, Span)]) -> Diagnostic {
     let is_named = |text: &str| error.message.contains(&format!("`{text}`"));
-    let named = texts.iter().find(|(text, place)| place.is_known() && is_named(text));
+    let named = strings.iter().find(|(text, place)| place.is_known() && is_named(text));
     match named {
         Some((_, place)) if error.code == FILE_ERROR => error.moved_to(*place),
         _ => error,

@@ -5,7 +5,7 @@ use super::compiled::Current;
 use super::continuation::Continued;
 use super::final_state::FinalState;
 use super::hardest::{Hardest, hardest};
-use super::places::{in_argument, placed, texts, where_named};
+use super::places::{in_argument, placed, strings, where_named};
 use super::stored::Request;
 pub use super::translated::Translated;
 use super::translated::declarations;
@@ -251,7 +251,7 @@ pub(super) fn compiled(
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
     let roots = session.classes.library.uses();
-    let named = texts(&flat);
+    let named = strings(&flat);
     let one = |error: Diagnostic| vec![session.classes.in_users_terms(where_named(error, &named))];
     let sorted = causalize::causalize(&flat).map_err(one)?;
     let (declarations, flat) = (declarations(&flat), Some(flat));
