@@ -55,7 +55,7 @@ function examples() {
   if (!initial.includes(".csv")) throw new Error("the data of case 4.1");
   scripts["scripts/GAPILib_INI.mos"] = initial;
   return [
-    { title: "A tank that empties: the four scripts", main: "GAPILib.mos", edit: "GAPILib_INI.mos", files: tank },
+    { title: "A draining tank: the four scripts", main: "GAPILib.mos", edit: "GAPILib_INI.mos", files: tank },
     { title: "A capacitor that discharges: one script", main: "fit.mos", files: own },
     { title: "A fuel cell's polarization curve (case 4.1 of the paper)", main: "scripts/GAPILib.mos", edit: "scripts/GAPILib_INI.mos",
       files: { ...scripts, [`scripts/${curve}.csv`]: text(join(project, `scripts/${curve}.csv`)), ...under("models/CaseStudies") } },
