@@ -377,7 +377,7 @@ impl Builder<'_> {
         matching: &Matching,
     ) -> Diagnostic {
         let mut fault = fault!(UNBALANCED_MODEL,
-            "the clocked equations do not determine the clocked variables: {} equations, {}              variables", clocked.len(), columns.list.len())
+            "the clocked equations do not determine the clocked variables: {} equations, {} variables", clocked.len(), columns.list.len())
         .at(clocked.first().map_or(Span::NONE, |first| first.equation.span));
         let open = matching.unknown_to_equation.iter().zip(&columns.list);
         for (_, v) in open.filter(|(equation, _)| equation.is_none()).take(MAX_SHOWN) {
