@@ -194,7 +194,9 @@ impl<'a> Causalization<'a> {
     }
 
     fn separate_discrete(&mut self) -> Result<(), Diagnostic> {
-        discrete::separate_discrete(&mut self.dae, &self.aliases)
+        discrete::separate_discrete(&mut self.dae, &self.aliases)?;
+        reinit::assign_discrete(&mut self.dae, &self.aliases);
+        Ok(())
     }
 
     fn reduce_index(&mut self) -> Result<(), Diagnostic> {

@@ -14,6 +14,7 @@ use super::expressions::{Array, Lowering, StringPart};
 use super::loops::LoopVariable;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
@@ -307,9 +308,15 @@ impl Builder<'_> {
         }
         for (state, value) in states.elements.iter().zip(&values.elements) {
             let variable = self.dae.pool.as_variable(*state);
-            let Some(state) =
-                variable.filter(|v| self.dae.variable(*v).kind == VariableKind::Unknown)
-            else {
+            let is_settable = |v: &VarId| match self.dae.variable(*v).kind {
+                VariableKind::Unknown => true,
+                // As other tools have it: see `causalize::reinit`.
+                VariableKind::Discrete => {
+                    !self.flat.strict && self.dae.variable(*v).base == BaseType::Real
+                }
+                _ => false,
+            };
+            let Some(state) = variable.filter(is_settable) else {
                 return Err(
                     fault!(NOT_SUPPORTED, "`reinit` of a variable that is not a state").at(span)
                 );

@@ -165,19 +165,20 @@ impl LoopSolver {
         self.attempt(equations, initial).or(outcome)
     }
 
-    /// Newton's method from `start`; what leaps there because nothing determines it stays.
-    fn newton_from_start(&mut self, equations: &mut Evaluation) -> Result<(), NewtonFailure> {
-        self.newton.solve(equations, &mut self.x, &self.nominal)?;
-        let from = (&self.start[..], &self.nominal[..]);
-        self.is_singular = return_from_leap(equations, from, &mut self.x);
+    /// Solves from x; what leaps because nothing determines it stays at the guess.
+    fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
+        self.attempt_from_x(equations, initial)?;
+        let from = (&self.guess[..], &self.nominal[..]);
+        self.is_singular |= return_from_leap(equations, from, &mut self.x);
         Ok(())
     }
 
-    fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
+    fn attempt_from_x(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
         let block = equations.torn.block;
         self.is_singular = false;
         self.start.copy_from_slice(&self.x);
-        let Err(failure) = self.newton_from_start(equations) else { return Ok(()) };
+        let first = self.newton.solve(equations, &mut self.x, &self.nominal);
+        let Err(failure) = first else { return Ok(()) };
         self.x.copy_from_slice(&self.start);
         let n = self.x.len();
         let least_squares = self.least_squares.get_or_insert_with(|| LeastSquares::new(n).into());
@@ -190,7 +191,7 @@ impl LoopSolver {
         }
         if near.is_ok() {
             self.start.copy_from_slice(&self.x);
-            match self.newton_from_start(equations) {
+            match self.newton.solve(equations, &mut self.x, &self.nominal) {
                 Ok(()) => return Ok(()),
                 Err(NewtonFailure::Singular)
                     if is_isolated(equations, &self.start, &self.nominal) =>

@@ -96,6 +96,7 @@ pub(super) fn return_from_leap(
     let (mut near, mut residual) = (start.to_vec(), vec![0.0; n]);
     for _ in 0..MOST_POLISHED {
         polish(equations, &mut near, nominal);
+        let scale: Vec<f64> = near.iter().zip(nominal).map(|(x, n)| x.abs().max(*n)).collect();
         let Some((matrix, rows)) = scaled_jacobian(equations, &near, &scale) else { return false };
         let values = matrix.singular_values();
         if values.min() > RANK * values.max() || equations.residual(&near, &mut residual).is_err() {

@@ -437,6 +437,17 @@ fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
 }
 
 #[test]
+fn reinit_of_a_discrete_variable_assigns_it() {
+    let text = "model R discrete Real d(start = 0, fixed = true); equation
+        when time >= 1 then d = 5; end when;
+        when time >= 2 then reinit(d, pre(d) + 2); end when; end R;";
+    let run = simulated(text, 3.0);
+    for (t, value) in [(0.5, 0.0), (1.5, 5.0), (2.5, 7.0)] {
+        near(run.at("d", t), value, 0.0);
+    }
+}
+
+#[test]
 fn a_delayed_equation_follows_its_pieces() {
     // x' = -x(t - 1), x = 1 before the start: x = 1 - t, then 1 - t + (t - 1)²/2, …
     let text = "model D Real x(start = 1, fixed = true); equation der(x) = -delay(x, 1); end D;";
