@@ -443,7 +443,7 @@ fn reinit_of_a_discrete_variable_assigns_it() {
         when time >= 2 then reinit(d, pre(d) + 2); end when; end R;";
     let run = simulated(text, 3.0);
     for (t, value) in [(0.5, 0.0), (1.5, 5.0), (2.5, 7.0)] {
-        near(run.at("d", t), value, 0.0);
+        near(run.held("d", t), value, 0.0);
     }
 }
 
