@@ -192,8 +192,12 @@ pub(crate) fn write<T>(place: *mut T, value: T) {
 
 /// Keeps the state of an instance: a new one, or in the place of one that was kept.
 pub(crate) fn keep_state(handle: &Handle, place: *mut *mut c_void) -> Result<(), Wrong> {
+    put_state(handle.instance.state.clone(), place)
+}
+
+fn put_state(state: State, place: *mut *mut c_void) -> Result<(), Wrong> {
     let place = slice_mut(place, 1)?;
-    let state = Box::new(handle.instance.state.clone());
+    let state = Box::new(state);
     match place[0].is_null() {
         true => place[0] = Box::into_raw(state).cast(),
         // SAFETY: it came from here by the standard.
@@ -211,6 +215,49 @@ pub(crate) fn restore_state(handle: &mut Handle, kept: *mut c_void) -> Result<()
     handle.instance.state = unsafe { &*kept.cast::<State>() }.clone();
     handle.instance.jacobian = None;
     Ok(())
+}
+
+/// How many bytes a state becomes.
+pub(crate) fn state_size(
+    handle: &Handle,
+    kept: *mut c_void,
+    size: *mut usize,
+) -> Result<(), Wrong> {
+    write(size, state_bytes(handle, kept)?.len());
+    Ok(())
+}
+
+/// Writes a state that was kept as bytes.
+pub(crate) fn write_state(
+    handle: &Handle,
+    kept: *mut c_void,
+    (bytes, size): (*mut u8, usize),
+) -> Result<(), Wrong> {
+    let own = state_bytes(handle, kept)?;
+    let out = slice_mut(bytes, size)?;
+    match out.get_mut(..own.len()) {
+        Some(out) => out.copy_from_slice(&own),
+        None => return Err(Wrong::Error(format!("the state has {} bytes", own.len()))),
+    }
+    Ok(())
+}
+
+fn state_bytes(handle: &Handle, kept: *mut c_void) -> Result<Vec<u8>, Wrong> {
+    if kept.is_null() {
+        return Err("there is no state".into());
+    }
+    // SAFETY: it came from `keep_state` or `read_state` by the standard.
+    handle.instance.bytes_of(unsafe { &*kept.cast::<State>() })
+}
+
+/// Makes a state of bytes: a new one, or in the place of one that was kept.
+pub(crate) fn read_state(
+    handle: &Handle,
+    (bytes, size): (*const u8, usize),
+    place: *mut *mut c_void,
+) -> Result<(), Wrong> {
+    let state = handle.instance.state_in(slice(bytes, size)?)?;
+    put_state(state, place)
 }
 
 /// Frees a state that was kept.

@@ -24,7 +24,7 @@ impl Instance {
                 "the step begins at {from}, but the last one has ended at {time}"
             )));
         }
-        if self.stop.is_some_and(|stop| to > stop + margin) {
+        if self.state.experiment.stop.is_some_and(|stop| to > stop + margin) {
             return Err(Wrong::Error(format!("the step leads past the stop time to {to}")));
         }
         let state = &mut self.state;
@@ -51,15 +51,16 @@ impl Instance {
             start: self.state.time,
             stop: to,
             output: OutputGrid::At(Vec::new()),
-            tolerance: self.tolerance,
+            tolerance: self.state.experiment.tolerance,
             method,
             initial_step: Some(to - self.state.time),
             ..Settings::default()
         };
-        // The integrator sees the unknowns of loops, from where the last evaluation has left them.
+        // The integrator sees the unknowns of loops, from where the last evaluation has left them; without
+        // states it sees none.
         let system = &mut self.state.system;
-        system.solve_loops(false);
         let n = self.state.x.len();
+        system.solve_loops(n == 0);
         let mut y = vec![0.0; n + system.n_algebraic()];
         system.unknowns(&mut y);
         y[..n].copy_from_slice(&self.state.x);

@@ -1,10 +1,12 @@
 //! An instance: a system with what the modes of FMI ask of it.
 
+use crate::codegen::bytes_of;
 use crate::fmi::export::{Exported, Place, Setter, ValueKind};
 use crate::loading::Loaded;
-use crate::runtime::System;
+use crate::runtime::{Snapshot, System};
 use crate::sim::{EventOutcome, Events, Failure, Residual, SimError, SimErrorKind, Simulator};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -30,7 +32,7 @@ impl From<&str> for Wrong {
 }
 
 /// Where an instance is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// Before the initialization.
     Instantiated,
@@ -53,11 +55,20 @@ pub(crate) struct Updated {
     pub(crate) next_event: Option<f64>,
 }
 
+/// When a simulation begins and ends, and how accurate it is to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Experiment {
+    start: f64,
+    pub(crate) stop: Option<f64>,
+    pub(crate) tolerance: f64,
+}
+
 /// What belongs to the state of an instance, to be kept and restored.
 #[derive(Clone)]
 pub(crate) struct State {
     pub(crate) system: System,
     pub(crate) phase: Phase,
+    pub(crate) experiment: Experiment,
     pub(crate) time: f64,
     /// The states, inputs that are states included.
     pub(crate) x: Vec<f64>,
@@ -78,9 +89,6 @@ pub(crate) struct State {
 pub(crate) struct Instance {
     pub(crate) model: Arc<Loaded>,
     pub(crate) state: State,
-    pub(crate) start: f64,
-    pub(crate) stop: Option<f64>,
-    pub(crate) tolerance: f64,
     pub(crate) simulator: Simulator,
     /// The Jacobian at the values at hand with the variables of its further rows, once it was asked for.
     pub(crate) jacobian: Option<(Vec<usize>, DMatrix<f64>)>,
@@ -107,6 +115,11 @@ impl State {
             observed: vec![0.0; system.n_observed()],
             system,
             phase: Phase::Instantiated,
+            experiment: Experiment {
+                start: model.program.experiment().start_time.unwrap_or(0.0),
+                stop: None,
+                tolerance: model.content.tolerance,
+            },
             time: 0.0,
             given: BTreeMap::new(),
             is_initialized: false,
@@ -117,14 +130,79 @@ impl State {
     }
 }
 
+/// A state as bytes: what was set, and what the system has come to since.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    token: String,
+    phase: Phase,
+    experiment: Experiment,
+    time: f64,
+    x: Vec<f64>,
+    given: BTreeMap<u32, f64>,
+    is_at_start: bool,
+    inputs_changed: bool,
+    /// After the initialization.
+    come_to: Option<Snapshot>,
+}
+
 impl Instance {
+    /// A state as bytes.
+    pub(crate) fn bytes_of(&self, state: &State) -> Result<Vec<u8>, Wrong> {
+        if !self.model.program.has_snapshots() {
+            return Err(
+                "states of this model cannot become bytes: its continuous states change".into()
+            );
+        }
+        let kept = Kept {
+            token: self.model.content.token.clone(),
+            phase: state.phase,
+            experiment: state.experiment,
+            time: state.time,
+            x: state.x.clone(),
+            given: state.given.clone(),
+            is_at_start: state.is_at_start,
+            inputs_changed: state.inputs_changed,
+            come_to: state.is_initialized.then(|| state.system.snapshot()),
+        };
+        bytes_of(&kept).ok_or_else(|| "the state is too large".into())
+    }
+
+    /// The state in these bytes.
+    pub(crate) fn state_in(&self, bytes: &[u8]) -> Result<State, Wrong> {
+        let foreign = || Wrong::from("these bytes are no state of this unit");
+        let kept: Kept = postcard::from_bytes(bytes).map_err(|_| foreign())?;
+        let mut state = State::new(&self.model);
+        if kept.token != self.model.content.token || kept.x.len() != state.x.len() {
+            return Err(foreign());
+        }
+        for (reference, value) in &kept.given {
+            let variable = self.model.content.variables.get(*reference as usize);
+            match variable.ok_or_else(foreign)?.setter {
+                Setter::Parameter(at) | Setter::Input { start: at, .. } => {
+                    let set = state.system.set_parameter(at, *value);
+                    set.map_err(|fault| Wrong::Error(fault.message))?;
+                }
+                Setter::Recorded { input, .. } => state.system.set_recorded(input, *value),
+                Setter::None => return Err(foreign()),
+            }
+        }
+        if let Some(snapshot) = kept.come_to {
+            // Objects and workspaces are those of an initialization; then the numbers follow.
+            let done = state.system.initialize(kept.experiment.start, &mut state.x);
+            done.map_err(|failure| self.explained(SimErrorKind::Initialization(failure)))?;
+            if !state.system.continue_from(snapshot) {
+                return Err(foreign());
+            }
+            state.is_initialized = true;
+        }
+        let Kept { phase, experiment, time, x, given, is_at_start, inputs_changed, .. } = kept;
+        Ok(State { phase, experiment, time, x, given, is_at_start, inputs_changed, ..state })
+    }
+
     pub(crate) fn new(model: Arc<Loaded>) -> Instance {
         let state = State::new(&model);
-        let tolerance = model.content.tolerance;
         let simulator = Simulator::new();
-        let start = model.program.experiment().start_time.unwrap_or(0.0);
-        let (stop, jacobian, passed_on) = (None, None, 0);
-        Instance { model, state, start, stop, tolerance, simulator, jacobian, passed_on }
+        Instance { model, state, simulator, jacobian: None, passed_on: 0 }
     }
 
     pub(crate) fn reset(&mut self) {
@@ -144,9 +222,10 @@ impl Instance {
         if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
             return Err("the start and stop time are no interval".into());
         }
-        (self.start, self.stop) = (start, stop);
+        let experiment = &mut self.state.experiment;
+        (experiment.start, experiment.stop) = (start, stop);
         if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > 0.0) {
-            self.tolerance = tolerance.clamp(1e-14, 1.0);
+            experiment.tolerance = tolerance.clamp(1e-14, 1.0);
         }
         Ok(())
     }
@@ -161,7 +240,7 @@ impl Instance {
     pub(crate) fn enter_initialization(&mut self) -> Result<(), Wrong> {
         self.expect(&[Phase::Instantiated], "the initialization begins after the instantiation")?;
         self.state.phase = Phase::Initialization;
-        self.state.time = self.start;
+        self.state.time = self.state.experiment.start;
         Ok(())
     }
 
@@ -179,7 +258,7 @@ impl Instance {
             return Ok(());
         }
         let state = &mut self.state;
-        let done = state.system.initialize(self.start, &mut state.x);
+        let done = state.system.initialize(self.state.experiment.start, &mut state.x);
         done.map_err(|failure| self.explained(SimErrorKind::Initialization(failure)))?;
         self.state.is_initialized = true;
         self.state.is_at_start = true;
@@ -280,7 +359,7 @@ impl Instance {
             Setter::Parameter(at) | Setter::Input { start: at, .. } => Ok(set(at)),
             Setter::Recorded { start, .. } => Ok(start),
             Setter::None => match variable.place {
-                Place::Time => Ok(self.start),
+                Place::Time => Ok(self.state.experiment.start),
                 Place::Variable(at) if self.state.system.value(at).is_some() => {
                     Ok(self.state.system.value(at).unwrap_or(f64::NAN))
                 }

@@ -5,7 +5,8 @@
 
 use crate::boundary::{
     DISCARD, Handle, Log, Logger, Logger2, call, folder, free_state, hand_over, keep_state,
-    restore_state, slice, slice_mut, strings, take_back, text, write,
+    read_state, restore_state, slice, slice_mut, state_size, strings, take_back, text, write,
+    write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, Wrong};
@@ -224,35 +225,33 @@ extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -
     call(instance, "fmi2FreeFMUstate", |_| free_state(state))
 }
 
-const NO_BYTES: &str = "states cannot become bytes (canSerializeFMUstate is false)";
-
 #[unsafe(no_mangle)]
 extern "C" fn fmi2SerializedFMUstateSize(
     instance: *mut c_void,
-    _state: *mut c_void,
-    _size: *mut usize,
+    state: *mut c_void,
+    size: *mut usize,
 ) -> c_int {
-    call(instance, "fmi2SerializedFMUstateSize", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi2SerializedFMUstateSize", |handle| state_size(handle, state, size))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi2SerializeFMUstate(
     instance: *mut c_void,
-    _state: *mut c_void,
-    _bytes: *mut c_char,
-    _size: usize,
+    state: *mut c_void,
+    bytes: *mut u8,
+    size: usize,
 ) -> c_int {
-    call(instance, "fmi2SerializeFMUstate", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi2SerializeFMUstate", |handle| write_state(handle, state, (bytes, size)))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi2DeSerializeFMUstate(
     instance: *mut c_void,
-    _bytes: *const c_char,
-    _size: usize,
-    _state: *mut *mut c_void,
+    bytes: *const u8,
+    size: usize,
+    state: *mut *mut c_void,
 ) -> c_int {
-    call(instance, "fmi2DeSerializeFMUstate", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi2DeSerializeFMUstate", |handle| read_state(handle, (bytes, size), state))
 }
 
 #[unsafe(no_mangle)]

@@ -4,8 +4,8 @@
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 
 use crate::boundary::{
-    Handle, Log, Logger, Logger3, call, folder, free_state, hand_over, keep_state, restore_state,
-    slice, slice_mut, strings, take_back, text, write,
+    Handle, Log, Logger, Logger3, call, folder, free_state, hand_over, keep_state, read_state,
+    restore_state, slice, slice_mut, state_size, strings, take_back, text, write, write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, Wrong};
@@ -308,35 +308,33 @@ extern "C" fn fmi3FreeFMUState(instance: *mut c_void, state: *mut *mut c_void) -
     call(instance, "fmi3FreeFMUState", |_| free_state(state))
 }
 
-const NO_BYTES: &str = "states cannot become bytes (canSerializeFMUState is false)";
-
 #[unsafe(no_mangle)]
 extern "C" fn fmi3SerializedFMUStateSize(
     instance: *mut c_void,
-    _state: *mut c_void,
-    _size: *mut usize,
+    state: *mut c_void,
+    size: *mut usize,
 ) -> c_int {
-    call(instance, "fmi3SerializedFMUStateSize", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi3SerializedFMUStateSize", |handle| state_size(handle, state, size))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3SerializeFMUState(
     instance: *mut c_void,
-    _state: *mut c_void,
-    _bytes: *mut u8,
-    _size: usize,
+    state: *mut c_void,
+    bytes: *mut u8,
+    size: usize,
 ) -> c_int {
-    call(instance, "fmi3SerializeFMUState", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi3SerializeFMUState", |handle| write_state(handle, state, (bytes, size)))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3DeserializeFMUState(
     instance: *mut c_void,
-    _bytes: *const u8,
-    _size: usize,
-    _state: *mut *mut c_void,
+    bytes: *const u8,
+    size: usize,
+    state: *mut *mut c_void,
 ) -> c_int {
-    call(instance, "fmi3DeserializeFMUState", |_| Err(NO_BYTES.into()))
+    call(instance, "fmi3DeserializeFMUState", |handle| read_state(handle, (bytes, size), state))
 }
 
 #[unsafe(no_mangle)]

@@ -196,6 +196,7 @@ fn describe(
     let interface = Interface {
         model_identifier: identifier(model.name),
         can_get_and_set_state: true,
+        can_serialize_state: program.has_snapshots(),
         provides_directional_derivatives: true,
         provides_adjoint_derivatives: version == Version::V3,
         ..Interface::default()

@@ -71,7 +71,7 @@ impl VariableInfo {
 
     /// Whether it is an output of the model itself.
     pub fn is_output(&self) -> bool {
-        self.top_level && self.causality == Some(CausalityPrefix::Output)
+        self.causality == Some(CausalityPrefix::Output)
     }
 }
 

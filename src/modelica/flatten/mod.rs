@@ -49,6 +49,7 @@ pub use recorded::RecordedInput;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::fault;
+use crate::flatten::connections::own_signals;
 use crate::flatten::ids::ScopeId;
 use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
@@ -179,6 +180,7 @@ fn flattened(
         return Err(distinct(errors));
     }
     object_equations::resolve(&mut model)?;
+    let signals = instantiation.classes.own_signals(root).map_err(one)?;
     let classes = instantiation.local_balances(&connections, &model).map_err(distinct)?;
     let unit_warnings = instantiation.classes.unit_warnings(&model);
     let mut warnings = instantiation.warnings;
@@ -187,12 +189,31 @@ fn flattened(
     for (name, function) in instantiation.functions.table {
         model.functions.extend(function.map(|function| (name, function)));
     }
-    let imbalance = balance::check(&model, &classes).err();
+    let imbalance = imbalance(&mut model, &classes, &signals);
     let imbalance = imbalance.map(|error| of_two_sources(&warnings).unwrap_or(error));
     warnings.extend(balance::warnings(&classes));
     warnings.extend(unit_warnings);
     let balance = classes.into_iter().find(|class| class.path.is_empty());
     Ok((Flattened { model, balance, warnings: distinct(warnings) }, imbalance))
+}
+
+/// Whether there are too few or too many equations. What nothing determines in connectors of the model
+/// comes from outside, if it is balanced so.
+fn imbalance(
+    model: &mut FlatModel,
+    classes: &[balance::LocalBalance],
+    signals: &own_signals::Signals,
+) -> Option<Diagnostic> {
+    let error = balance::check(model, classes).err()?;
+    if signals.is_empty() {
+        return Some(error);
+    }
+    own_signals::name(model, signals, true);
+    if balance::check(model, classes).is_ok() {
+        return None;
+    }
+    own_signals::name(model, signals, false);
+    Some(error)
 }
 
 /// Two sources of one signal, of which a warning says so: they are too many equations.

@@ -1,10 +1,44 @@
-//! What another simulator asks of a system, as FMI does: event indicators, and derivatives of chosen
-//! variables along chosen states.
+//! What another simulator asks of a system, as FMI does: event indicators, derivatives of chosen
+//! variables along chosen states, and what it has come to, as numbers.
 
-use super::instants::Stage;
+use super::instants::{Clock, Stage};
 use super::system::System;
+use crate::codegen::Program;
 use crate::sim::{Failure, Residual};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// What a system has come to at a time: what a system of the same program that was initialized with the
+/// same parameters needs to go on from there.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Snapshot {
+    registers: Vec<f64>,
+    relations: RelationSnapshot,
+    clocks: Vec<Clock>,
+    knots_passed: Vec<usize>,
+    given: Vec<(u32, f64)>,
+    before: Vec<f64>,
+    is_sampled: bool,
+}
+
+/// What is known of relations between events.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct RelationSnapshot {
+    switches: Vec<Option<f64>>,
+    is_at_start: bool,
+    postponed: Vec<bool>,
+    held: Vec<bool>,
+    uncertainty: Vec<f64>,
+    kept: Vec<(usize, f64)>,
+}
+
+impl Program {
+    /// Whether systems of it can continue from a [`Snapshot`]: states that are chosen while a model is
+    /// simulated are not part of one.
+    pub fn has_snapshots(&self) -> bool {
+        self.selections.is_empty() && self.needs_past().is_none()
+    }
+}
 
 impl System {
     /// Writes the event indicators at (t, y), loops solved inside: each is positive until an event is
@@ -85,5 +119,58 @@ impl System {
         };
         let (of_x, of_v) = (rows.view((0, 0), (n + p, n)), rows.view((0, n), (n + p, m)));
         Ok(of_x - of_v * v_x)
+    }
+
+    /// What the system has come to.
+    pub fn snapshot(&self) -> Snapshot {
+        let (relations, events) = (&self.relations, &self.events);
+        Snapshot {
+            registers: self.registers.registers.clone(),
+            relations: RelationSnapshot {
+                switches: relations.switches.clone(),
+                is_at_start: relations.is_at_start,
+                postponed: relations.postponed.clone(),
+                held: relations.held.clone(),
+                uncertainty: relations.uncertainty.clone(),
+                kept: relations.kept.clone(),
+            },
+            clocks: events.clocks.clone(),
+            knots_passed: events.knots_passed.clone(),
+            given: events.given.clone(),
+            before: events.before.clone(),
+            is_sampled: events.sampled,
+        }
+    }
+
+    /// Continues from there; whether it is a snapshot of this program.
+    pub fn continue_from(&mut self, snapshot: Snapshot) -> bool {
+        let (relations, events) = (&mut self.relations, &mut self.events);
+        let Snapshot { registers, relations: of_relations, .. } = snapshot;
+        let fits = registers.len() == self.registers.registers.len()
+            && of_relations.switches.len() == relations.switches.len()
+            && of_relations.postponed.len() == relations.postponed.len()
+            && of_relations.held.len() == relations.held.len()
+            && of_relations.uncertainty.len() == relations.uncertainty.len()
+            && of_relations.kept.iter().all(|(at, _)| *at < relations.switches.len())
+            && snapshot.clocks.len() == events.clocks.len()
+            && snapshot.knots_passed.len() == events.knots_passed.len()
+            && snapshot.before.len() == events.before.len()
+            && snapshot.given.iter().all(|(at, _)| (*at as usize) < registers.len());
+        if !fits {
+            return false;
+        }
+        self.registers.registers = registers;
+        relations.switches = of_relations.switches;
+        relations.is_at_start = of_relations.is_at_start;
+        relations.postponed = of_relations.postponed;
+        relations.held = of_relations.held;
+        relations.uncertainty = of_relations.uncertainty;
+        relations.kept = of_relations.kept;
+        events.clocks = snapshot.clocks;
+        events.knots_passed = snapshot.knots_passed;
+        events.given = snapshot.given;
+        events.before = snapshot.before;
+        events.sampled = snapshot.is_sampled;
+        true
     }
 }

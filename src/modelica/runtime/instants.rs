@@ -15,7 +15,7 @@ pub(super) enum Stage {
 }
 
 /// The times of a `sample`.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Clock {
     start: f64,
     interval: f64,

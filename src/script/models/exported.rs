@@ -219,7 +219,7 @@ fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Resul
         }
     }
     let always = literal(ExpressionKind::Integer(crate::lower::StateSelect::Always as i64 + 1));
-    let mut state = Variable { causality: None, ..input.clone() };
+    let mut state = Variable { causality: None, is_input: false, ..input.clone() };
     state.attributes.insert("fixed", literal(ExpressionKind::Boolean(true)));
     state.attributes.insert("stateSelect", always);
     state.attributes.insert("start", Attribute { value: start_value, is_final: false });

@@ -115,6 +115,22 @@ model Vector
 equation
   der(x) = u[2] - v[1];
 end Vector;
+connector Inlet
+  input Real rate(start = 2);
+  output Real level;
+end Inlet;
+model Tank
+  Inlet inlet;
+  Real v(start = 0, fixed = true);
+equation
+  der(v) = inlet.rate;
+  inlet.level = 3*v;
+end Tank;
+model Stateless
+  output Real z(start = 1);
+equation
+  z + 0.1*z^3 = 1 + time;
+end Stateless;
 model Percent
   Real x(start = 1, fixed = true);
 equation
@@ -474,6 +490,89 @@ fn a_start_value_is_set_and_a_state_is_kept_restored_and_reset() {
     assert_eq!(own.get::<f64>("Float64", "x"), 1.0, "nothing is left of what was set");
 }
 
+/// The bytes of the state of an instance.
+fn state_bytes(own: &Instance) -> Vec<u8> {
+    type Keep = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
+    type Size = unsafe extern "C" fn(*mut c_void, *mut c_void, *mut usize) -> c_int;
+    type Write = unsafe extern "C" fn(*mut c_void, *mut c_void, *mut u8, usize) -> c_int;
+    let (mut kept, mut size) = (std::ptr::null_mut(), 0);
+    unsafe {
+        assert_eq!(function::<Keep>("fmi3GetFMUState")(own.pointer, &raw mut kept), 0);
+        let measure = function::<Size>("fmi3SerializedFMUStateSize");
+        assert_eq!(measure(own.pointer, kept, &raw mut size), 0);
+        let mut bytes = vec![0; size];
+        let write = function::<Write>("fmi3SerializeFMUState");
+        assert_eq!(write(own.pointer, kept, bytes.as_mut_ptr(), size), 0);
+        assert_eq!(function::<Keep>("fmi3FreeFMUState")(own.pointer, &raw mut kept), 0);
+        bytes
+    }
+}
+
+/// Takes over the state in these bytes; the status.
+fn take_state(own: &Instance, bytes: &[u8]) -> c_int {
+    type Read = unsafe extern "C" fn(*mut c_void, *const u8, usize, *mut *mut c_void) -> c_int;
+    type Restore = unsafe extern "C" fn(*mut c_void, *mut c_void) -> c_int;
+    type Free = unsafe extern "C" fn(*mut c_void, *mut *mut c_void) -> c_int;
+    let mut kept = std::ptr::null_mut();
+    unsafe {
+        let read = function::<Read>("fmi3DeserializeFMUState");
+        let status = read(own.pointer, bytes.as_ptr(), bytes.len(), &raw mut kept);
+        if status == 0 {
+            assert_eq!(function::<Restore>("fmi3SetFMUState")(own.pointer, kept), 0);
+            assert_eq!(function::<Free>("fmi3FreeFMUState")(own.pointer, &raw mut kept), 0);
+        }
+        status
+    }
+}
+
+/// A state goes as bytes from one instance to another, which continues with the same bits.
+#[test]
+fn a_state_becomes_bytes_and_a_state_again() {
+    let begun = |unit: &'static Unpacked| {
+        let own = Instance::new(unit, true);
+        own.initialize();
+        own
+    };
+    for (class, outputs) in
+        [("Ball", vec!["h", "v"]), ("Driven", vec!["x", "y"]), ("Loop", vec!["x"])]
+    {
+        let unit: &'static Unpacked = Box::leak(Box::new(export(class, Version::V3).unwrap()));
+        assert!(unit.description.co_simulation.as_ref().unwrap().can_serialize_state);
+        let one = begun(unit);
+        if class == "Driven" {
+            one.set("Float64", "u", 3.0);
+            one.set("Int64", "i", 7i64);
+        }
+        one.step(0.0, 0.6);
+        let bytes = state_bytes(&one);
+        let two = Instance::new(unit, true);
+        assert_eq!(take_state(&two, &bytes), 0, "{class}: {:?}", MESSAGES.lock().unwrap());
+        let values = |of: &Instance| -> Vec<f64> {
+            outputs.iter().map(|name| of.get("Float64", name)).collect()
+        };
+        assert_eq!(values(&one), values(&two), "{class}");
+        for own in [&one, &two] {
+            own.step(0.6, 0.4);
+        }
+        assert_eq!(values(&one), values(&two), "{class}");
+        if class == "Driven" {
+            assert_eq!(two.get::<i64>("Int64", "j"), 8);
+        }
+        let mut wrong = bytes.clone();
+        wrong.truncate(bytes.len() / 2);
+        assert_eq!(take_state(&two, &wrong), 3);
+    }
+    let stair = export("Stair", Version::V3).unwrap();
+    let own = Instance::new(&stair, true);
+    own.initialize();
+    own.step(0.0, 1.5);
+    let other = Instance::new(&stair, true);
+    assert_eq!(take_state(&other, &state_bytes(&own)), 0);
+    assert_eq!(other.step(1.5, 2.0), (3.0, true), "the clock continues, and the model ends it");
+    let decay = export("Decay", Version::V3).unwrap();
+    assert_eq!(take_state(&Instance::new(&decay, true), &state_bytes(&own)), 3, "of another unit");
+}
+
 /// When the ball reaches the ground first, and how fast it is after a time before the second impact.
 fn ball(t: f64) -> (f64, f64, f64) {
     let (g, impact) = (9.81, (2.0f64 / 9.81).sqrt());
@@ -655,6 +754,33 @@ fn clocks_of_a_model_tick_in_its_unit() {
         let t = 0.2 * f64::from(step + 1);
         let rises = ((3.0 * t - std::f64::consts::FRAC_PI_6) / std::f64::consts::TAU).floor() + 1.0;
         assert_eq!(own.get::<i64>("Int64", "k"), rises as i64, "{t}");
+    }
+}
+
+#[test]
+fn signals_in_connectors_of_the_model_are_its_own() {
+    let unit = export("Tank", Version::V3).unwrap();
+    let causality = |name: &str| unit.description.find(name).unwrap().causality;
+    assert_eq!(causality("inlet.rate"), Causality::Input);
+    assert_eq!(causality("inlet.level"), Causality::Output);
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    own.step(0.0, 1.0);
+    close(own.get("Float64", "inlet.level"), 6.0, 1e-9);
+    own.set("Float64", "inlet.rate", -1.0);
+    own.step(1.0, 1.0);
+    close(own.get("Float64", "inlet.level"), 3.0, 1e-9);
+}
+
+#[test]
+fn a_model_of_a_loop_alone_goes_from_step_to_step() {
+    let unit = export("Stateless", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    for step in 0..5 {
+        own.step(f64::from(step), 1.0);
+        let z: f64 = own.get("Float64", "z");
+        close(z + 0.1 * z.powi(3), 2.0 + f64::from(step), 1e-7);
     }
 }
 

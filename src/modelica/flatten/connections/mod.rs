@@ -14,6 +14,7 @@ mod expandable;
 pub mod graph;
 mod operators;
 mod overconstrained;
+pub(crate) mod own_signals;
 mod pairs;
 mod set_equations;
 pub mod sets;
