@@ -258,7 +258,7 @@ impl Instance {
             return Ok(());
         }
         let state = &mut self.state;
-        let done = state.system.initialize(self.state.experiment.start, &mut state.x);
+        let done = state.system.initialize(state.experiment.start, &mut state.x);
         done.map_err(|failure| self.explained(SimErrorKind::Initialization(failure)))?;
         self.state.is_initialized = true;
         self.state.is_at_start = true;
