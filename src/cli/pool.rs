@@ -117,7 +117,7 @@ fn within<T: Send + 'static>(
             Err(mpsc::RecvTimeoutError::Disconnected) => return Ended::Panicked,
             Err(mpsc::RecvTimeoutError::Timeout) => {}
         }
-        if watch.elapsed() >= budget || began.elapsed() >= WAITING * budget {
+        if watch.elapsed() >= budget || began.elapsed() >= budget.saturating_mul(WAITING) {
             watch.cancel.store(true, Ordering::Relaxed);
             // What cannot be asked to end is left alone.
             let _ = receiver.recv_timeout(GRACE);
