@@ -5,8 +5,8 @@ use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
-use crate::script::models::exported::exported;
-use crate::script::models::{parameter_sets, simulation};
+use crate::script::models::exported::{exported, translate};
+use crate::script::models::parameter_sets;
 use crate::source::Span;
 use clap::{Args, ValueEnum, ValueHint};
 use gapilib_fmi::description::Version;
@@ -101,7 +101,7 @@ fn run(
     output: &Path,
 ) -> Result<(), Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    simulation::translate(session, class)?;
+    translate(session, class)?;
     if let Some(path) = &arguments.set_file {
         parameter_sets::set(session, path).map_err(one)?;
     }

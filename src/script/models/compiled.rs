@@ -28,6 +28,8 @@ pub(crate) struct CompiledModels {
     pub end: Option<FinalState>,
     /// The warnings reported so far.
     reported: FxHashSet<(Span, String)>,
+    /// Whether models are translated for others, who give their inputs values.
+    pub inputs_come_later: bool,
     /// Names of parameters about which a note was reported.
     noted: BTreeSet<Ident>,
     /// What was set by hand on models whose place another one has taken.

@@ -36,6 +36,17 @@ struct Made {
     description: Option<String>,
 }
 
+/// Translates a model whose inputs an importer gives values.
+///
+/// # Errors
+/// What is wrong with the model.
+pub fn translate(session: &mut Session, problem: &str) -> Result<(), Vec<Diagnostic>> {
+    session.models.inputs_come_later = true;
+    let translated = simulation::translate(session, problem);
+    session.models.inputs_come_later = false;
+    translated.map(|_| ())
+}
+
 /// The unit of a model, as scripts have changed it.
 ///
 /// # Errors
@@ -46,7 +57,7 @@ pub fn unit(
     version: Version,
     kinds: Kinds,
 ) -> Result<Unit, Vec<Diagnostic>> {
-    simulation::translate(session, problem)?;
+    translate(session, problem)?;
     let before = session.current_values();
     let mut made = Made::default();
     let varied =
