@@ -88,15 +88,21 @@ impl Start for LocalStart {
 /// it.
 fn program() -> Command {
     let own = std::env::current_exe().unwrap_or_default();
-    let stem = own.file_stem().map(|stem| stem.to_string_lossy().to_lowercase());
-    let stem = stem.unwrap_or_default();
-    if stem.starts_with("python") {
-        let mut command = Command::new(own);
+    if is_called(&own, "python") {
+        // The packages of a virtual environment are found by the link that was started, not by what it leads to.
+        let started = std::env::args_os().next().map(PathBuf::from);
+        let started = started.filter(|started| is_called(started, "python"));
+        let mut command = Command::new(started.unwrap_or(own));
         command.args(["-m", "gapilib"]);
         return command;
     }
-    let is_own = stem.starts_with("gapi");
+    let is_own = is_called(&own, "gapi");
     Command::new(if is_own { own.into_os_string() } else { OsString::from("gapi") })
+}
+
+fn is_called(program: &Path, name: &str) -> bool {
+    let stem = program.file_stem().map(|stem| stem.to_string_lossy().to_lowercase());
+    stem.is_some_and(|stem| stem.starts_with(name))
 }
 
 /// The folder for what a unit writes beside its own files.

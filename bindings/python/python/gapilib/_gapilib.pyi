@@ -9,6 +9,7 @@ _Progress = Optional[Callable[[str, int, int, Optional[float]], Any]]
 _Path = Union[str, "os.PathLike[str]"]
 
 __all__ = [
+    "Fmu",
     "GapilibError",
     "Model",
     "Optimizer",
