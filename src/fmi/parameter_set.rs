@@ -91,8 +91,8 @@ impl ParameterSet {
     /// The set in a text.
     ///
     /// # Errors
-    /// It is not well-formed, is no parameter set, gives a parameter two values or a value that is none;
-    /// values of type Binary.
+    /// It is not well-formed or not a parameter set; it gives a parameter two values, a value that is
+    /// none, or one of type Binary.
     pub fn read(text: &str) -> Result<ParameterSet, String> {
         let document =
             Document::parse(text).map_err(|error| format!("not well-formed: {error}"))?;

@@ -74,7 +74,7 @@ pub fn unit(
 /// The archive of the unit of a model, as scripts have changed it.
 ///
 /// # Errors
-/// As those of [`unit()`]; there is no runtime of units beside the program.
+/// As those of [`unit()`]; the runtime of units is missing beside the program.
 pub fn exported(
     session: &mut Session,
     problem: &str,

@@ -18,7 +18,7 @@ pub fn is_set(path: &Path) -> bool {
 /// Reads a file.
 ///
 /// # Errors
-/// It cannot be read, or is no parameter set.
+/// It cannot be read, or is not a parameter set.
 pub fn read(session: &Session, path: &Path) -> Result<ParameterSet, Fault> {
     let shown = path.display();
     if !is_set(path) {

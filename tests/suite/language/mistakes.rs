@@ -128,7 +128,7 @@ fn places_are_those_of_the_user() {
         code != 0 && errors.contains("s.mos:2:1") && errors.contains("write `0.5`"),
         "{errors}"
     );
-    let script = "openModel(\"C:/work/Decay.mo\");\n";
+    let script = "openModel(\"C:/models/Decay.mo\");\n";
     let (code, _, errors) = gapi(&folder(&[("s.mos", script)]), &["run", "s.mos"]);
     assert!(code != 0 && (cfg!(windows) || errors.contains("no drive `C:`")), "{errors}");
 }
@@ -283,7 +283,7 @@ fn scripts_that_stop_say_what_is_meant() {
         ("x := rand(3);\n".to_owned(), ["no function `rand`", "Ram_Gen_ARENA(Seed, 3)"]),
         ("print(\"x = %g\", 3);\n".to_owned(), ["has no formats", "String(3)"]),
         ("x = {1, 2};\ny := length(x);\n".to_owned(), ["characters of a String", "`size(x, 1)`"]),
-        ("cd(\"C:/work\");\n".to_owned(), ["no drive `C:`", "working directory is still"]),
+        ("cd(\"C:/models\");\n".to_owned(), ["no drive `C:`", "working directory is still"]),
         (
             format!("{READ}D := {};\n", EVAL.replace("{\"V0\", \"tau\"}", "{V0, tau}")),
             ["`Parameter_Names` expects Strings", "write `{\"V0\", \"tau\"}`"],
