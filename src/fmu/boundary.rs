@@ -213,7 +213,7 @@ pub(crate) fn restore_state(handle: &mut Handle, kept: *mut c_void) -> Result<()
     }
     // SAFETY: it came from `keep_state` by the standard.
     handle.instance.state = unsafe { &*kept.cast::<State>() }.clone();
-    handle.instance.jacobian = None;
+    handle.instance.derivatives.forget();
     Ok(())
 }
 

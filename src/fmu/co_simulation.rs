@@ -1,19 +1,20 @@
 //! Steps of an instance by its own integrator, a method of one step that may begin anywhere: inputs
-//! jump at communication points. Events within a step are handled in it.
+//! jump at communication points. Events within a step are handled in it, unless the importer handles
+//! them and lets a step end at one.
 
 use crate::instance::{Instance, Phase, Wrong};
 use crate::sim::{
-    AT_ONCE, End, EventOutcome, OutputGrid, Residual, Settings, SimError, SimErrorKind, Trajectory,
-    find_integrator,
+    AT_ONCE, Ended, EventOutcome, OutputGrid, Residual, Settings, SimError, SimErrorKind,
+    Trajectory, find_integrator,
 };
 
 /// A method of Rosenbrock for stiff and other models.
 const METHOD: &str = "rodas4";
 
 impl Instance {
-    /// Goes from a communication point to the next.
-    pub(crate) fn do_step(&mut self, from: f64, length: f64) -> Result<End, Wrong> {
-        self.expect(&[Phase::Event], "steps follow the initialization")?;
+    /// Goes from a communication point to the next, or to an event that the importer handles.
+    pub(crate) fn do_step(&mut self, from: f64, length: f64) -> Result<Ended, Wrong> {
+        self.expect(&[Phase::Step], "steps follow the initialization and events")?;
         let (time, to) = (self.state.time, from + length);
         let margin = AT_ONCE.max(1e-9 * time.abs());
         if !to.is_finite() || length < 0.0 {
@@ -30,22 +31,26 @@ impl Instance {
         let state = &mut self.state;
         let due = state.system.is_event_due(state.time, &state.x);
         let is_due = due.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;
+        if is_due && self.kind.ends_steps_at_events() {
+            return Ok(Ended::AtEvent);
+        }
         if self.state.inputs_changed || is_due {
+            self.state.next_step = None;
             let mut outcome = EventOutcome::Again;
             while outcome == EventOutcome::Again {
                 outcome = self.handle_event()?;
             }
             if outcome == EventOutcome::Terminate {
-                return Ok(End { time, is_terminated: true });
+                return Ok(Ended::Terminated);
             }
         }
         if to <= time {
-            return Ok(End { time, is_terminated: false });
+            return Ok(Ended::AtStop);
         }
         self.integrate(to)
     }
 
-    fn integrate(&mut self, to: f64) -> Result<End, Wrong> {
+    fn integrate(&mut self, to: f64) -> Result<Ended, Wrong> {
         let method = find_integrator(METHOD).map_err(|fault| Wrong::Error(fault.message))?;
         let settings = Settings {
             start: self.state.time,
@@ -53,7 +58,9 @@ impl Instance {
             output: OutputGrid::At(Vec::new()),
             tolerance: self.state.experiment.tolerance,
             method,
-            initial_step: Some(to - self.state.time),
+            // What followed the last step follows it still; after an event, the whole way is tried.
+            initial_step: Some(self.state.next_step.take().unwrap_or(to - self.state.time)),
+            stops_at_events: self.kind.ends_steps_at_events(),
             ..Settings::default()
         };
         // The integrator sees the unknowns of loops, from where the last evaluation has left them; without
@@ -73,7 +80,8 @@ impl Instance {
         match done {
             Ok(end) => {
                 self.state.time = end.time;
-                Ok(end)
+                self.state.next_step = end.next_step.filter(|_| end.why == Ended::AtStop);
+                Ok(end.why)
             }
             Err(error) => {
                 let SimError { time, .. } = error;

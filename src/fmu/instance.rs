@@ -2,10 +2,10 @@
 
 use crate::codegen::bytes_of;
 use crate::fmi::export::{Exported, Place, Setter, ValueKind};
+use crate::known_derivatives::Derivatives;
 use crate::loading::Loaded;
 use crate::runtime::{Snapshot, System};
 use crate::sim::{EventOutcome, Events, Failure, Residual, SimError, SimErrorKind, Simulator};
-use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,12 +38,43 @@ pub(crate) enum Phase {
     Instantiated,
     /// During it: values follow from what is set so far.
     Initialization,
-    /// At an event; for co-simulation between steps.
+    /// At an event.
     Event,
-    /// Between events.
+    /// Between events, integrated by the importer.
     Continuous,
+    /// Between steps of co-simulation.
+    Step,
     /// After the end.
     Terminated,
+}
+
+/// Who integrates an instance, and who handles its events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum InterfaceKind {
+    /// The importer does both.
+    ModelExchange,
+    /// The instance does both, unless the importer asks for events.
+    CoSimulation {
+        /// Whether the importer handles those between steps.
+        has_event_mode: bool,
+        /// Whether steps may end early.
+        returns_early: bool,
+    },
+}
+
+impl InterfaceKind {
+    /// Whether a step ends at an event, which the importer handles.
+    pub(crate) fn ends_steps_at_events(self) -> bool {
+        self == InterfaceKind::CoSimulation { has_event_mode: true, returns_early: true }
+    }
+
+    /// Where an instance is after its initialization.
+    fn first_phase(self) -> Phase {
+        match self {
+            InterfaceKind::CoSimulation { has_event_mode: false, .. } => Phase::Step,
+            _ => Phase::Event,
+        }
+    }
 }
 
 /// What an event update did.
@@ -80,6 +111,8 @@ pub(crate) struct State {
     is_at_start: bool,
     /// Whether inputs were set since the last event.
     pub(crate) inputs_changed: bool,
+    /// How long the next step of its own integrator is meant to be, s.
+    pub(crate) next_step: Option<f64>,
     /// Observed variables at (time, x).
     observed: Vec<f64>,
     is_observed: bool,
@@ -88,10 +121,10 @@ pub(crate) struct State {
 /// An instance.
 pub(crate) struct Instance {
     pub(crate) model: Arc<Loaded>,
+    pub(crate) kind: InterfaceKind,
     pub(crate) state: State,
     pub(crate) simulator: Simulator,
-    /// The Jacobian at the values at hand with the variables of its further rows, once it was asked for.
-    pub(crate) jacobian: Option<(Vec<usize>, DMatrix<f64>)>,
+    pub(crate) derivatives: Derivatives,
     /// How many messages of the model have been passed on.
     passed_on: usize,
 }
@@ -125,6 +158,7 @@ impl State {
             is_initialized: false,
             is_at_start: false,
             inputs_changed: false,
+            next_step: None,
             is_observed: false,
         }
     }
@@ -141,6 +175,7 @@ struct Kept {
     given: BTreeMap<u32, f64>,
     is_at_start: bool,
     inputs_changed: bool,
+    next_step: Option<f64>,
     /// After the initialization.
     come_to: Option<Snapshot>,
 }
@@ -162,6 +197,7 @@ impl Instance {
             given: state.given.clone(),
             is_at_start: state.is_at_start,
             inputs_changed: state.inputs_changed,
+            next_step: state.next_step,
             come_to: state.is_initialized.then(|| state.system.snapshot()),
         };
         bytes_of(&kept).ok_or_else(|| "the state is too large".into())
@@ -195,19 +231,23 @@ impl Instance {
             }
             state.is_initialized = true;
         }
-        let Kept { phase, experiment, time, x, given, is_at_start, inputs_changed, .. } = kept;
-        Ok(State { phase, experiment, time, x, given, is_at_start, inputs_changed, ..state })
+        let Kept {
+            phase, experiment, time, x, given, is_at_start, inputs_changed, next_step, ..
+        } = kept;
+        let state = State { phase, experiment, time, x, given, ..state };
+        Ok(State { is_at_start, inputs_changed, next_step, ..state })
     }
 
-    pub(crate) fn new(model: Arc<Loaded>) -> Instance {
+    pub(crate) fn new(model: Arc<Loaded>, kind: InterfaceKind) -> Instance {
         let state = State::new(&model);
         let simulator = Simulator::new();
-        Instance { model, state, simulator, jacobian: None, passed_on: 0 }
+        let derivatives = Derivatives::default();
+        Instance { model, kind, state, simulator, derivatives, passed_on: 0 }
     }
 
     pub(crate) fn reset(&mut self) {
         self.state = State::new(&self.model);
-        self.jacobian = None;
+        self.derivatives.forget();
         self.passed_on = 0;
     }
 
@@ -247,7 +287,7 @@ impl Instance {
     pub(crate) fn exit_initialization(&mut self) -> Result<(), Wrong> {
         self.expect(&[Phase::Initialization], "the initialization has not begun")?;
         self.initialize()?;
-        self.state.phase = Phase::Event;
+        self.state.phase = self.kind.first_phase();
         self.state.inputs_changed = false;
         Ok(())
     }
@@ -269,7 +309,17 @@ impl Instance {
 
     pub(crate) fn forget_values(&mut self) {
         self.state.is_observed = false;
-        self.jacobian = None;
+        self.derivatives.forget();
+    }
+
+    /// Parameters that were set, by their positions.
+    pub(crate) fn parameters_given(&self) -> impl Iterator<Item = usize> {
+        let variables = &self.model.content.variables;
+        let given = self.state.given.keys().filter_map(|own| variables.get(*own as usize));
+        given.filter_map(|variable| match variable.setter {
+            Setter::Parameter(at) => Some(at),
+            _ => None,
+        })
     }
 
     /// A failure in the model's words.
@@ -299,10 +349,10 @@ impl Instance {
         fresh
     }
 
-    fn variable(&self, reference: u32, kinds: &[ValueKind]) -> Result<Exported, Wrong> {
+    fn variable(&self, reference: u32, kinds: &[ValueKind]) -> Result<&Exported, Wrong> {
         let found = self.model.content.variables.get(reference as usize);
         let found = found.filter(|variable| kinds.contains(&variable.kind));
-        found.cloned().ok_or_else(|| {
+        found.ok_or_else(|| {
             Wrong::Error(format!(
                 "there is no variable of this type with value reference {reference}"
             ))
@@ -312,12 +362,13 @@ impl Instance {
     /// The value of a variable.
     pub(crate) fn value(&mut self, reference: u32, kinds: &[ValueKind]) -> Result<f64, Wrong> {
         let variable = self.variable(reference, kinds)?;
+        let place = variable.place;
         match self.state.phase {
-            Phase::Instantiated => return self.start_value(reference, &variable),
+            Phase::Instantiated => return self.start_value(reference, variable),
             Phase::Initialization => self.initialize()?,
             _ => {}
         }
-        let at_place = match variable.place {
+        let at_place = match place {
             Place::Time => return Ok(self.state.time),
             Place::State(state) => return Ok(self.state.x[state]),
             Place::Derivative(state) => return Ok(self.all_derivatives()?[state]),
@@ -329,8 +380,8 @@ impl Instance {
             Place::Variable(at) => at,
         };
         use crate::codegen::Access;
-        let model = self.model.clone();
-        match model.program.variables()[at_place].access {
+        let variable = &self.model.program.variables()[at_place];
+        match variable.access {
             Access::Time => Ok(self.state.time),
             Access::Constant(value) => Ok(value),
             Access::Parameter => self.state.system.value(at_place).ok_or_else(|| {
@@ -390,44 +441,45 @@ impl Instance {
         kinds: &[ValueKind],
     ) -> Result<(), Wrong> {
         let variable = self.variable(reference, kinds)?;
+        let refused = |why: &str| Err(Wrong::Error(format!("`{}` {why}", variable.name)));
         if !value.is_finite() {
-            return Err(Wrong::Error(format!("`{}` cannot become {value}", variable.name)));
+            return refused(&format!("cannot become {value}"));
         }
         let is_before = matches!(self.state.phase, Phase::Instantiated | Phase::Initialization);
+        let setter = variable.setter;
+        match setter {
+            Setter::None => return refused("cannot be set"),
+            Setter::Parameter(_) if !is_before => {
+                return refused("can be set before the end of the initialization only");
+            }
+            _ => {}
+        }
         let state = &mut self.state;
-        match variable.setter {
-            Setter::None => Err(Wrong::Error(format!("`{}` cannot be set", variable.name))),
-            Setter::Parameter(_) if !is_before => Err(Wrong::Error(format!(
-                "`{}` can be set before the end of the initialization only",
-                variable.name
-            ))),
-            Setter::Parameter(at) | Setter::Input { start: at, .. } if is_before => {
+        match setter {
+            Setter::Input { state: at, is_negated, .. } if !is_before => {
+                let value = if is_negated { -value } else { value };
+                if state.x[at] == value {
+                    return Ok(());
+                }
+                state.x[at] = value;
+                state.inputs_changed = true;
+            }
+            Setter::Parameter(at) | Setter::Input { start: at, .. } => {
                 let set = state.system.set_parameter(at, value);
                 set.map_err(|fault| Wrong::Error(fault.message))?;
                 state.given.insert(reference, value);
                 state.is_initialized = false;
-                self.forget_values();
-                Ok(())
-            }
-            Setter::Input { state: at, is_negated, .. } => {
-                let value = if is_negated { -value } else { value };
-                if state.x[at] != value {
-                    state.x[at] = value;
-                    state.inputs_changed = true;
-                    self.forget_values();
-                }
-                Ok(())
             }
             Setter::Recorded { input, .. } => {
                 state.system.set_recorded(input, value);
                 state.given.insert(reference, value);
                 state.is_initialized &= !is_before;
                 state.inputs_changed = true;
-                self.forget_values();
-                Ok(())
             }
-            Setter::Parameter(_) => Ok(()),
+            Setter::None => {}
         }
+        self.forget_values();
+        Ok(())
     }
 
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Wrong> {
@@ -524,12 +576,36 @@ impl Instance {
     }
 
     pub(crate) fn enter_event_mode(&mut self) -> Result<(), Wrong> {
-        self.expect(&[Phase::Continuous, Phase::Event], "events follow the initialization")?;
+        self.expect_events()?;
+        let phases = [Phase::Continuous, Phase::Step, Phase::Event];
+        self.expect(&phases, "events follow the initialization")?;
         self.state.phase = Phase::Event;
         Ok(())
     }
 
+    /// Ends an event of co-simulation.
+    pub(crate) fn enter_step_mode(&mut self) -> Result<(), Wrong> {
+        self.expect_events()?;
+        self.expect(&[Phase::Event, Phase::Step], "an event comes first")?;
+        self.state.phase = Phase::Step;
+        self.state.next_step = None;
+        Ok(())
+    }
+
+    fn expect_events(&self) -> Result<(), Wrong> {
+        match self.kind {
+            InterfaceKind::CoSimulation { has_event_mode: false, .. } => {
+                Err("events are handled within steps: the instance was made without event mode"
+                    .into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     pub(crate) fn enter_continuous_mode(&mut self) -> Result<(), Wrong> {
+        if self.kind != InterfaceKind::ModelExchange {
+            return Err("it integrates itself: it was made for co-simulation".into());
+        }
         self.expect(&[Phase::Event, Phase::Continuous], "an event comes first")?;
         self.state.phase = Phase::Continuous;
         Ok(())
@@ -576,7 +652,7 @@ impl Instance {
     }
 
     pub(crate) fn terminate(&mut self) -> Result<(), Wrong> {
-        if matches!(self.state.phase, Phase::Event | Phase::Continuous) {
+        if matches!(self.state.phase, Phase::Event | Phase::Continuous | Phase::Step) {
             let state = &mut self.state;
             let done = state.system.finish(state.time, &mut state.x);
             done.map_err(|failure| self.explained(SimErrorKind::Evaluation(failure)))?;

@@ -25,6 +25,7 @@ mod boundary;
 mod co_simulation;
 mod derivatives;
 mod instance;
+mod known_derivatives;
 mod loading;
 mod version_2;
 mod version_3;

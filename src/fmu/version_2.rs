@@ -9,13 +9,17 @@ use crate::boundary::{
     write_state,
 };
 use crate::fmi::export::ValueKind;
-use crate::instance::{Instance, Wrong};
+use crate::instance::{Instance, InterfaceKind, Wrong};
 use crate::loading::load;
+use crate::sim::Ended;
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 
 const REAL: &[ValueKind] = &[ValueKind::Real];
 const INTEGER: &[ValueKind] = &[ValueKind::Integer, ValueKind::Enumeration];
 const BOOLEAN: &[ValueKind] = &[ValueKind::Boolean];
+
+/// `fmi2CoSimulation`
+const CO_SIMULATION: c_int = 1;
 
 /// `fmi2CallbackFunctions`
 #[repr(C)]
@@ -65,7 +69,7 @@ extern "C" fn fmi2SetDebugLogging(
 #[unsafe(no_mangle)]
 extern "C" fn fmi2Instantiate(
     name: *const c_char,
-    _kind: c_int,
+    kind: c_int,
     token: *const c_char,
     resources: *const c_char,
     callbacks: *const Callbacks,
@@ -73,6 +77,12 @@ extern "C" fn fmi2Instantiate(
     logging_on: c_int,
 ) -> *mut c_void {
     let Ok([callbacks]) = slice(callbacks, 1) else { return std::ptr::null_mut() };
+    let kind = match kind {
+        CO_SIMULATION => {
+            InterfaceKind::CoSimulation { has_event_mode: false, returns_early: false }
+        }
+        _ => InterfaceKind::ModelExchange,
+    };
     let log = Log {
         logger: Logger::Version2(callbacks.logger),
         environment: callbacks.environment,
@@ -82,7 +92,7 @@ extern "C" fn fmi2Instantiate(
     };
     hand_over(log, "fmi2Instantiate", || {
         let model = load(&folder(&text(resources)), &text(token))?;
-        Ok(Instance::new(model))
+        Ok(Instance::new(model, kind))
     })
 }
 
@@ -383,7 +393,7 @@ extern "C" fn fmi2DoStep(
     let status = call(instance, "fmi2DoStep", |handle| {
         let stepped = handle.instance.do_step(from, length);
         handle.last_successful_time = handle.instance.state.time;
-        terminates = stepped?.is_terminated;
+        terminates = stepped? == Ended::Terminated;
         handle.is_terminated = terminates;
         Ok(())
     });

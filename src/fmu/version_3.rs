@@ -8,8 +8,9 @@ use crate::boundary::{
     restore_state, slice, slice_mut, state_size, strings, take_back, text, write, write_state,
 };
 use crate::fmi::export::ValueKind;
-use crate::instance::{Instance, Wrong};
+use crate::instance::{Instance, InterfaceKind, Wrong};
 use crate::loading::load;
+use crate::sim::Ended;
 use std::ffi::{CString, c_char, c_int, c_void};
 
 const FLOAT: &[ValueKind] = &[ValueKind::Real];
@@ -40,6 +41,7 @@ fn instantiate(
     (name, token, resources): (*const c_char, *const c_char, *const c_char),
     logging_on: bool,
     (environment, logger): (*mut c_void, Option<Logger3>),
+    kind: InterfaceKind,
 ) -> *mut c_void {
     let log = Log {
         logger: Logger::Version3(logger),
@@ -50,7 +52,7 @@ fn instantiate(
     };
     hand_over(log, function, || {
         let model = load(&folder(&text(resources)), &text(token))?;
-        Ok(Instance::new(model))
+        Ok(Instance::new(model, kind))
     })
 }
 
@@ -65,7 +67,8 @@ extern "C" fn fmi3InstantiateModelExchange(
     logger: Option<Logger3>,
 ) -> *mut c_void {
     let function = "fmi3InstantiateModelExchange";
-    instantiate(function, (name, token, resources), logging_on, (environment, logger))
+    let kind = InterfaceKind::ModelExchange;
+    instantiate(function, (name, token, resources), logging_on, (environment, logger), kind)
 }
 
 #[unsafe(no_mangle)]
@@ -75,8 +78,8 @@ extern "C" fn fmi3InstantiateCoSimulation(
     resources: *const c_char,
     _visible: bool,
     logging_on: bool,
-    _event_mode_used: bool,
-    _early_return_allowed: bool,
+    has_event_mode: bool,
+    returns_early: bool,
     _required: *const u32,
     _n_required: usize,
     environment: *mut c_void,
@@ -84,7 +87,8 @@ extern "C" fn fmi3InstantiateCoSimulation(
     _intermediate_update: *const c_void,
 ) -> *mut c_void {
     let function = "fmi3InstantiateCoSimulation";
-    instantiate(function, (name, token, resources), logging_on, (environment, logger))
+    let kind = InterfaceKind::CoSimulation { has_event_mode, returns_early };
+    instantiate(function, (name, token, resources), logging_on, (environment, logger), kind)
 }
 
 #[unsafe(no_mangle)]
@@ -154,7 +158,7 @@ plain! {
     fmi3EnterConfigurationMode = |_| Err("there are no structural parameters".into());
     fmi3ExitConfigurationMode = |_| Err("there are no structural parameters".into());
     fmi3EvaluateDiscreteStates = |_| Err("discrete states are updated at events alone".into());
-    fmi3EnterStepMode = |_| Err("events are handled within steps: there is no event mode".into());
+    fmi3EnterStepMode = |handle| handle.instance.enter_step_mode();
 }
 
 /// Getters and setters of a type.
@@ -491,8 +495,12 @@ extern "C" fn fmi3DoStep(
         write(early_return, false);
         write(terminates, false);
         let stepped = handle.instance.do_step(from, length);
-        write(last_successful_time, handle.instance.state.time);
-        write(terminates, stepped?.is_terminated);
+        let time = handle.instance.state.time;
+        write(last_successful_time, time);
+        let stepped = stepped?;
+        write(terminates, stepped == Ended::Terminated);
+        write(event_handling_needed, stepped == Ended::AtEvent);
+        write(early_return, stepped == Ended::AtEvent && time < from + length);
         Ok(())
     })
 }

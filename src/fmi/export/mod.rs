@@ -202,7 +202,12 @@ fn describe(
         ..Interface::default()
     };
     let exchange = Interface { needs_completed_step: false, ..interface.clone() };
-    let co_simulation = Interface { can_handle_variable_steps: true, ..interface };
+    let co_simulation = Interface {
+        can_handle_variable_steps: true,
+        has_event_mode: version == Version::V3,
+        might_return_early: version == Version::V3,
+        ..interface
+    };
     let experiment = program.experiment();
     let category = |(name, description): &(&str, &str)| LogCategory {
         name: (*name).to_owned(),

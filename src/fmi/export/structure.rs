@@ -1,10 +1,10 @@
 //! What follows from what.
 
-use super::content::Place;
+use super::content::{Exported, Place, Setter};
 use super::variables::Table;
-use crate::codegen::Program;
+use crate::codegen::{Needs, Program};
 use crate::description::{
-    Causality, DependencyKind, Initial, Structure, Unknown, Variability, Version,
+    Causality, DependencyKind, Initial, Structure, Unknown, Variability, Variable, Version,
 };
 
 /// The structure of a model.
@@ -15,13 +15,13 @@ pub(super) fn structure(program: &Program, table: &Table, version: Version) -> S
         .zip(&table.states)
         .map(|(place, state)| Unknown {
             variable: *place,
-            dependencies: table.dependencies(program.states_of_derivative(*state)),
+            dependencies: table.dependencies(program.needs_of_derivative(*state), version),
         })
         .collect();
     let outputs: Vec<Unknown> = places(table, |causality| causality == Causality::Output)
         .map(|place| Unknown {
             variable: place,
-            dependencies: table.dependencies_of(program, place),
+            dependencies: table.dependencies_of(program, place, version),
         })
         .collect();
     let mut initial: Vec<usize> = Vec::new();
@@ -62,21 +62,28 @@ impl Table {
         &self,
         program: &Program,
         place: usize,
+        version: Version,
     ) -> Option<Vec<(usize, DependencyKind)>> {
         let (variable, exported) = &self.variables[place];
-        match exported.place {
+        let needs = match exported.place {
             // What changes at events depends on what led to them.
             _ if variable.variability != Variability::Continuous => None,
-            Place::State(state) => self.dependencies(Some(vec![state])),
-            Place::Derivative(state) => self.dependencies(program.states_of_derivative(state)),
-            Place::Variable(at) => self.dependencies(program.states_needed_by(&[at])),
+            Place::State(state) => Some(Needs { states: vec![state], ..Needs::default() }),
+            Place::Derivative(state) => program.needs_of_derivative(state),
+            Place::Variable(at) => program.needs_of(at),
             Place::Time | Place::Indicator(_) => None,
-        }
+        };
+        self.dependencies(needs, version)
     }
 
-    /// States and inputs, by their numbers, as places.
-    fn dependencies(&self, states: Option<Vec<usize>>) -> Option<Vec<(usize, DependencyKind)>> {
-        let places = states?.into_iter().map(|state| {
+    /// What is needed, as places: states, inputs and the time, in FMI 3.0 also parameters.
+    fn dependencies(
+        &self,
+        needs: Option<Needs>,
+        version: Version,
+    ) -> Option<Vec<(usize, DependencyKind)>> {
+        let Needs { states, parameters, time } = needs?;
+        let places = states.into_iter().map(|state| {
             let own = self.states.iter().position(|known| *known == state);
             let input = || self.inputs.iter().find(|(known, _)| *known == state);
             own.map(|at| self.state_places[at]).or_else(|| input().map(|(_, place)| *place))
@@ -86,6 +93,17 @@ impl Table {
             return None;
         }
         let mut places: Vec<usize> = places.collect::<Option<_>>()?;
+        let is_needed = |(variable, exported): &(Variable, Exported)| match exported.setter {
+            _ if exported.place == Place::Time => time,
+            Setter::Parameter(at) => {
+                version == Version::V3
+                    && variable.causality == Causality::Parameter
+                    && parameters.binary_search(&at).is_ok()
+            }
+            _ => false,
+        };
+        let all = self.variables.iter().enumerate();
+        places.extend(all.filter(|(_, own)| is_needed(own)).map(|(place, _)| place));
         places.sort_unstable();
         places.dedup();
         Some(places.into_iter().map(|place| (place, DependencyKind::Dependent)).collect())

@@ -20,7 +20,7 @@ use super::program::{
 use super::registers::Registers;
 use super::relation_groups::{memoryless, relations_of_blocks, relations_of_loops};
 use super::sequence::{
-    by_columns, compile_continuous, compile_outputs, compile_steps, resolved, slice,
+    by_columns, compile_continuous, compile_outputs, compile_steps, right_sides, slice,
 };
 use super::tape::Tape;
 use super::tape_builder::TapeBuilder;
@@ -153,22 +153,9 @@ impl Compilation {
         Blocks { between_events, initial, at_events, unread }
     }
 
-    /// The derivatives of the states, in order.
-    fn derivatives(&mut self) -> Vec<Expr> {
-        let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
-        for (v, variable) in (0..).map(VarId).zip(&self.causalized.dae.variables) {
-            if let VariableKind::Derivative(of) = variable.kind {
-                derivatives.entry(of).or_insert(v);
-            }
-        }
-        let Compilation { causalized, pool, .. } = self;
-        let states = causalized.states.iter();
-        states.map(|state| resolved(pool, causalized, derivatives[state])).collect()
-    }
-
     fn continuous(&mut self) -> Continuous {
-        let mut outputs = self.derivatives();
         let Compilation { causalized, pool, registers, next, .. } = self;
+        let mut outputs = right_sides(causalized, pool);
         let chosen = IterationVariables::choose(pool, causalized, &outputs);
         let IterationVariables { iteration, n_auxiliary, residuals, sequence } = chosen;
         outputs.extend(&residuals);

@@ -1,6 +1,7 @@
 //! What another simulator needs to know of a model before it simulates it: attributes of variables,
 //! which variables follow from which states, and what only the simulator of this program offers.
 
+use super::oscillations::TIME;
 use super::program::{Program, VariableInfo};
 use super::sequence::close;
 use crate::causalize::Block;
@@ -21,6 +22,17 @@ pub struct Attributes {
     pub max: Option<f64>,
     /// `nominal`.
     pub nominal: Option<f64>,
+}
+
+/// What a variable is computed from between events.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Needs {
+    /// States by their numbers.
+    pub states: Vec<usize>,
+    /// Parameters by their positions in [`Program::parameters`].
+    pub parameters: Vec<usize>,
+    /// The time.
+    pub time: bool,
 }
 
 impl VariableInfo {
@@ -59,33 +71,63 @@ impl Program {
         self.sorted.states.len()
     }
 
-    /// The states from which variables of [`Program::variables`] are computed between events, as
-    /// numbers; `None` where a loop is solved on the way, from which everything may follow.
-    pub fn states_needed_by(&self, variables: &[usize]) -> Option<Vec<usize>> {
-        let infos = variables.iter().filter_map(|at| self.variables().get(*at));
-        let sources = infos.map(|info| self.resolve(info.variable).0);
-        self.states_of(sources.collect())
+    /// What a variable of [`Program::variables`] is computed from between events; `None` where a loop is
+    /// solved on the way, or initial equations determine a parameter: it may follow from everything.
+    pub fn needs_of(&self, variable: usize) -> Option<Needs> {
+        let info = self.variables().get(variable)?;
+        self.needs(self.resolve(info.variable).0)
     }
 
     /// The same for the derivative of a state.
-    pub fn states_of_derivative(&self, state: usize) -> Option<Vec<usize>> {
+    pub fn needs_of_derivative(&self, state: usize) -> Option<Needs> {
         if !self.continuous.iteration.is_empty() {
             return None;
         }
-        let n = self.n_states();
+        let of = *self.sorted.states.get(state)?;
+        let variables = (0..).map(VarId).zip(&self.sorted.dae.variables);
+        let is_own =
+            |kind: &VariableKind| matches!(kind, VariableKind::Derivative(one) if *one == of);
+        let (derivative, _) = variables.into_iter().find(|(_, own)| is_own(&own.kind))?;
+        // Some states cancel.
         let pattern = &self.continuous.pattern;
-        let found =
-            (0..n).filter(|column| pattern.column(*column).any(|at| pattern.rows[at] == state));
-        Some(found.collect())
+        let is_read = |column: &usize| pattern.column(*column).any(|at| pattern.rows[at] == state);
+        let states = (0..self.n_states()).filter(is_read).collect();
+        Some(Needs { states, ..self.needs(self.resolve(derivative).0)? })
     }
 
-    fn states_of(&self, sources: FxHashSet<VarId>) -> Option<Vec<usize>> {
-        let needed = close(&self.sorted.dae.pool, &self.sequence, sources);
+    fn needs(&self, source: VarId) -> Option<Needs> {
+        let dae = &self.sorted.dae;
+        let mut needed = close(&dae.pool, &self.sequence, FxHashSet::from_iter([source]));
         if self.continuous.iteration.iter().any(|unknown| needed.contains(unknown)) {
             return None;
         }
-        let states = self.sorted.states.iter().enumerate();
-        Some(states.filter(|(_, state)| needed.contains(state)).map(|(at, _)| at).collect())
+        let mut open: Vec<VarId> = needed.iter().copied().collect();
+        while let Some(variable) = open.pop() {
+            let own = dae.variable(variable);
+            match (own.kind, own.binding) {
+                (VariableKind::Solved, _) => return None,
+                (VariableKind::Parameter { .. }, Some(binding)) => {
+                    let others = dae.pool.variables(binding).into_iter();
+                    open.extend(others.filter(|one| needed.insert(*one)));
+                }
+                _ => {}
+            }
+        }
+        let places = |all: &[VarId]| {
+            let found = all.iter().enumerate().filter(|(_, own)| needed.contains(own));
+            found.map(|(at, _)| at).collect()
+        };
+        let parameters: Vec<VarId> = self.parameters().iter().map(|own| own.variable).collect();
+        Some(Needs {
+            states: places(&self.sorted.states),
+            parameters: places(&parameters),
+            time: needed.contains(&TIME),
+        })
+    }
+
+    /// Whether initial equations determine parameters.
+    pub fn has_solved_parameters(&self) -> bool {
+        self.sorted.dae.variables.iter().any(|own| matches!(own.kind, VariableKind::Solved))
     }
 
     /// Whether equations read a parameter of [`Program::parameters`] beside the one that sets a

@@ -32,7 +32,7 @@ mod machine_code;
 mod machine_code;
 pub(crate) mod memory;
 pub(crate) mod noevent_relations;
-mod oscillations;
+pub(crate) mod oscillations;
 #[cfg(feature = "jit")]
 mod pieces;
 mod places;
@@ -55,7 +55,7 @@ mod unread;
 mod upcalls;
 mod validation;
 
-pub use exchange::Attributes;
+pub use exchange::{Attributes, Needs};
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
 pub use stored::bytes_of;

@@ -7,7 +7,7 @@ use crate::symbolic::{Expr, Node, Pool, Substitution, VarId, derivative};
 use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-const TIME: VarId = VarId(0);
+pub(crate) const TIME: VarId = VarId(0);
 /// More arguments are not looked at: sources of one model share a few frequencies.
 const MOST_ARGUMENTS: usize = 200;
 

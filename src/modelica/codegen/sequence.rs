@@ -9,9 +9,10 @@ use super::program::{Access, Program};
 use super::registers::Registers;
 use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, Block, CausalizedDae};
+use crate::lower::VariableKind;
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// A set of variables with all that they are computed from.
@@ -193,6 +194,18 @@ pub(crate) fn expressions(program: &Program, pool: &mut Pool, variables: &[usize
         _ => resolved(pool, &program.sorted, program.variables()[*at].variable),
     };
     variables.iter().map(of).collect()
+}
+
+/// The derivatives of the states, in order.
+pub(crate) fn right_sides(sorted: &CausalizedDae, pool: &mut Pool) -> Vec<Expr> {
+    let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
+    for (v, variable) in (0..).map(VarId).zip(&sorted.dae.variables) {
+        if let VariableKind::Derivative(of) = variable.kind {
+            derivatives.entry(of).or_insert(v);
+        }
+    }
+    let own = sorted.states.iter().filter_map(|state| derivatives.get(state));
+    own.map(|derivative| resolved(pool, sorted, *derivative)).collect()
 }
 
 /// Code for what a system observes, with the registers that the system has then.

@@ -204,16 +204,14 @@ fn imbalance(
     classes: &[balance::LocalBalance],
     signals: &own_signals::Signals,
 ) -> Option<Diagnostic> {
-    let error = balance::check(model, classes).err()?;
-    if signals.is_empty() {
-        return Some(error);
+    if !signals.is_empty() && balance::is_balanced(model) == Some(false) {
+        own_signals::name(model, signals, true);
+        if balance::is_balanced(model) == Some(true) {
+            return None;
+        }
+        own_signals::name(model, signals, false);
     }
-    own_signals::name(model, signals, true);
-    if balance::check(model, classes).is_ok() {
-        return None;
-    }
-    own_signals::name(model, signals, false);
-    Some(error)
+    balance::check(model, classes).err()
 }
 
 /// Two sources of one signal, of which a warning says so: they are too many equations.

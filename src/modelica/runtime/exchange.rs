@@ -1,12 +1,14 @@
 //! What another simulator asks of a system, as FMI does: event indicators, derivatives of chosen
 //! variables along chosen states, and what it has come to, as numbers.
 
+use super::execution::{read, run};
 use super::instants::{Clock, Stage};
 use super::system::System;
-use crate::codegen::Program;
+use crate::codegen::{Program, SensitivityCode};
 use crate::sim::{Failure, Residual};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// What a system has come to at a time: what a system of the same program that was initialized with the
 /// same parameters needs to go on from there.
@@ -30,6 +32,15 @@ struct RelationSnapshot {
     held: Vec<bool>,
     uncertainty: Vec<f64>,
     kept: Vec<(usize, f64)>,
+}
+
+/// By what derivatives are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// All states, a column each.
+    States,
+    /// The time, one column.
+    Time,
 }
 
 impl Program {
@@ -85,14 +96,15 @@ impl System {
     }
 
     /// The derivatives of the states, in the first rows, and of variables (positions in
-    /// [`Program::variables`](crate::codegen::Program::variables)) by the states, at (t, x): loops are
-    /// solved inside. Exact where the matrix of the loops is regular.
+    /// [`Program::variables`](crate::codegen::Program::variables)) by the states, or by the time alone, at
+    /// (t, x): loops are solved inside. Exact where the matrix of the loops is regular.
     ///
     /// # Errors
     /// Something has no value there, or the loops are singular.
     pub fn reduced_jacobian(
         &mut self,
         variables: &[usize],
+        by: Along,
         t: f64,
         x: &[f64],
     ) -> Result<DMatrix<f64>, Failure> {
@@ -105,20 +117,67 @@ impl System {
         self.unload(&mut y);
         let whole = self.dense_jacobian(t, &y);
         let of_variables = self.jacobian_of(variables, t, &y);
-        self.solve_loops(was_inside);
-        let (whole, of_variables) = (whole?, of_variables?);
-        let mut rows = DMatrix::zeros(n + p, n + m);
-        rows.view_mut((0, 0), (n, n + m)).copy_from(&whole.view((0, 0), (n, n + m)));
-        rows.view_mut((n, 0), (p, n + m)).copy_from(&of_variables);
-        if m == 0 {
-            return Ok(rows);
-        }
-        let (g_x, g_v) = (whole.view((n, 0), (m, n)), whole.view((n, n), (m, m)));
-        let Some(v_x) = g_v.into_owned().lu().solve(&g_x.into_owned()) else {
-            return Err(Failure::Singular { block: 0 });
+        let in_time = match by {
+            Along::States => Ok(DMatrix::zeros(0, 0)),
+            Along::Time => self.time_derivatives(variables, t, &y),
         };
-        let (of_x, of_v) = (rows.view((0, 0), (n + p, n)), rows.view((0, n), (n + p, m)));
-        Ok(of_x - of_v * v_x)
+        self.solve_loops(was_inside);
+        let (whole, of_variables, in_time) = (whole?, of_variables?, in_time?);
+        let mut of_v = DMatrix::zeros(n + p, m);
+        of_v.rows_mut(0, n).copy_from(&whole.view((0, n), (n, m)));
+        of_v.rows_mut(n, p).copy_from(&of_variables.columns(n, m));
+        // The columns asked for, of the right sides and variables, and of the residuals.
+        let (of_own, residuals) = match by {
+            Along::States => {
+                let mut rows = DMatrix::zeros(n + p, n);
+                rows.rows_mut(0, n).copy_from(&whole.view((0, 0), (n, n)));
+                rows.rows_mut(n, p).copy_from(&of_variables.columns(0, n));
+                (rows, whole.view((n, 0), (m, n)).into_owned())
+            }
+            Along::Time => {
+                let residuals = in_time.rows(n, m).into_owned();
+                (in_time.remove_rows(n, m), residuals)
+            }
+        };
+        if m == 0 {
+            return Ok(of_own);
+        }
+        let of_loops = whole.view((n, n), (m, m)).into_owned().lu();
+        let speeds = of_loops.solve(&residuals).ok_or(Failure::Singular { block: 0 })?;
+        Ok(of_own - of_v * speeds)
+    }
+
+    /// The derivatives of the states, in the first rows, and of variables by the parameters of a code,
+    /// which was made for these variables, at (t, x): what changes at events alone is held.
+    ///
+    /// # Errors
+    /// Something has no value there, or the loops are singular.
+    pub fn parameter_jacobian(
+        &self,
+        code: &Arc<SensitivityCode>,
+        t: f64,
+        x: &[f64],
+    ) -> Result<DMatrix<f64>, Failure> {
+        let mut own = self.clone();
+        own.differentiate(Some(code));
+        for register in &code.cleared {
+            own.registers[*register as usize] = 0.0;
+        }
+        run(&code.constants, &mut own.registers)?;
+        own.solve_loops(true);
+        let (n, m) = (x.len(), code.n_columns());
+        let mut y = vec![0.0; n * (1 + m)];
+        y[..n].copy_from_slice(x);
+        let mut observed = vec![0.0; own.n_observed()];
+        // This solves the loops, and finds the derivatives of their unknowns.
+        own.observe(t, &y, &mut observed)?;
+        let mut right_sides = vec![0.0; code.rhs.outputs.len()];
+        read(&code.rhs, &mut own.registers, &mut right_sides)?;
+        let (p, stride) = (observed.len() / (1 + m), right_sides.len() / m.max(1));
+        Ok(DMatrix::from_fn(n + p, m, |row, column| match row.checked_sub(n) {
+            None => right_sides[column * stride + row],
+            Some(variable) => observed[p * (1 + column) + variable],
+        }))
     }
 
     /// What the system has come to.

@@ -4,8 +4,10 @@ use super::difference_quotients::quotient;
 use super::execution::read;
 use super::system::System;
 use crate::codegen::jacobian::differentiate_sequence;
-use crate::codegen::sequence::{compile_outputs, slice};
+use crate::codegen::oscillations::TIME;
+use crate::codegen::sequence::{compile_outputs, expressions, right_sides, slice};
 use crate::sim::{Failure, Residual};
+use crate::symbolic::{Expr, Pool, VarId};
 use nalgebra::DMatrix;
 
 impl System {
@@ -34,11 +36,38 @@ impl System {
     ) -> Result<DMatrix<f64>, Failure> {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
-        let outputs = crate::codegen::sequence::expressions(&program, &mut pool, variables);
-        let columns = &program.continuous.unknowns;
-        let needed = slice(&pool, &program.continuous.integrated, &outputs);
+        let outputs = expressions(&program, &mut pool, variables);
+        self.derivatives_of(pool, &outputs, &program.continuous.unknowns, (t, y))
+    }
+
+    /// ∂(f, g, v)/∂t of the right sides of the states, the residuals of the algebraic loops and variables
+    /// v: a row for each, one column.
+    pub(super) fn time_derivatives(
+        &self,
+        variables: &[usize],
+        t: f64,
+        y: &[f64],
+    ) -> Result<DMatrix<f64>, Failure> {
+        let program = self.program.clone();
+        let mut pool = program.sorted.dae.pool.clone();
+        let mut outputs = right_sides(&program.sorted, &mut pool);
+        outputs.extend(&program.continuous.residuals);
+        outputs.extend(expressions(&program, &mut pool, variables));
+        self.derivatives_of(pool, &outputs, &[TIME], (t, y))
+    }
+
+    /// Derivatives of outputs by variables that no equation determines: a row for each output.
+    fn derivatives_of(
+        &self,
+        mut pool: Pool,
+        outputs: &[Expr],
+        columns: &[VarId],
+        (t, y): (f64, &[f64]),
+    ) -> Result<DMatrix<f64>, Failure> {
+        let program = self.program.clone();
+        let needed = slice(&pool, &program.continuous.integrated, outputs);
         let mut next = program.sorted.dae.variables.len() as u32;
-        let derivatives = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
+        let derivatives = differentiate_sequence(&mut pool, &needed, outputs, columns, &mut next);
         let places: Vec<(usize, usize)> = derivatives
             .rows
             .iter()
@@ -54,7 +83,7 @@ impl System {
         system.load(t, y);
         let mut values = vec![0.0; entries.len()];
         read(&code, &mut system.registers, &mut values)?;
-        let mut dense = DMatrix::zeros(variables.len(), columns.len());
+        let mut dense = DMatrix::zeros(outputs.len(), columns.len());
         for (place, value) in places.into_iter().zip(values) {
             dense[place] = value;
         }

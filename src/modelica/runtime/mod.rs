@@ -56,7 +56,7 @@ mod system;
 mod transport_record;
 mod transports;
 
-pub use exchange::Snapshot;
+pub use exchange::{Along, Snapshot};
 pub use loop_effort::LoopEffort;
 pub use modes::Treated;
 pub use simulation_log::LogMessage;

@@ -97,7 +97,7 @@ pub use linear::{DenseLu, Factorization, SingularMatrix, interpret};
 pub use newton::{Equations, Newton, NewtonFailure, gather};
 pub use portable::PortableSettings;
 pub use settings::{OutputGrid, Settings, TimeBudget};
-pub use simulator::{End, Simulator, simulate};
+pub use simulator::{End, Ended, Simulator, simulate};
 pub use statistics::Statistics;
 pub use system::{
     DaeSystem, EventOutcome, Events, Linearity, Modes, Pattern, Residual, Sensitive, Side,

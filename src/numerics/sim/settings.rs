@@ -31,6 +31,8 @@ pub struct Settings {
     /// Whether the simulation continues where events are chattering: relations
     /// are evaluated between steps, the solution slides or rests. If not, it fails there.
     pub treats_chattering: bool,
+    /// Whether it ends before the first event, which is handled elsewhere.
+    pub stops_at_events: bool,
     /// Steps, rejected ones included, after which the simulation is given up unless it gets on.
     pub max_steps: u64,
     /// Steps after which it is given up in any case: it gets on where it would end within these at
@@ -79,6 +81,7 @@ impl Default for Settings {
             initial_step: None,
             max_step: f64::INFINITY,
             treats_chattering: true,
+            stops_at_events: false,
             max_steps: 1_000_000,
             max_total_steps: 1_000_000,
             counts_effort: false,

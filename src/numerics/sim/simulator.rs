@@ -71,8 +71,21 @@ pub struct Simulator {
 pub struct End {
     /// The time that was reached, seconds.
     pub time: f64,
-    /// Whether the model ended it (`terminate`).
-    pub is_terminated: bool,
+    /// Why it ended there.
+    pub why: Ended,
+    /// How long the next step is meant to be, seconds, where the method keeps nothing else of its past.
+    pub next_step: Option<f64>,
+}
+
+/// Why a simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// It reached its stop time.
+    AtStop,
+    /// An event is to be handled, at which it was to end.
+    AtEvent,
+    /// The model ended it (`terminate`).
+    Terminated,
 }
 
 /// Nominal values of y, without and with shares of surfaces.
@@ -218,9 +231,9 @@ impl Simulator {
             is_resumed: from.is_some(),
         };
         let ended = run.run();
-        let is_terminated =
+        let why =
             ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
-        let end = End { time: run.t, is_terminated };
+        let end = End { time: run.t, why, next_step: run.integrator.next_step() };
         Ok((end, statistics))
     }
 
@@ -313,6 +326,8 @@ pub enum After {
     Restarted,
     /// The model ended the simulation.
     Terminated,
+    /// An event is to be handled, before which the simulation ends.
+    Stopped,
 }
 
 /// A simulation in progress; `t` and `y` are how far it has come.
@@ -380,10 +395,10 @@ impl Jumps {
 }
 
 impl Run<'_> {
-    /// Whether the model ended the simulation.
-    fn run(&mut self) -> Result<bool, SimErrorKind> {
+    fn run(&mut self) -> Result<Ended, SimErrorKind> {
+        let ends = |after: &After| matches!(after, After::Terminated | After::Stopped);
         let mut after = self.initialize()?;
-        while after != After::Terminated && self.t < self.problem.settings.stop {
+        while !ends(&after) && self.t < self.problem.settings.stop {
             after = match self.step() {
                 Ok(time_event) => {
                     self.count_step();
@@ -392,7 +407,7 @@ impl Run<'_> {
                 Err(_) if self.patience.is_some() => self.end_explicit_steps()?,
                 Err(kind) => self.jump(kind).or_else(|kind| self.take_loops_inside(kind))?,
             };
-            if after == After::Terminated {
+            if ends(&after) {
                 break;
             }
             self.watch_explicit_steps()?;
@@ -408,7 +423,11 @@ impl Run<'_> {
                 self.record()?;
             }
         }
-        Ok(after == After::Terminated)
+        Ok(match after {
+            After::Terminated => Ended::Terminated,
+            After::Stopped => Ended::AtEvent,
+            After::Resume | After::Restarted => Ended::AtStop,
+        })
     }
 
     fn initialize(&mut self) -> Result<After, SimErrorKind> {
@@ -621,6 +640,10 @@ impl Run<'_> {
                 Some(event) => {
                     self.remember(begin, event)?;
                     self.record_before(event)?;
+                    if self.problem.settings.stops_at_events {
+                        self.t = event;
+                        return Ok(After::Stopped);
+                    }
                     self.problem.statistics.state_events += 1;
                     Effort::count(&mut self.effort.crossings, self.crossings.last());
                     self.count_switches(begin, event)?;
@@ -635,6 +658,10 @@ impl Run<'_> {
                 None if time_event => {
                     self.remember(begin, end)?;
                     self.record_before(end)?;
+                    if self.problem.settings.stops_at_events {
+                        self.t = end;
+                        return Ok(After::Stopped);
+                    }
                     self.problem.statistics.time_events += 1;
                     return self.handle_event(end, false);
                 }

@@ -528,3 +528,51 @@ fn a_fast_transient_is_resolved_days_after_the_start() {
         assert!((y[0] - 1.0).abs() < 1e-5, "{method}: {}", y[0]);
     }
 }
+
+/// A simulation in parts knows from the last part how long steps may be: attempts as long as a part fail.
+#[test]
+fn parts_go_on_with_the_steps_of_the_last_part() {
+    static EVALUATIONS: AtomicUsize = AtomicUsize::new(0);
+    let run = |keeps_step: bool| {
+        let mut problem = TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
+            EVALUATIONS.fetch_add(1, Ordering::Relaxed);
+            (out[0], out[1]) = (y[1], -y[0]);
+        });
+        let (mut simulator, mut out) = (Simulator::new(), Trajectory::default());
+        let (mut y, mut next) = ([1.0, 0.0], None);
+        EVALUATIONS.store(0, Ordering::Relaxed);
+        for part in 0..10 {
+            let (start, length) = (20.0 * f64::from(part), 20.0);
+            let settings = Settings {
+                start,
+                stop: start + length,
+                output: OutputGrid::At(Vec::new()),
+                initial_step: Some(next.filter(|_| keeps_step).unwrap_or(length)),
+                ..by("rodas4", settings(length, 1e-8))
+            };
+            let end = simulator.resume(&mut problem, &settings, &mut y, &mut out).unwrap();
+            assert_eq!((end.time, end.why), (start + length, Ended::AtStop));
+            next = end.next_step;
+        }
+        assert!((y[0] - 200.0f64.cos()).abs() < 1e-5, "{y:?}");
+        EVALUATIONS.load(Ordering::Relaxed)
+    };
+    let (kept, without) = (run(true), run(false));
+    assert!(kept < without, "{kept} of {without}");
+}
+
+/// A simulation that is to end at events ends before what the first of them changes.
+#[test]
+fn a_simulation_ends_at_the_first_event_where_that_is_asked_for() {
+    let mut problem = counter(true);
+    let settings = Settings {
+        stops_at_events: true,
+        output: OutputGrid::At(Vec::new()),
+        ..by("rodas4", settings(1.0, 1e-8))
+    };
+    let mut y = [0.0];
+    let mut out = Trajectory::default();
+    let end = Simulator::new().resume(&mut problem, &settings, &mut y, &mut out).unwrap();
+    assert_eq!(end.why, Ended::AtEvent);
+    assert!((end.time - 0.3).abs() < 1e-6 && (y[0] - 0.3f64.sin()).abs() < 1e-6, "{end:?}");
+}

@@ -34,5 +34,6 @@ pub mod stored;
 pub mod translated;
 mod typed;
 pub(crate) mod uses;
+pub(crate) mod variable_unit;
 pub mod verification;
 mod warnings;

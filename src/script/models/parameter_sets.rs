@@ -1,12 +1,14 @@
 //! Files with values of parameters (`.ssv`), for models and for functional mock-up units.
 
 use super::imported::Given;
+use super::variable_unit::VariableUnit;
 use crate::Session;
 use crate::diag::Fault;
 use crate::errors::BAD_FMU;
 use crate::fmi::ParameterSet;
 use crate::fmi::import::Imported;
 use crate::fmi::parameter_set::{ENDING, Parameter, ParameterValue};
+use crate::identify::errors::UNITS_DIFFER;
 use crate::{bail, fault, units};
 use std::path::Path;
 
@@ -37,13 +39,16 @@ pub fn read(session: &Session, path: &Path) -> Result<ParameterSet, Fault> {
 pub fn set(session: &mut Session, path: &Path) -> Result<(), Fault> {
     let set = read(session, path)?;
     for parameter in &set.parameters {
-        let model = session.last_model();
-        let unit = model.and_then(|model| {
+        let unit = session.last_model().and_then(|model| {
             let at = model.program.find_variable(&parameter.name).ok()?;
-            Some(model.program.variables()[at].unit.to_string())
+            let variable = &model.program.variables()[at];
+            Some(VariableUnit {
+                symbol: variable.unit.to_string(),
+                is_relative: variable.is_relative,
+            })
         });
-        let text = text_in(parameter, unit.as_deref())?;
-        session.set_parameter_text(&parameter.name, &text)?;
+        let value = session.converted(parameter, unit, path)?;
+        session.set_parameter_text(&parameter.name, &text(&value))?;
     }
     Ok(())
 }
@@ -53,38 +58,74 @@ pub fn set(session: &mut Session, path: &Path) -> Result<(), Fault> {
 /// # Errors
 /// As those of [`set`].
 pub fn give(
-    session: &Session,
+    session: &mut Session,
     path: &Path,
     (unit, given): (&Imported, &mut Given),
 ) -> Result<(), Fault> {
     for parameter in &read(session, path)?.parameters {
-        let variable = unit.description.find(&parameter.name);
-        let own = variable.and_then(|own| unit.description.attributes_of(own).unit);
-        given.add(unit, &parameter.name, &text_in(parameter, own.as_deref())?)?;
+        let own = unit.description.find(&parameter.name);
+        let own = own.map(|own| VariableUnit::of_imported(unit, own));
+        let value = session.converted(parameter, own, path)?;
+        given.add(unit, &parameter.name, &text(&value))?;
     }
     Ok(())
 }
 
-/// A value in the unit of its variable, as text.
-fn text_in(parameter: &Parameter, unit: Option<&str>) -> Result<String, Fault> {
-    let value = match &parameter.value {
-        ParameterValue::Number(value) => *value,
-        ParameterValue::Truth(value) => return Ok(value.to_string()),
-        ParameterValue::Text(text) => return Ok(text.clone()),
-    };
-    let (Some(from), Some(to)) = (parameter.unit.as_deref(), unit) else {
-        return Ok(value.to_string());
-    };
-    if from == to || to.is_empty() {
-        return Ok(value.to_string());
+impl Session {
+    /// The value of a parameter in the unit that it has in the model, which is noted where it is not that
+    /// of the file.
+    fn converted(
+        &mut self,
+        parameter: &Parameter,
+        own: Option<VariableUnit>,
+        path: &Path,
+    ) -> Result<ParameterValue, Fault> {
+        let (value, sentence) = in_unit(parameter, &own.unwrap_or_default(), path)?;
+        sentence.into_iter().for_each(|sentence| self.note(UNITS_DIFFER, sentence));
+        Ok(value)
     }
-    let conversion = units::unit(from).zip(units::unit(to)).and_then(|(from, to)| from.to(to));
-    match conversion {
-        Some(conversion) => Ok(conversion.apply(value).to_string()),
-        None => Err(fault!(
+}
+
+/// A value in the unit of its variable, and a sentence where it was in another one. Where one of the
+/// units is not said, the value is taken as it is.
+///
+/// # Errors
+/// Units that are not known, or do not measure the same.
+pub(crate) fn in_unit(
+    parameter: &Parameter,
+    own: &VariableUnit,
+    file: &Path,
+) -> Result<(ParameterValue, Option<String>), Fault> {
+    let unchanged = || (parameter.value.clone(), None);
+    let (ParameterValue::Number(value), Some(from)) = (&parameter.value, parameter.unit.as_deref())
+    else {
+        return Ok(unchanged());
+    };
+    let (name, to, file) = (&parameter.name, own.symbol.as_str(), file.display());
+    if from == to || to.is_empty() {
+        return Ok(unchanged());
+    }
+    let absolute = units::written(from).zip(units::written(to)).and_then(|(from, to)| from.to(to));
+    let Some(absolute) = absolute else {
+        bail!(
             BAD_FMU,
-            "the value of `{}` is in {from}, which cannot be converted to {to}", parameter.name;
-            help: "write it in {to}"
-        )),
+            "`{name}` in `{file}` is in {from}, which cannot be converted to {to}";
+            help: "write its value there in {to}"
+        );
+    };
+    let conversion = if own.is_relative { absolute.of_differences() } else { absolute };
+    if conversion.is_identity() {
+        return Ok(unchanged());
+    }
+    let words = conversion.in_words();
+    let sentence = format!("`{name}` in `{file}` is converted from {from} to {to}{words}");
+    Ok((ParameterValue::Number(conversion.apply(*value)), Some(sentence)))
+}
+
+fn text(value: &ParameterValue) -> String {
+    match value {
+        ParameterValue::Number(value) => value.to_string(),
+        ParameterValue::Truth(value) => value.to_string(),
+        ParameterValue::Text(text) => text.clone(),
     }
 }

@@ -5,7 +5,8 @@
 //! `VanDerPol/VanDerPol_out.csv`); their expected outputs are those of the explicit Euler method.
 
 use crate::support::program::{command, folder, gapi};
-use gapilib::internals::fmi::Archive;
+use gapilib::internals::fmi::parameter_set::{Parameter, ParameterValue};
+use gapilib::internals::fmi::{Archive, ParameterSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -376,7 +377,7 @@ fn the_estimates_of_a_fit_are_given_away() {
     let (code, out, errors) = gapi(&here, &["identify", "p.toml", "--out", "o"]);
     assert_eq!(code, 0, "{out}{errors}");
     let set = fs::read_to_string(here.path().join("o/parameters.ssv")).expect("estimates");
-    let read = gapilib::internals::fmi::ParameterSet::read(&set).expect("a set");
+    let read = ParameterSet::read(&set).expect("a set");
     let [k, level] = &read.parameters[..] else { panic!("{set}") };
     assert_eq!((k.name.as_str(), k.unit.as_deref()), ("k", Some("1/s")));
     let interval = k.estimate.and_then(|own| own.interval).expect("an interval");
@@ -386,8 +387,8 @@ fn the_estimates_of_a_fit_are_given_away() {
     assert_eq!(code, 0, "{out}{errors}");
     assert_eq!(fs::read_to_string(here.path().join("unit.ssv")).expect("a copy"), set);
     let all = simulated(&here, &["--tolerance", "1e-9"]);
-    let number = |own: &gapilib::internals::fmi::parameter_set::Parameter| match own.value {
-        gapilib::internals::fmi::parameter_set::ParameterValue::Number(value) => value,
+    let number = |own: &Parameter| match own.value {
+        ParameterValue::Number(value) => value,
         _ => f64::NAN,
     };
     let (k, level) = (number(k), number(level));
@@ -414,13 +415,49 @@ fn the_estimates_of_a_fit_are_given_away() {
         let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         near(result["parameters"][0]["value"].as_f64().expect("a number"), 1.0, 1e-3);
     }
+    // The same values in another unit.
+    let per_hour = ParameterSet {
+        name: "hours".to_owned(),
+        parameters: vec![Parameter {
+            name: "k".to_owned(),
+            value: ParameterValue::Number(3600.0 * k),
+            unit: Some("1/h".to_owned()),
+            estimate: None,
+        }],
+    };
+    fs::write(here.path().join("hours.ssv"), per_hour.to_xml()).expect("written");
+    let second = |model: &str| {
+        format!(
+            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\nlevel = {{ min = 0.1, max = 10 }}\n\
+             [[experiment]]\ndata = \"d.csv\"\nset = \"hours.ssv\"\noutputs = {{ y = \"y\" }}\n"
+        )
+    };
+    for model in ["P.Decay", "unit.fmu"] {
+        fs::write(here.path().join("h.toml"), second(model)).expect("written");
+        let identify = ["identify", "h.toml", "--allow-external", "--out", "h"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let sentence =
+            "`k` in `hours.ssv` is converted from 1/h to 1/s, times 0.000277777777777778";
+        let text = fs::read_to_string(here.path().join("h/result.json")).expect("a result");
+        assert!(text.contains(sentence), "{text}");
+        let result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        near(result["parameters"][0]["value"].as_f64().expect("a number"), level, 1e-4);
+    }
+    for model in [&["simulate", "P.mo", "--model", "P.Decay"][..], &["simulate", "unit.fmu"]] {
+        let rest = ["--output", "m.csv", "--allow-external", "--set-file", "hours.ssv"];
+        let (code, out, errors) = gapi(&here, &[model, &rest].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        assert!(errors.contains("is converted from 1/h to 1/s"), "{out}{errors}");
+    }
     let wrong = set.replace("unit=\"1/s\"", "unit=\"K\"");
     fs::write(here.path().join("o/parameters.ssv"), wrong).expect("written");
     let (code, out, errors) =
         gapi(&here, &["identify", "q.toml", "--allow-external", "--out", "r"]);
-    assert!(code == 1 && errors.contains("`k` in `o/parameters.ssv` is in K"), "{out}{errors}");
+    let said = "`k` in `o/parameters.ssv` is in K, which cannot be converted to 1/s";
+    assert!(code == 1 && errors.contains(said), "{out}{errors}");
     let (code, out, errors) = gapi(&here, &[&model[..], &set_file].concat());
-    assert!(code == 1 && errors.contains("cannot be converted to 1/s"), "{out}{errors}");
+    assert!(code == 1 && errors.contains(said), "{out}{errors}");
 }
 
 const PROBLEM: &str = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\

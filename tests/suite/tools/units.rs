@@ -131,6 +131,49 @@ model Stateless
 equation
   z + 0.1*z^3 = 1 + time;
 end Stateless;
+connector Properties
+  Real T(start = 3), c[2];
+end Properties;
+connector Port
+  input Real rate(start = 2);
+  input Properties forward;
+  output Properties backward if true;
+end Port;
+function scaled
+  input Real x;
+  output Real y;
+algorithm
+  y := 2*x;
+end scaled;
+model Exchanger
+  Port port;
+  Real v(start = 1, fixed = true);
+equation
+  // The sizes of both sides follow from operators and a function.
+  der(v)/2 = scaled(port.forward.T)*port.rate;
+  port.backward.T = v + port.forward.c[1];
+  port.backward.c = {v, port.forward.c[2]};
+end Exchanger;
+model Chain
+  parameter Real a = 1;
+  final parameter Real b = 2*a;
+  parameter Real unused = 4;
+  input Real u;
+  output Real z(start = 1);
+  output Real y = x + a*time;
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -b*x + a*sin(time) + u;
+  z + 0.1*z^3 + sin(z) = b*x + time;
+end Chain;
+model Smooth
+  parameter Real a = 1;
+  input Real u;
+  output Real y = x + a*time;
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -2*a*x + u;
+end Smooth;
 model Percent
   Real x(start = 1, fixed = true);
 equation
@@ -175,6 +218,17 @@ fn function<T>(name: &str) -> Symbol<'static, T> {
 
 type Plain = unsafe extern "C" fn(*mut c_void) -> c_int;
 type Array = unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> c_int;
+type Derivative = unsafe extern "C" fn(
+    *mut c_void,
+    *const u32,
+    usize,
+    *const u32,
+    usize,
+    *const f64,
+    usize,
+    *mut f64,
+    usize,
+) -> c_int;
 type Logger = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
@@ -182,6 +236,24 @@ static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 unsafe extern "C" fn note(_: *mut c_void, _: c_int, _: *const c_char, message: *const c_char) {
     let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
     MESSAGES.lock().unwrap().push(message);
+}
+
+/// How an instance is made.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Exchange,
+    CoSimulation,
+    /// With event mode, and whether steps may end early.
+    Events(bool),
+}
+
+/// How a step ended.
+#[derive(Debug, PartialEq)]
+struct Stepped {
+    time: f64,
+    needs_event: bool,
+    is_early: bool,
+    terminates: bool,
 }
 
 /// An instance of FMI 3.0 between the initialization and the end.
@@ -207,8 +279,12 @@ struct Updated {
 
 impl<'u> Instance<'u> {
     fn new(unit: &'u Unpacked, is_co_simulation: bool) -> Instance<'u> {
+        Instance::made(unit, if is_co_simulation { Kind::CoSimulation } else { Kind::Exchange })
+    }
+
+    fn made(unit: &'u Unpacked, kind: Kind) -> Instance<'u> {
         let token = unit.description.token.clone();
-        let pointer = instantiate(unit, &token, is_co_simulation);
+        let pointer = instantiate(unit, &token, kind);
         assert!(!pointer.is_null(), "{:?}", MESSAGES.lock().unwrap());
         Instance { pointer, unit }
     }
@@ -298,6 +374,12 @@ impl<'u> Instance<'u> {
 
     /// The time reached, and whether the model has ended the simulation.
     fn step(&self, from: f64, length: f64) -> (f64, bool) {
+        let stepped = self.stepped(from, length);
+        assert!(!stepped.needs_event && !stepped.is_early, "{stepped:?}");
+        (stepped.time, stepped.terminates)
+    }
+
+    fn stepped(&self, from: f64, length: f64) -> Stepped {
         type Step = unsafe extern "C" fn(
             *mut c_void,
             f64,
@@ -323,21 +405,10 @@ impl<'u> Instance<'u> {
             )
         };
         assert_eq!(status, 0, "{:?}", MESSAGES.lock().unwrap());
-        (time, terminates)
+        Stepped { time, needs_event: event, is_early: early, terminates }
     }
 
     fn derivative(&self, of: &str, by: &str, is_adjoint: bool) -> f64 {
-        type Derivative = unsafe extern "C" fn(
-            *mut c_void,
-            *const u32,
-            usize,
-            *const u32,
-            usize,
-            *const f64,
-            usize,
-            *mut f64,
-            usize,
-        ) -> c_int;
         let name =
             if is_adjoint { "fmi3GetAdjointDerivative" } else { "fmi3GetDirectionalDerivative" };
         let run: Symbol<Derivative> = function(name);
@@ -358,9 +429,19 @@ impl<'u> Instance<'u> {
         assert_eq!(status, 0, "{:?}", MESSAGES.lock().unwrap());
         out
     }
+
+    /// The names of what an unknown depends on, by the description.
+    fn dependencies(&self, of: &str) -> Option<Vec<&str>> {
+        let description = &self.unit.description;
+        let structure = &description.structure;
+        let all = structure.outputs.iter().chain(&structure.derivatives);
+        let found = all.into_iter().find(|own| description.variables[own.variable].name == of);
+        let on = found.unwrap_or_else(|| panic!("no {of}")).dependencies.as_ref()?;
+        Some(on.iter().map(|(place, _)| description.variables[*place].name.as_str()).collect())
+    }
 }
 
-fn instantiate(unit: &Unpacked, token: &str, is_co_simulation: bool) -> *mut c_void {
+fn instantiate(unit: &Unpacked, token: &str, kind: Kind) -> *mut c_void {
     type Exchange = unsafe extern "C" fn(
         *const c_char,
         *const c_char,
@@ -389,12 +470,12 @@ fn instantiate(unit: &Unpacked, token: &str, is_co_simulation: bool) -> *mut c_v
     let resources = text(unit.folder.path().to_str().unwrap());
     let (name, token, resources) = (name.as_ptr(), token.as_ptr(), resources.as_ptr());
     let nothing = std::ptr::null_mut();
-    match is_co_simulation {
-        false => {
+    match kind {
+        Kind::Exchange => {
             let make: Symbol<Exchange> = function("fmi3InstantiateModelExchange");
             unsafe { make(name, token, resources, false, false, nothing, Some(note)) }
         }
-        true => {
+        Kind::CoSimulation | Kind::Events(_) => {
             let make: Symbol<CoSimulation> = function("fmi3InstantiateCoSimulation");
             let none = std::ptr::null();
             unsafe {
@@ -404,8 +485,8 @@ fn instantiate(unit: &Unpacked, token: &str, is_co_simulation: bool) -> *mut c_v
                     resources,
                     false,
                     false,
-                    false,
-                    false,
+                    kind != Kind::CoSimulation,
+                    kind == Kind::Events(true),
                     none,
                     0,
                     nothing,
@@ -614,6 +695,85 @@ fn a_ball_bounces_within_a_step() {
     close(own.get("Float64", "v"), v, 1e-6);
 }
 
+/// The importer lets the ball bounce where steps may end early.
+#[test]
+fn a_step_ends_at_an_event_that_the_importer_handles() {
+    let unit = export("Ball", Version::V3).unwrap();
+    let interface = unit.description.co_simulation.as_ref().unwrap();
+    assert!(interface.has_event_mode && interface.might_return_early);
+    let own = Instance::made(&unit, Kind::Events(true));
+    own.initialize();
+    own.update();
+    own.plain("fmi3EnterStepMode");
+    let (impact, h, v) = ball(0.6);
+    let stepped = own.stepped(0.0, 0.6);
+    let expected = Stepped { needs_event: true, is_early: true, terminates: false, ..stepped };
+    assert_eq!(stepped, expected);
+    close(stepped.time, impact, 1e-7);
+    close(own.get("Float64", "v"), -9.81 * impact, 1e-6);
+    own.plain("fmi3EnterEventMode");
+    assert!(own.update().states_changed);
+    own.plain("fmi3EnterStepMode");
+    close(own.get("Float64", "v"), 0.7 * 9.81 * impact, 1e-6);
+    // That the ball leaves the ground is another event, at which nothing jumps.
+    let leaves = own.stepped(stepped.time, 0.6 - stepped.time);
+    assert!(leaves.needs_event && (leaves.time - impact).abs() < 1e-6, "{leaves:?}");
+    own.plain("fmi3EnterEventMode");
+    assert!(!own.update().states_changed);
+    own.plain("fmi3EnterStepMode");
+    assert_eq!(own.step(leaves.time, 0.6 - leaves.time), (0.6, false));
+    close(own.get("Float64", "h"), h, 1e-6);
+    close(own.get("Float64", "v"), v, 1e-6);
+
+    // Without early returns it bounces within the step; without event mode there are no modes.
+    let own = Instance::made(&unit, Kind::Events(false));
+    own.initialize();
+    own.update();
+    own.plain("fmi3EnterStepMode");
+    assert_eq!(own.step(0.0, 0.6), (0.6, false));
+    close(own.get("Float64", "h"), h, 1e-6);
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    let enter: Symbol<Plain> = function("fmi3EnterEventMode");
+    assert_eq!(unsafe { enter(own.pointer) }, 3);
+    let said = |what: &str| MESSAGES.lock().unwrap().iter().any(|message| message.contains(what));
+    assert!(said("the instance was made without event mode"));
+}
+
+/// A time event at the end of a step is the importer's, and so is one that an input has made due.
+#[test]
+fn events_between_steps_are_those_of_the_importer() {
+    let unit = export("Stair", Version::V3).unwrap();
+    let own = Instance::made(&unit, Kind::Events(true));
+    own.initialize();
+    assert_eq!(own.update().next, Some(1.0));
+    own.plain("fmi3EnterStepMode");
+    let at_one = Stepped { time: 1.0, needs_event: true, is_early: false, terminates: false };
+    assert_eq!(own.stepped(0.0, 1.0), at_one);
+    assert_eq!(own.get::<i64>("Int64", "n"), 1);
+    own.plain("fmi3EnterEventMode");
+    assert_eq!(own.update().next, Some(2.0));
+    assert_eq!(own.get::<i64>("Int64", "n"), 2);
+    own.plain("fmi3EnterStepMode");
+    let at_two = Stepped { time: 2.0, needs_event: true, is_early: true, terminates: false };
+    assert_eq!(own.stepped(1.0, 5.0), at_two);
+
+    let unit = export("Driven", Version::V3).unwrap();
+    let own = Instance::made(&unit, Kind::Events(true));
+    own.initialize();
+    own.update();
+    own.plain("fmi3EnterStepMode");
+    own.set("Float64", "u", 3.0);
+    let due = own.stepped(0.0, 1.0);
+    assert_eq!((due.time, due.needs_event, due.is_early), (0.0, true, true));
+    own.plain("fmi3EnterEventMode");
+    own.update();
+    own.plain("fmi3EnterStepMode");
+    assert!(own.get::<bool>("Boolean", "high"));
+    assert_eq!(own.step(0.0, 1.0), (1.0, false));
+    close(own.get("Float64", "x"), 3.0 * (1.0 - (-1.0f64).exp()), 1e-6);
+}
+
 #[test]
 fn an_event_beside_the_end_of_a_step_is_not_missed() {
     let unit = export("Limited", Version::V3).unwrap();
@@ -772,6 +932,25 @@ fn signals_in_connectors_of_the_model_are_its_own() {
     close(own.get("Float64", "inlet.level"), 3.0, 1e-9);
 }
 
+/// Causalities of a connector are those of all that is in it, and an equation may have any form.
+#[test]
+fn connectors_in_connectors_are_inputs_and_outputs() {
+    let unit = export("Exchanger", Version::V3).unwrap();
+    let causality = |name: &str| unit.description.find(name).unwrap().causality;
+    for name in ["port.rate", "port.forward.T", "port.forward.c[1]", "port.forward.c[2]"] {
+        assert_eq!(causality(name), Causality::Input, "{name}");
+    }
+    for name in ["port.backward.T", "port.backward.c[1]", "port.backward.c[2]"] {
+        assert_eq!(causality(name), Causality::Output, "{name}");
+    }
+    let own = Instance::new(&unit, true);
+    own.set("Float64", "port.forward.c[2]", 5.0);
+    own.initialize();
+    own.step(0.0, 0.5);
+    close(own.get("Float64", "port.backward.T"), 1.0 + 0.5 * 2.0 * 6.0 * 2.0, 1e-7);
+    assert_eq!(own.get::<f64>("Float64", "port.backward.c[2]"), 5.0);
+}
+
 #[test]
 fn a_model_of_a_loop_alone_goes_from_step_to_step() {
     let unit = export("Stateless", Version::V3).unwrap();
@@ -812,10 +991,67 @@ fn derivatives_through_a_loop_are_exact() {
     close(exchange.derivative("der(x)", "x", false), -expected, 1e-9);
 }
 
+/// FMI 3.0 counts parameters and the time among what an unknown may depend on.
+#[test]
+fn derivatives_by_parameters_and_the_time_are_exact() {
+    let unit = export("Chain", Version::V3).unwrap();
+    let own = Instance::new(&unit, false);
+    own.set("Float64", "a", 1.5);
+    own.initialize();
+    own.update();
+    own.plain("fmi3EnterContinuousTimeMode");
+    let (t, x, a) = (0.7f64, 2.0, 1.5);
+    own.place(t, &[x]);
+    let z: f64 = own.get("Float64", "z");
+    let slope = 1.0 / (1.0 + 0.3 * z * z + z.cos());
+    let cases = [
+        ("der(x)", "a", -2.0 * x + t.sin()),
+        ("der(x)", "time", a * t.cos()),
+        ("der(x)", "x", -2.0 * a),
+        ("der(x)", "u", 1.0),
+        ("y", "a", t),
+        ("y", "time", a),
+        ("z", "a", slope * 2.0 * x),
+        ("z", "time", slope),
+        ("z", "unused", 0.0),
+        ("x", "a", 0.0),
+    ];
+    for (of, by, expected) in cases {
+        for is_adjoint in [false, true] {
+            let found = own.derivative(of, by, is_adjoint);
+            assert!((found - expected).abs() <= 1e-9, "∂{of}/∂{by} = {found}, not {expected}");
+        }
+    }
+    // A loop may make everything of everything.
+    assert_eq!(own.dependencies("der(x)"), None);
+
+    let unit = export("Smooth", Version::V3).unwrap();
+    let own = Instance::new(&unit, false);
+    assert_eq!(own.dependencies("der(x)"), Some(vec!["a", "u", "x"]));
+    assert_eq!(own.dependencies("y"), Some(vec!["time", "a", "x"]));
+    let unit = export("Smooth", Version::V2).unwrap();
+    let own = Instance { pointer: std::ptr::null_mut(), unit: &unit };
+    assert_eq!(own.dependencies("der(x)"), Some(vec!["u", "x"]));
+    assert_eq!(own.dependencies("y"), Some(vec!["time", "x"]));
+
+    // Initial equations determine a parameter: what it follows from is not differentiated.
+    let unit = export("Bound", Version::V3).unwrap();
+    let own = Instance::new(&unit, false);
+    own.initialize();
+    let run: Symbol<Derivative> = function("fmi3GetDirectionalDerivative");
+    let (of, by, seed, mut out) = (own.reference("der(z)"), own.reference("a"), 1.0, 0.0);
+    let status = unsafe {
+        run(own.pointer, &raw const of, 1, &raw const by, 1, &raw const seed, 1, &raw mut out, 1)
+    };
+    assert_eq!(status, 3);
+    let said = |what: &str| MESSAGES.lock().unwrap().iter().any(|message| message.contains(what));
+    assert!(said("initial equations determine parameters of the model"));
+}
+
 #[test]
 fn what_is_wrong_is_an_error_with_a_message() {
     let unit = export("Decay", Version::V3).unwrap();
-    assert!(instantiate(&unit, "{another}", false).is_null());
+    assert!(instantiate(&unit, "{another}", Kind::Exchange).is_null());
     let said = |what: &str| MESSAGES.lock().unwrap().iter().any(|message| message.contains(what));
     assert!(said("but {another} was requested"));
     let own = Instance::new(&unit, true);

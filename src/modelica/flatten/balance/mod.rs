@@ -11,10 +11,11 @@ use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::inference::{self, Sizes, SizesOfNames};
 use crate::source::Span;
 use crate::syntax::ast::{
-    CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
-    targets,
+    Arguments, CausalityPrefix, ComponentReference, Equation, EquationKind, Expression,
+    ExpressionKind, targets,
 };
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -25,33 +26,8 @@ const MAX_CLASSES: usize = 3;
 /// An error if the numbers differ. Where the size of an equation does not follow from its text, the
 /// model is left to the matching of equations and unknowns.
 pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
-    if model.parts.iter().any(|part| !part.outputs.is_empty()) {
-        // States of state machines determine one variable in turn.
-        return Ok(());
-    }
-    let unknowns: usize = model
-        .variables
-        .values()
-        .filter(|variable| {
-            variable.variability >= Variability::Discrete
-                && variable.causality != Some(CausalityPrefix::Input)
-        })
-        .map(super::Variable::len)
-        .sum();
-    let bindings = model.variables.values().filter(|variable| {
-        variable.variability >= Variability::Discrete
-            && variable.causality != Some(CausalityPrefix::Input)
-            && variable.binding.is_some()
-    });
-    let mut equations: usize = bindings.map(super::Variable::len).sum();
-    for equation in &model.equations {
-        match size(equation, &mut |e| dims(e, model)) {
-            Some(count) => equations += count,
-            None => return Ok(()),
-        }
-    }
-    let assigned = model.algorithms.iter().flat_map(|statements| targets(statements));
-    equations += scalars_of(assigned, model);
+    let unknowns = unknowns(model);
+    let Some(equations) = equations(model, &mut |e| dims(e, model)) else { return Ok(()) };
     if equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns {
         return Ok(());
     }
@@ -69,6 +45,75 @@ pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnost
         error = error.related(class.span, format!("{} (`{}`)", class.finding(), class.path));
     }
     Err(error)
+}
+
+/// Whether the numbers are the same, as far as the text of all equations shows it.
+pub(super) fn is_balanced(model: &FlatModel) -> Option<bool> {
+    let mut sizes = SizesIn(model);
+    let equations = equations(model, &mut |e| {
+        inference::sizes_of(&mut sizes, e).and_then(inference::all_known)
+    })?;
+    let unknowns = unknowns(model);
+    Some(equations == unknowns || equations + idle_inputs::idle_inputs(model) == unknowns)
+}
+
+/// Variables without equations of their own are not counted: inputs of the model.
+fn unknowns(model: &FlatModel) -> usize {
+    let are_unknown = model.variables.values().filter(|variable| is_unknown(variable));
+    are_unknown.map(super::Variable::len).sum()
+}
+
+fn is_unknown(variable: &super::Variable) -> bool {
+    variable.variability >= Variability::Discrete
+        && variable.causality != Some(CausalityPrefix::Input)
+}
+
+/// Number of scalar equations, bindings and assigned variables; `None` where the size of one does not
+/// follow from its text, and in a model with states, which determine one variable in turn.
+fn equations(
+    model: &FlatModel,
+    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
+) -> Option<usize> {
+    if model.parts.iter().any(|part| !part.outputs.is_empty()) {
+        return None;
+    }
+    let bound = model.variables.values().filter(|own| is_unknown(own) && own.binding.is_some());
+    let mut equations: usize = bound.map(super::Variable::len).sum();
+    for equation in &model.equations {
+        equations += size(equation, dims)?;
+    }
+    let assigned = model.algorithms.iter().flat_map(|statements| targets(statements));
+    Some(equations + scalars_of(assigned, model))
+}
+
+/// The sizes of variables of a flat model.
+struct SizesIn<'m>(&'m FlatModel);
+
+impl SizesOfNames for SizesIn<'_> {
+    fn of_reference(&mut self, reference: &ComponentReference) -> Option<Sizes> {
+        let variable = self.0.variables.get(&*path(reference))?;
+        Some(variable.dims.iter().copied().map(Some).collect())
+    }
+
+    /// Scalars, of functions that are not called element by element.
+    fn of_function(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+    ) -> Option<Option<Sizes>> {
+        let user = self.0.functions.get(&function.name())?;
+        let named = arguments.named.iter().map(|own| (own.name.node, &own.value));
+        let inputs = user.inputs.iter().map(|input| input.name);
+        let given = inputs.zip(&arguments.positional).chain(named);
+        let mut fit = given.map(|(name, value)| {
+            let input = user.inputs.iter().find(|input| input.name == name)?;
+            let sizes = inference::sizes_of(self, value)?;
+            (sizes.len() == input.dims.len()).then_some(())
+        });
+        let all_fit = fit.all(|one| one.is_some());
+        let first = user.outputs.first().filter(|output| all_fit && output.dims.is_empty());
+        Some(first.map(|_| Vec::new()))
+    }
 }
 
 /// Warnings about classes that are not balanced by themselves though the model is: their parts

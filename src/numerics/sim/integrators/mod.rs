@@ -66,6 +66,11 @@ pub trait Integrator: Send {
     /// The end of the last step.
     fn time(&self) -> f64;
 
+    /// How long the next step is meant to be, seconds, where the method keeps nothing else.
+    fn next_step(&self) -> Option<f64> {
+        None
+    }
+
     /// The unknown with the largest part in the error of the last step, where the method knows.
     fn dominant(&self) -> Option<usize> {
         None

@@ -270,6 +270,10 @@ impl Integrator for Rodas {
         self.t
     }
 
+    fn next_step(&self) -> Option<f64> {
+        Some(self.control.h()).filter(|h| *h > 0.0)
+    }
+
     fn state(&self) -> &[f64] {
         &self.y
     }

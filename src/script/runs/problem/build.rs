@@ -86,10 +86,6 @@ pub(super) fn build(
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     load_models(session, file, &folder)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    for entry in &mut file.experiment {
-        set_file::read(session, entry, &folder, &mut origins).map_err(one)?;
-    }
-    let file = &*file;
     let unit = imported::unit(session, file, &folder)?;
     if unit.is_none() {
         check_class(session, file)?;
@@ -97,6 +93,8 @@ pub(super) fn build(
         let bytes = session.read_bytes(&folder.join(&file.model)).map_err(one)?;
         origins.add(format!("`{}`", file.model), &bytes);
     }
+    set_file::read(session, file, unit.as_deref(), &folder, (&mut notes, &mut origins))?;
+    let file = &*file;
     origins.add_problem(&file.table);
     let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
     let free = free_parameters(file, &data).map_err(one)?;
@@ -202,7 +200,6 @@ fn experiments(
             Some(unit) => imported::build(&source, (session, unit), notes).map_err(|e| vec![e])?,
             None => source.build(session, notes)?,
         };
-        set_file::check(entry, &*built.experiment.model).map_err(one)?;
         all.noise = all.noise.max(built.error);
         if let Some(program) = &built.program {
             all.calibration.get_or_insert_with(|| Calibration::of(file, program));

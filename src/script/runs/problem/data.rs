@@ -6,6 +6,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::identify::problem::{Finding, FindingKind, Severity};
 use crate::mat::{About, Column, MatFile};
+use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::units::{Conversion, Unit, in_words, written};
 
@@ -15,22 +16,6 @@ pub(super) struct Measured {
     pub values: Vec<f64>,
     /// What the numbers of the file were multiplied with.
     pub factor: f64,
-}
-
-/// The unit of a variable.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct VariableUnit {
-    /// Empty where the model gives none.
-    pub symbol: String,
-    /// Whether the variable is a difference, whose unit converts without an offset.
-    pub is_relative: bool,
-}
-
-impl VariableUnit {
-    /// That of time.
-    pub(super) fn second() -> VariableUnit {
-        VariableUnit { symbol: "s".to_owned(), is_relative: false }
-    }
 }
 
 /// A sentence about the data.

@@ -147,8 +147,6 @@ pub(super) struct ExperimentEntry {
 pub(super) struct SetEntry {
     pub file: Option<PathBuf>,
     pub values: IndexMap<String, ValueEntry>,
-    /// The units in which the values of the file are.
-    pub units: IndexMap<String, String>,
 }
 
 /// The weight of a series.

@@ -1,7 +1,7 @@
 //! Variables of flat models by names with subscripts.
 
-use super::data::VariableUnit;
 use crate::flatten::{FlatModel, Variable};
+use crate::models::variable_unit::VariableUnit;
 use crate::syntax::ast::{Expression, ExpressionKind};
 
 /// The variable of a model that has this name, or of which this is an element.

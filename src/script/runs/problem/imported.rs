@@ -1,7 +1,7 @@
 //! Experiments on functional mock-up units. Nothing is around a unit as a class is around a Modelica
 //! model: what an experiment sets are values of its variables and samples of its inputs.
 
-use super::data::{Notes, VariableUnit};
+use super::data::Notes;
 use super::driven::{InputColumns, no_column};
 use super::dynamics;
 use super::experiment::{Abscissa, Built, Source, note_start, note_stop, note_unused_stop};
@@ -20,6 +20,7 @@ use crate::fmi::import::{Imported, Layout, Samples, is_parameter, why_not_set};
 use crate::identify::problem::Experiment;
 use crate::identify::{ImportedModel, Model};
 use crate::models::imported::{self, Given};
+use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use std::path::Path;
@@ -280,17 +281,13 @@ fn declared(unit: &Imported, layout: &Layout, name: &str) -> Result<Declared, Fa
         }
     })?;
     let variable = unit.variable(place);
-    let attributes = unit.description.attributes_of(variable);
     Ok(Declared {
         base: match variable.kind {
             Kind::Boolean => BaseType::Boolean,
             kind if kind.is_float() => BaseType::Real,
             _ => BaseType::Integer,
         },
-        unit: VariableUnit {
-            symbol: attributes.unit.unwrap_or_default(),
-            is_relative: attributes.is_relative.unwrap_or(false),
-        },
+        unit: VariableUnit::of_imported(unit, variable),
     })
 }
 

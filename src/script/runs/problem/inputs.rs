@@ -6,7 +6,7 @@
 //! (zero-order hold) and others are interpolated linearly, a note says so, and after the fit the other
 //! way is tried as well. Two rows with one time stamp are the values before and after a jump.
 
-use super::data::{self, Notes, VariableUnit};
+use super::data::{self, Notes};
 use super::enclosing_class::{self, EnclosingClass};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry};
@@ -17,6 +17,7 @@ use crate::diag::{At as _, Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, FlatModel, RecordedInput, Variability};
 use crate::mat::{Column, MatFile};
+use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use crate::syntax::ast::CausalityPrefix;

@@ -1,7 +1,7 @@
 //! Measured outputs of one experiment beside the simulation: values in the unit of the model, their
 //! standard deviations, and the rows that are complete.
 
-use super::data::{self, Measured, Notes, VariableUnit};
+use super::data::{self, Measured, Notes};
 use super::fault_codes;
 use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
 use super::{sigma, time_axis};
@@ -10,6 +10,7 @@ use crate::diag::{At as _, Diagnostic, Fault};
 use crate::identify::Model;
 use crate::identify::problem::{Observation, Series, Sigma};
 use crate::mat::{Column, MatFile};
+use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::units::in_words;
 

@@ -1,63 +1,96 @@
 //! Values of an experiment's parameters that a file of SSP gives: `set = "parameters.ssv"`.
 
-use super::file::{ExperimentEntry, ValueEntry};
+use super::data::Notes;
+use super::file::{ProblemFile, ValueEntry};
+use super::flat::variable_unit;
 use crate::Session;
-use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::errors::BAD_FMU;
-use crate::fmi::parameter_set::ParameterValue;
-use crate::identify::Model;
+use crate::fault;
+use crate::flatten::FlatModel;
+use crate::fmi::import::Imported;
+use crate::fmi::parameter_set::{Parameter, ParameterValue};
 use crate::identify::problem::Origins;
-use crate::models::parameter_sets;
+use crate::models::variable_unit::VariableUnit;
+use crate::models::{parameter_sets, simulation};
+use crate::source::Span;
 use std::path::Path;
 
-/// Reads the values of the file that an experiment names, if it names one.
+/// What knows the units of parameters.
+enum Declarations<'u> {
+    Unit(&'u Imported),
+    /// Flat once a value in a unit was found.
+    Model(Option<Box<FlatModel>>),
+}
+
+/// Reads the values of the files that experiments name, in the units of the model.
 ///
 /// # Errors
 ///
-/// A file that cannot be read or is none of SSP; values that are Strings.
+/// A file that cannot be read or is none of SSP; values that are Strings, or in units that cannot be
+/// converted.
 pub(super) fn read(
-    session: &Session,
-    entry: &mut ExperimentEntry,
+    session: &mut Session,
+    file: &mut ProblemFile,
+    unit: Option<&Imported>,
     folder: &Path,
-    origins: &mut Origins,
-) -> Result<(), Fault> {
-    let Some(file) = entry.set.file.clone() else { return Ok(()) };
-    let (path, shown) = (folder.join(&file), file.display());
-    let set = parameter_sets::read(session, &path)?;
-    origins.add(format!("`{shown}`"), &session.read_bytes(&path)?);
-    for own in set.parameters {
-        let value = match own.value {
-            ParameterValue::Number(value) => ValueEntry::Number(value),
-            ParameterValue::Truth(value) => ValueEntry::Truth(value),
-            ParameterValue::Text(_) => bail!(
-                BAD_FMU,
-                "`{}` in `{shown}` is a String, which an experiment cannot set", own.name;
-                help: "remove it there, and modify the model: `model = \"Class(name = …)\"`"
-            ),
-        };
-        entry.set.units.extend(own.unit.map(|unit| (own.name.clone(), unit)));
-        entry.set.values.insert(own.name, value);
+    (notes, origins): (&mut Notes, &mut Origins),
+) -> Result<(), Vec<Diagnostic>> {
+    let mut declarations = unit.map_or(Declarations::Model(None), Declarations::Unit);
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    for entry in &mut file.experiment {
+        let Some(own) = entry.set.file.clone() else { continue };
+        let path = folder.join(&own);
+        let set = parameter_sets::read(session, &path).map_err(one)?;
+        let bytes = session.read_bytes(&path).map_err(one)?;
+        origins.add(format!("`{}`", own.display()), &bytes);
+        for parameter in set.parameters {
+            let unit = declarations.unit(session, &file.model, &parameter)?;
+            let (value, sentence) =
+                parameter_sets::in_unit(&parameter, &unit, &own).map_err(one)?;
+            sentence.into_iter().for_each(|sentence| notes.add(sentence));
+            let value = value_entry(value, &parameter.name, &own).map_err(one)?;
+            entry.set.values.insert(parameter.name, value);
+        }
     }
     Ok(())
 }
 
-/// Refuses values in other units than those of the model.
-///
-/// # Errors
-///
-/// The file says another unit than the model.
-pub(super) fn check(entry: &ExperimentEntry, model: &dyn Model) -> Result<(), Fault> {
-    for (name, unit) in &entry.set.units {
-        let own = model.unit(name).filter(|own| !own.is_empty());
-        if let Some(own) = own.filter(|own| own != unit) {
-            let file = entry.set.file.clone().unwrap_or_default();
-            bail!(
-                BAD_FMU,
-                "`{name}` in `{}` is in {unit}, but in {own} in the model", file.display();
-                help: "write its value there in {own}"
-            );
+impl Declarations<'_> {
+    fn unit(
+        &mut self,
+        session: &mut Session,
+        model: &str,
+        parameter: &Parameter,
+    ) -> Result<VariableUnit, Vec<Diagnostic>> {
+        if parameter.unit.is_none() {
+            return Ok(VariableUnit::default());
         }
+        let flat = match self {
+            Declarations::Unit(unit) => {
+                let variable = unit.description.find(&parameter.name);
+                return Ok(variable
+                    .map_or(VariableUnit::default(), |own| VariableUnit::of_imported(unit, own)));
+            }
+            Declarations::Model(flat) => flat,
+        };
+        if flat.is_none() {
+            *flat = Some(Box::new(simulation::flattened(session, model)?.model));
+        }
+        Ok(flat
+            .as_ref()
+            .map_or(VariableUnit::default(), |flat| variable_unit(flat, &parameter.name)))
     }
-    Ok(())
+}
+
+fn value_entry(value: ParameterValue, name: &str, file: &Path) -> Result<ValueEntry, Fault> {
+    match value {
+        ParameterValue::Number(value) => Ok(ValueEntry::Number(value)),
+        ParameterValue::Truth(value) => Ok(ValueEntry::Truth(value)),
+        ParameterValue::Text(_) => Err(fault!(
+            BAD_FMU,
+            "`{name}` in `{}` is a String, which an experiment cannot set", file.display();
+            help: "remove it there, and modify the model: `model = \"Class(name = …)\"`"
+        )),
+    }
 }

@@ -1,12 +1,13 @@
 //! The column of time of an experiment: numbers that count from a date, rows on either side of an
 //! event, and gaps.
 
-use super::data::{self, Notes, VariableUnit};
+use super::data::{self, Notes};
 use super::file::ColumnEntry;
 use crate::bail;
 use crate::diag::Fault;
 use crate::identify::significant;
 use crate::mat::{Calendar, Column, MatFile, calendar};
+use crate::models::variable_unit::VariableUnit;
 use crate::registry::BAD_OPTION;
 use crate::units::{Unit, written};
 

@@ -1,0 +1,29 @@
+//! The units of variables.
+
+use crate::fmi::description::Variable;
+use crate::fmi::import::Imported;
+
+/// The unit of a variable of a model.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct VariableUnit {
+    /// Empty where the model gives none.
+    pub(crate) symbol: String,
+    /// Whether the variable is a difference, whose unit converts without an offset.
+    pub(crate) is_relative: bool,
+}
+
+impl VariableUnit {
+    /// That of time.
+    pub(crate) fn second() -> VariableUnit {
+        VariableUnit { symbol: "s".to_owned(), is_relative: false }
+    }
+
+    /// That of a variable of a functional mock-up unit.
+    pub(crate) fn of_imported(unit: &Imported, variable: &Variable) -> VariableUnit {
+        let own = unit.description.attributes_of(variable);
+        VariableUnit {
+            symbol: own.unit.unwrap_or_default(),
+            is_relative: own.is_relative.unwrap_or(false),
+        }
+    }
+}
