@@ -174,7 +174,7 @@ fn compiler() -> Result<Compiler, Fault> {
     let tried = candidates.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     Err(fault!(
         EXTERNAL_COMPILER,
-        "the library brings functions in C, but there is no C compiler: tried {tried}";
+        "there is code in C to be compiled, but there is no C compiler: tried {tried}";
         help: "install one (`apt install gcc`, `xcode-select --install`), or name it in the \
                environment variable `CC`"
     ))
@@ -263,28 +263,58 @@ fn run(
     unit: &Unit,
     arguments: &[&str],
 ) -> Result<Output, Fault> {
-    let mut command = Command::new(&compiler.command[0]);
-    command.args(&compiler.command[1..]).args(FLAGS).arg("-I.").current_dir(folder);
+    let mut all = vec!["-I.".to_owned()];
     for directory in &unit.include_directories {
-        command.arg("-I").arg(directory);
+        all.extend(["-I".to_owned(), directory.display().to_string()]);
     }
-    let output = command.args(arguments).output().map_err(|error| cache::cannot(&error))?;
+    all.extend(arguments.iter().map(|&argument| argument.to_owned()));
+    let words = match invoke(compiler, folder, &all)? {
+        Ok(output) => return Ok(output),
+        Err(words) => words,
+    };
+    Err(fault!(
+        EXTERNAL_COMPILER,
+        "the C compiler `{}` does not accept the code of the library:\n{words}",
+        compiler.command.join(" ");
+        help: "correct the C code, or the annotations `Include`, `IncludeDirectory`, `Library` and \
+               `LibraryDirectory`"
+    ))
+}
+
+/// Runs the compiler in a folder; what it says where it does not accept the code.
+fn invoke(
+    compiler: &Compiler,
+    folder: &Path,
+    arguments: &[String],
+) -> Result<Result<Output, String>, Fault> {
+    let mut command = Command::new(&compiler.command[0]);
+    command.args(&compiler.command[1..]).args(FLAGS).args(arguments).current_dir(folder);
+    let output = command.output().map_err(|error| cache::cannot(&error))?;
     if output.status.success() {
-        return Ok(output);
+        return Ok(Ok(output));
     }
     let words = String::from_utf8_lossy(&output.stderr);
     let mut lines: Vec<&str> = words.lines().collect();
     let more = lines.len().saturating_sub(SHOWN);
     lines.truncate(SHOWN);
     let rest = if more > 0 { format!("\n({more} more lines)") } else { String::new() };
-    Err(fault!(
-        EXTERNAL_COMPILER,
-        "the C compiler `{}` does not accept the code of the library:\n{}{rest}",
-        compiler.command.join(" "),
-        lines.join("\n");
-        help: "correct the C code, or the annotations `Include`, `IncludeDirectory`, `Library` and \
-               `LibraryDirectory`"
-    ))
+    Ok(Err(format!("{}{rest}", lines.join("\n"))))
+}
+
+/// Compiles a shared library in a folder, with these arguments besides those of all code.
+///
+/// # Errors
+/// There is no compiler, or it does not accept the code, in words.
+pub(super) fn shared_library(folder: &Path, arguments: &[String]) -> Result<(), String> {
+    let compiler = compiler().map_err(|fault| fault.message)?;
+    let all = ["-shared".to_owned()].iter().chain(arguments).cloned().collect::<Vec<_>>();
+    match invoke(&compiler, folder, &all).map_err(|fault| fault.message)? {
+        Ok(_) => Ok(()),
+        Err(words) => Err(format!(
+            "the C compiler `{}` does not accept its sources:\n{words}",
+            compiler.command.join(" ")
+        )),
+    }
 }
 
 /// The options of the linker, relative paths absolute.

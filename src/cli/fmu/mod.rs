@@ -2,6 +2,7 @@
 //! that the help does not show. A unit that crashes or does not return ends its process alone.
 
 mod process;
+mod sources;
 mod worker;
 
 pub(super) use worker::{FmuWorkerArgs, worker};
@@ -42,6 +43,7 @@ impl Host for LocalHost {
             let unpacked = path.parent().map_or(Ok(()), fs::create_dir_all);
             unpacked.and_then(|()| fs::write(&path, content)).map_err(cannot)?;
         }
+        sources::compile(archive, &folder.0)?;
         Ok(Box::new(LocalStart { folder }))
     }
 }

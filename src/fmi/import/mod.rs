@@ -35,6 +35,7 @@ mod message;
 mod plan;
 mod platform;
 mod pool;
+mod sources;
 #[cfg(feature = "host")]
 mod unit;
 #[cfg(feature = "host")]
@@ -50,6 +51,7 @@ pub use message::LogMessage;
 pub use plan::{InterfaceKind, Plan, Samples};
 pub use platform::library_path;
 pub use pool::{Ended, Host, NumberedPlan, Pool, Process, Start};
+pub use sources::{Sources, sources};
 #[cfg(feature = "host")]
 pub use unit::Unit;
 #[cfg(feature = "host")]

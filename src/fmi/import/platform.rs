@@ -2,7 +2,7 @@
 
 use super::plan::InterfaceKind;
 use crate::Description;
-use crate::description::Version;
+use crate::description::{Interface, Version};
 
 /// The folder of binaries for this machine in FMI 2.0, and the ending of libraries.
 const PLATFORM_2: &str = if cfg!(target_os = "macos") {
@@ -29,19 +29,30 @@ const ENDING: &str = if cfg!(target_os = "macos") {
     ".so"
 };
 
+/// What a unit says of a kind.
+///
+/// # Errors
+/// The unit does not have this kind, in one sentence.
+pub(super) fn interface(
+    description: &Description,
+    kind: InterfaceKind,
+) -> Result<&Interface, String> {
+    let (interface, name) = match kind {
+        InterfaceKind::ModelExchange => (&description.model_exchange, "model exchange"),
+        InterfaceKind::CoSimulation => (&description.co_simulation, "co-simulation"),
+    };
+    interface.as_ref().ok_or_else(|| format!("it is not made for {name}"))
+}
+
 /// The path of the shared library of a unit within its archive.
 ///
 /// # Errors
 /// The unit does not have this kind, in one sentence.
 pub fn library_path(description: &Description, kind: InterfaceKind) -> Result<String, String> {
-    let (interface, name) = match kind {
-        InterfaceKind::ModelExchange => (&description.model_exchange, "model exchange"),
-        InterfaceKind::CoSimulation => (&description.co_simulation, "co-simulation"),
-    };
-    let interface = interface.as_ref().ok_or_else(|| format!("it is not made for {name}"))?;
+    let identifier = &interface(description, kind)?.model_identifier;
     let platform = match description.version {
         Version::V2 => PLATFORM_2,
         Version::V3 => PLATFORM_3,
     };
-    Ok(format!("binaries/{platform}/{}{ENDING}", interface.model_identifier))
+    Ok(format!("binaries/{platform}/{identifier}{ENDING}"))
 }

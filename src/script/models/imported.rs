@@ -10,7 +10,7 @@ use crate::fmi::archive::DESCRIPTION;
 use crate::fmi::description::{self, Description, Kind};
 use crate::fmi::import::{
     FailureClass, Imported, InterfaceKind, LogMessage, Place, Pool, Samples, SimulationFailure,
-    is_parameter, library_path, refusal, why_not_set,
+    is_parameter, library_path, refusal, sources, why_not_set,
 };
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
@@ -96,7 +96,10 @@ pub fn kind(file: &UnitFile, method: Option<&str>) -> Result<InterfaceKind, Faul
     let required =
         library_path(description, kind).map_err(|why| fault!(BAD_FMU, "`{name}`: {why}"))?;
     if archive.file(&required).is_err() {
-        return Err(no_binary(file, &required));
+        let sources = sources(archive, description, kind);
+        if sources.map_err(|why| fault!(BAD_FMU, "`{name}`: {why}"))?.is_none() {
+            return Err(no_binary(file, &required));
+        }
     }
     Ok(kind)
 }
@@ -106,14 +109,12 @@ fn no_binary(file: &UnitFile, required: &str) -> Fault {
     let UnitFile { name, archive, .. } = file;
     let is_binary = |path: &&str| path.starts_with("binaries/");
     let others: Vec<&str> = archive.files().map(|(path, _)| path).filter(is_binary).collect();
-    let has_sources = archive.files().any(|(path, _)| path.starts_with("sources/"));
-    let there = match (others.is_empty(), has_sources) {
-        (false, _) => format!("it has {}", suggest::listed(&others)),
-        (true, true) => "it has sources alone".to_owned(),
-        (true, false) => "it has no binaries at all".to_owned(),
+    let there = match others.is_empty() {
+        false => format!("it has {}", suggest::listed(&others)),
+        true => "it has no binaries at all, and does not say what it is compiled of".to_owned(),
     };
     fault!(BAD_FMU, "`{name}` has no `{required}`, which this machine requires: {there}";
-        help: "export it for this machine, or compile its sources with the tool that has made it")
+        help: "export it for this machine, or with its sources in C")
 }
 
 /// A unit that is ready to run.

@@ -186,6 +186,54 @@ fn units_of_both_versions_and_kinds_are_simulated() {
     }
 }
 
+/// How a unit of FMI 3.0 is built of a file.
+fn build_description(file: &str, language: &str) -> String {
+    format!(
+        "<fmiBuildDescription fmiVersion=\"3.0\"><BuildConfiguration modelIdentifier=\"unit\">\
+         <SourceFileSet language=\"{language}\"><SourceFile name=\"{file}\"/>\
+         <PreprocessorDefinition name=\"FMI\" value=\"3\"/></SourceFileSet>\
+         </BuildConfiguration></fmiBuildDescription>"
+    )
+}
+
+/// A unit of which there are sources alone is compiled, with the headers of the standard at hand; what a
+/// compiler does not accept is said.
+#[test]
+fn units_with_sources_alone_are_compiled() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmus/unit.c");
+    let source = fs::read(source).expect("the unit of the tests");
+    for version in [2, 3] {
+        let here = folder(&[]);
+        if library(version, here.path()).is_none() {
+            return;
+        }
+        let types = if version == 2 { "fmi2TypesPlatform.h" } else { "fmi3PlatformTypes.h" };
+        let all = format!("#include \"{types}\"\n#define FMI {version}\n#include \"unit.c\"\n");
+        let listed = "modelIdentifier=\"unit\"><SourceFiles><File name=\"all.c\"/></SourceFiles>";
+        let listed = format!("<ModelExchange {listed}</ModelExchange>");
+        let plain = "<ModelExchange modelIdentifier=\"unit\"/>";
+        let description = description(version).replace(plain, &listed);
+        let build = build_description("unit.c", "C99");
+        let write = |source: &[u8]| {
+            let bytes = archive(&[
+                ("modelDescription.xml", description.as_bytes()),
+                ("sources/all.c", all.as_bytes()),
+                ("sources/unit.c", source),
+                ("sources/buildDescription.xml", build.as_bytes()),
+            ]);
+            fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+        };
+        write(&source);
+        let all = simulated(&here, &["--set", "k=2", "--set", "x0=3"]);
+        near(*column(&all, "y").last().expect("a row"), 3.0 * (-4.0f64).exp(), 1e-6);
+        write(b"this is no C");
+        let (code, _, errors) = gapi(&here, &["simulate", "unit.fmu", "--allow-external"]);
+        assert!(code == 1 && errors.contains("does not accept its sources"), "{errors}");
+        let (code, _, errors) = gapi(&here, &["simulate", "unit.fmu"]);
+        assert!(code == 1 && errors.contains("is not run without permission"), "{errors}");
+    }
+}
+
 /// The step of an input is an event, and so is a state that falls below its threshold; Integers follow.
 #[test]
 fn inputs_and_events_are_those_of_the_data_and_of_the_unit() {
@@ -589,6 +637,11 @@ fn files_that_are_not_usable_units_are_refused() {
     let whole = of(DESCRIPTION_3);
     let windows =
         [("modelDescription.xml", DESCRIPTION_3.as_bytes()), ("binaries/win64/u.dll", b"")];
+    let built = |file: &str, language: &str| {
+        let build = build_description(file, language);
+        let own = ("modelDescription.xml", DESCRIPTION_3.as_bytes());
+        archive(&[own, ("sources/u.c", b""), ("sources/buildDescription.xml", build.as_bytes())])
+    };
     let sources: [(&str, &[u8]); 2] =
         [("modelDescription.xml", DESCRIPTION_3.as_bytes()), ("sources/u.c", b"")];
     let cases: Vec<(Vec<u8>, &str)> = vec![
@@ -598,7 +651,9 @@ fn files_that_are_not_usable_units_are_refused() {
         (archive(&[("a.txt", b"")]), "there is no `modelDescription.xml`"),
         (archive(&[("modelDescription.xml", DESCRIPTION_3.as_bytes())]), "has no binaries at all"),
         (archive(&windows), "it has `binaries/win64/u.dll`"),
-        (archive(&sources), "it has sources alone"),
+        (archive(&sources), "does not say what it is compiled of"),
+        (built("v.c", "C99"), "it has no `sources/v.c`"),
+        (built("u.c", "C++11"), "its sources are C++11, not C"),
         (of("<fmiModelDescription"), "modelDescription.xml"),
         (of("<other/>"), "modelDescription.xml"),
         (changed("fmiVersion=\"3.0\"", "fmiVersion=\"1.0\""), "1.0"),
