@@ -321,6 +321,25 @@ fn a_model_with_functions_in_c_is_simulated_by_rank_0_alone() {
     assert!(text.contains("take no part") && text.contains("functions in C"), "{text}");
 }
 
+/// A functional mock-up unit runs in processes of one machine.
+#[test]
+fn an_fmu_is_simulated_by_rank_0_alone() {
+    let here = here();
+    let runtime = std::env::current_exe().unwrap().with_file_name("libgapilib_fmu.so");
+    let mut export = Command::new(env!("CARGO_BIN_EXE_gapi"));
+    export.current_dir(&here).env("GAPILIB_FMU_RUNTIME", runtime);
+    export.args(["export-fmu", "Oscillator.mo", "--model", "Oscillator", "-o", "o.fmu"]);
+    let (code, text) = ended(&mut export);
+    assert_eq!(code, Some(0), "{text}");
+    let model = "model = \"Oscillator\"\nfiles = [\"Oscillator.mo\"]\n";
+    let problem = PROBLEM.replace(model, "model = \"o.fmu\"\n");
+    fs::write(here.path().join("p.toml"), problem).unwrap();
+    let arguments = ["identify", "p.toml", "--allow-external", "--evaluations", "50"];
+    let (code, text) = ended(&mut command(here.path(), 2, &arguments));
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("take no part") && text.contains("is an FMU"), "{text}");
+}
+
 /// Populations of simulations of some milliseconds, without anything after the search.
 const POPULATIONS: &str = "model = \"Oscillator\"
 files = [\"Oscillator.mo\"]

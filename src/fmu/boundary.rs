@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code, reason = "callers in other languages hand over pointers")]
 
+use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, State, Wrong};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -188,6 +189,32 @@ pub(crate) fn write<T>(place: *mut T, value: T) {
         // SAFETY: a place for one value by the standard.
         unsafe { place.write(value) };
     }
+}
+
+/// Reads variables of some types by their value references.
+pub(crate) fn get<T>(
+    handle: &mut Handle,
+    kinds: &[ValueKind],
+    convert: fn(f64) -> Result<T, Wrong>,
+    (references, values): (&[u32], &mut [T]),
+) -> Result<(), Wrong> {
+    for (value, reference) in values.iter_mut().zip(references) {
+        *value = convert(handle.instance.value(*reference, kinds)?)?;
+    }
+    Ok(())
+}
+
+/// Sets variables of some types by their value references.
+pub(crate) fn set<T: Copy>(
+    handle: &mut Handle,
+    kinds: &[ValueKind],
+    convert: fn(T) -> f64,
+    (references, values): (&[u32], &[T]),
+) -> Result<(), Wrong> {
+    for (value, reference) in values.iter().zip(references) {
+        handle.instance.set(*reference, convert(*value), kinds)?;
+    }
+    Ok(())
 }
 
 /// Keeps the state of an instance: a new one, or in the place of one that was kept.

@@ -11,11 +11,7 @@ use std::sync::Arc;
 impl Instance {
     /// ∂unknowns/∂knowns at the values at hand, by value references: rows of the unknowns, columns of
     /// the knowns, which are continuous states and inputs, parameters, and the time.
-    pub(crate) fn jacobian(
-        &mut self,
-        unknowns: &[u32],
-        knowns: &[u32],
-    ) -> Result<DMatrix<f64>, Wrong> {
+    fn jacobian(&mut self, unknowns: &[u32], knowns: &[u32]) -> Result<DMatrix<f64>, Wrong> {
         let phases = [Phase::Event, Phase::Continuous, Phase::Step];
         self.expect(&phases, "derivatives follow the initialization")?;
         let columns: Vec<Column> =
@@ -40,6 +36,34 @@ impl Instance {
             }
         }
         Ok(out)
+    }
+
+    /// Derivatives along a direction: a seed for each known, a result for each unknown.
+    pub(crate) fn along(
+        &mut self,
+        (unknowns, knowns): (&[u32], &[u32]),
+        seed: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Wrong> {
+        let jacobian = self.jacobian(unknowns, knowns)?;
+        for (out, row) in out.iter_mut().zip(jacobian.row_iter()) {
+            *out = row.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
+        }
+        Ok(())
+    }
+
+    /// Derivatives backwards: a seed for each unknown, a result for each known.
+    pub(crate) fn backwards(
+        &mut self,
+        (unknowns, knowns): (&[u32], &[u32]),
+        seed: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Wrong> {
+        let jacobian = self.jacobian(unknowns, knowns)?;
+        for (out, column) in out.iter_mut().zip(jacobian.column_iter()) {
+            *out = column.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
+        }
+        Ok(())
     }
 
     /// The derivatives of the right sides of all states and of these variables by what a column stands for.

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! version_2, version_3   the functions of the standard: pointers, names, callbacks
+//! signatures             those of both that differ in their names alone
 //! boundary               instances as pointers; errors, panics and messages at the boundary
 //! instance               an instance of either version: modes, values
 //! co_simulation          steps of an instance by its own integrator
@@ -27,5 +28,6 @@ mod derivatives;
 mod instance;
 mod known_derivatives;
 mod loading;
+mod signatures;
 mod version_2;
 mod version_3;

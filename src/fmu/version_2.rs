@@ -4,13 +4,14 @@
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 
 use crate::boundary::{
-    DISCARD, Handle, Log, Logger, Logger2, call, folder, free_state, hand_over, keep_state,
-    read_state, restore_state, slice, slice_mut, state_size, strings, take_back, text, write,
+    DISCARD, Handle, Log, Logger, Logger2, call, folder, free_state, get, hand_over, keep_state,
+    read_state, restore_state, set, slice, slice_mut, state_size, strings, take_back, text, write,
     write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, InterfaceKind, Wrong};
 use crate::loading::load;
+use crate::signatures::{filled, plain, states};
 use crate::sim::Ended;
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 
@@ -116,19 +117,6 @@ extern "C" fn fmi2SetupExperiment(
     })
 }
 
-/// Functions without arguments.
-macro_rules! plain {
-    ($($name:ident = $run:expr;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void) -> c_int {
-                let run: fn(&mut Handle) -> Result<(), Wrong> = $run;
-                call(instance, stringify!($name), run)
-            }
-        )*
-    };
-}
-
 plain! {
     fmi2EnterInitializationMode = |handle| handle.instance.enter_initialization();
     fmi2ExitInitializationMode = |handle| handle.instance.exit_initialization();
@@ -156,11 +144,7 @@ macro_rules! values {
             ) -> c_int {
                 call(instance, stringify!($get), |handle| {
                     let (references, values) = (slice(references, n)?, slice_mut(values, n)?);
-                    let convert: fn(f64) -> Result<$type, Wrong> = $of;
-                    for (value, reference) in values.iter_mut().zip(references) {
-                        *value = convert(handle.instance.value(*reference, $kinds)?)?;
-                    }
-                    Ok(())
+                    get(handle, $kinds, $of, (references, values))
                 })
             }
 
@@ -173,11 +157,7 @@ macro_rules! values {
             ) -> c_int {
                 call(instance, stringify!($set), |handle| {
                     let (references, values) = (slice(references, n)?, slice(values, n)?);
-                    let convert: fn($type) -> f64 = $to;
-                    for (value, reference) in values.iter().zip(references) {
-                        handle.instance.set(*reference, convert(*value), $kinds)?;
-                    }
-                    Ok(())
+                    set(handle, $kinds, $to, (references, values))
                 })
             }
         )*
@@ -220,49 +200,14 @@ extern "C" fn fmi2SetString(
     call(instance, "fmi2SetString", |_| if n == 0 { Ok(()) } else { Err(NO_STRINGS.into()) })
 }
 
-#[unsafe(no_mangle)]
-extern "C" fn fmi2GetFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, "fmi2GetFMUstate", |handle| keep_state(handle, state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SetFMUstate(instance: *mut c_void, state: *mut c_void) -> c_int {
-    call(instance, "fmi2SetFMUstate", |handle| restore_state(handle, state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, "fmi2FreeFMUstate", |_| free_state(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializedFMUstateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    call(instance, "fmi2SerializedFMUstateSize", |handle| state_size(handle, state, size))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializeFMUstate(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    call(instance, "fmi2SerializeFMUstate", |handle| write_state(handle, state, (bytes, size)))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2DeSerializeFMUstate(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    call(instance, "fmi2DeSerializeFMUstate", |handle| read_state(handle, (bytes, size), state))
-}
+states!(
+    fmi2GetFMUstate,
+    fmi2SetFMUstate,
+    fmi2FreeFMUstate,
+    fmi2SerializedFMUstateSize,
+    fmi2SerializeFMUstate,
+    fmi2DeSerializeFMUstate
+);
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi2GetDirectionalDerivative(
@@ -277,11 +222,7 @@ extern "C" fn fmi2GetDirectionalDerivative(
     call(instance, "fmi2GetDirectionalDerivative", |handle| {
         let (unknowns, knowns) = (slice(unknowns, n_unknowns)?, slice(knowns, n_knowns)?);
         let (seed, out) = (slice(seed, n_knowns)?, slice_mut(sensitivity, n_unknowns)?);
-        let jacobian = handle.instance.jacobian(unknowns, knowns)?;
-        for (out, row) in out.iter_mut().zip(jacobian.row_iter()) {
-            *out = row.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
-        }
-        Ok(())
+        handle.instance.along((unknowns, knowns), seed, out)
     })
 }
 
@@ -333,20 +274,6 @@ extern "C" fn fmi2SetContinuousStates(
     call(instance, "fmi2SetContinuousStates", |handle| {
         handle.instance.set_states(slice(states, n)?)
     })
-}
-
-/// Functions that fill an array.
-macro_rules! filled {
-    ($($name:ident = $method:ident;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, values: *mut f64, n: usize) -> c_int {
-                call(instance, stringify!($name), |handle| {
-                    handle.instance.$method(slice_mut(values, n)?)
-                })
-            }
-        )*
-    };
 }
 
 filled! {

@@ -4,12 +4,13 @@
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 
 use crate::boundary::{
-    Handle, Log, Logger, Logger3, call, folder, free_state, hand_over, keep_state, read_state,
-    restore_state, slice, slice_mut, state_size, strings, take_back, text, write, write_state,
+    Handle, Log, Logger, Logger3, call, folder, free_state, get, hand_over, keep_state, read_state,
+    restore_state, set, slice, slice_mut, state_size, strings, take_back, text, write, write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, InterfaceKind, Wrong};
 use crate::loading::load;
+use crate::signatures::{filled, plain, states};
 use crate::sim::Ended;
 use std::ffi::{CString, c_char, c_int, c_void};
 
@@ -133,19 +134,6 @@ extern "C" fn fmi3EnterInitializationMode(
     })
 }
 
-/// Functions without arguments.
-macro_rules! plain {
-    ($($name:ident = $run:expr;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void) -> c_int {
-                let run: fn(&mut Handle) -> Result<(), Wrong> = $run;
-                call(instance, stringify!($name), run)
-            }
-        )*
-    };
-}
-
 plain! {
     fmi3ExitInitializationMode = |handle| handle.instance.exit_initialization();
     fmi3EnterEventMode = |handle| handle.instance.enter_event_mode();
@@ -176,11 +164,7 @@ macro_rules! values {
                 call(instance, stringify!($get), |handle| {
                     let references = slice(references, n_references)?;
                     let values = slice_mut(values, same(n, n_references)?)?;
-                    let convert: fn(f64) -> Result<$type, Wrong> = $of;
-                    for (value, reference) in values.iter_mut().zip(references) {
-                        *value = convert(handle.instance.value(*reference, $kinds)?)?;
-                    }
-                    Ok(())
+                    get(handle, $kinds, $of, (references, values))
                 })
             }
 
@@ -195,11 +179,7 @@ macro_rules! values {
                 call(instance, stringify!($set), |handle| {
                     let references = slice(references, n_references)?;
                     let values = slice(values, same(n, n_references)?)?;
-                    let convert: fn($type) -> f64 = $to;
-                    for (value, reference) in values.iter().zip(references) {
-                        handle.instance.set(*reference, convert(*value), $kinds)?;
-                    }
-                    Ok(())
+                    set(handle, $kinds, $to, (references, values))
                 })
             }
         )*
@@ -297,49 +277,14 @@ extern "C" fn fmi3GetVariableDependencies(
     call(instance, "fmi3GetVariableDependencies", |_| Err(NO_DEPENDENCIES.into()))
 }
 
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, "fmi3GetFMUState", |handle| keep_state(handle, state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SetFMUState(instance: *mut c_void, state: *mut c_void) -> c_int {
-    call(instance, "fmi3SetFMUState", |handle| restore_state(handle, state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3FreeFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, "fmi3FreeFMUState", |_| free_state(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializedFMUStateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    call(instance, "fmi3SerializedFMUStateSize", |handle| state_size(handle, state, size))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializeFMUState(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    call(instance, "fmi3SerializeFMUState", |handle| write_state(handle, state, (bytes, size)))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3DeserializeFMUState(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    call(instance, "fmi3DeserializeFMUState", |handle| read_state(handle, (bytes, size), state))
-}
+states!(
+    fmi3GetFMUState,
+    fmi3SetFMUState,
+    fmi3FreeFMUState,
+    fmi3SerializedFMUStateSize,
+    fmi3SerializeFMUState,
+    fmi3DeserializeFMUState
+);
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3GetDirectionalDerivative(
@@ -357,11 +302,7 @@ extern "C" fn fmi3GetDirectionalDerivative(
         let (unknowns, knowns) = (slice(unknowns, n_unknowns)?, slice(knowns, n_knowns)?);
         let seed = slice(seed, same(n_seed, n_knowns)?)?;
         let out = slice_mut(sensitivity, same(n_sensitivity, n_unknowns)?)?;
-        let jacobian = handle.instance.jacobian(unknowns, knowns)?;
-        for (out, row) in out.iter_mut().zip(jacobian.row_iter()) {
-            *out = row.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
-        }
-        Ok(())
+        handle.instance.along((unknowns, knowns), seed, out)
     })
 }
 
@@ -381,11 +322,7 @@ extern "C" fn fmi3GetAdjointDerivative(
         let (unknowns, knowns) = (slice(unknowns, n_unknowns)?, slice(knowns, n_knowns)?);
         let seed = slice(seed, same(n_seed, n_unknowns)?)?;
         let out = slice_mut(sensitivity, same(n_sensitivity, n_knowns)?)?;
-        let jacobian = handle.instance.jacobian(unknowns, knowns)?;
-        for (out, column) in out.iter_mut().zip(jacobian.column_iter()) {
-            *out = column.iter().zip(seed).map(|(entry, seed)| entry * seed).sum();
-        }
-        Ok(())
+        handle.instance.backwards((unknowns, knowns), seed, out)
     })
 }
 
@@ -440,20 +377,6 @@ extern "C" fn fmi3SetContinuousStates(
     call(instance, "fmi3SetContinuousStates", |handle| {
         handle.instance.set_states(slice(states, n)?)
     })
-}
-
-/// Functions that fill an array.
-macro_rules! filled {
-    ($($name:ident = $method:ident;)*) => {
-        $(
-            #[unsafe(no_mangle)]
-            extern "C" fn $name(instance: *mut c_void, values: *mut f64, n: usize) -> c_int {
-                call(instance, stringify!($name), |handle| {
-                    handle.instance.$method(slice_mut(values, n)?)
-                })
-            }
-        )*
-    };
 }
 
 filled! {

@@ -7,7 +7,7 @@ use crate::fault;
 use crate::fmi::description::{Causality, Variable};
 use crate::fmi::import::{
     FailureClass, Imported, InterfaceKind, Layout, NumberedPlan, Place, Plan, Samples,
-    is_parameter, starts, why_not_set,
+    is_parameter, is_triggered, starts, why_not_set,
 };
 use crate::sim::{
     DaeSystem, Failure, OutputGrid, Settings, SimError, SimErrorKind, Simulator, Statistics,
@@ -141,7 +141,9 @@ impl Model for ImportedModel {
     }
 
     fn names(&self) -> Vec<String> {
-        self.layout.scalars().iter().map(|scalar| scalar.name.clone()).collect()
+        let has_value = |place| !is_triggered(self.unit.variable(place));
+        let scalars = self.layout.scalars().iter().filter(|scalar| has_value(scalar.place));
+        scalars.map(|scalar| scalar.name.clone()).collect()
     }
 
     fn unit(&self, variable: &str) -> Option<String> {

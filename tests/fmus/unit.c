@@ -3,6 +3,9 @@
      x' = -k x + u,  x(0) = x0;  at t = 1 x jumps by `jump`;  n counts how often x falls below `threshold`;
      y = (c[1] + ... + c[m]) x;  `fault` chooses what goes wrong after t = 0.5.
 
+   In scheduled execution a tick of `each` makes x (1 - k/10) x and adds 1 to n, one of `trigger` adds u to x
+   and 10 to n; a quarter of a second after the third tick of `each`, `wait` ticks and adds 100 to n.
+
    Only what the standards say of the functions is used; nothing is taken from other sources. */
 #include <math.h>
 #include <signal.h>
@@ -18,7 +21,7 @@
 #endif
 
 enum { X0 = 1, X = 2, DER_X = 3, K = 4, U = 5, Y = 6, JUMP = 7, THRESHOLD = 8, COUNT = 9, FAULT = 10,
-       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14 };
+       SIZE = 11, C = 12, LABEL = 13, GAIN_ON = 14, EACH = 21, TRIGGER = 22, WAIT = 23 };
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
 enum { CRASH = 1, HANG, REPORT, REFUSE, LEAVE, PRINT, NOT_A_NUMBER, WRITE };
 
@@ -26,7 +29,8 @@ typedef struct {
     double t, x0, x, k, u, jump, threshold, c[4];
     int32_t n, fault;
     uint64_t m;
-    bool gain_on, jumped, below, is_begun, needs_event;
+    bool gain_on, jumped, below, is_begun, needs_event, waits;
+    int ticks;
     char label[64];
     void *environment, *logger;
 } Unit;
@@ -303,6 +307,35 @@ EXPORT int fmi3GetEventIndicators(void *c, double z[], size_t n) {
 }
 EXPORT int fmi3GetNumberOfContinuousStates(void *c, size_t *n) { (void)c; *n = 1; return OK; }
 EXPORT int fmi3GetNumberOfEventIndicators(void *c, size_t *n) { (void)c; *n = 1; return OK; }
+EXPORT void *fmi3InstantiateScheduledExecution(const char *name, const char *token, const char *resources,
+                                               bool visible, bool logging, void *environment, Logger logger,
+                                               void *clock, void *lock, void *unlock) {
+    (void)name; (void)resources; (void)visible; (void)logging; (void)clock; (void)lock; (void)unlock;
+    return instance(token, environment, logger);
+}
+EXPORT int fmi3ActivateModelPartition(void *c, uint32_t clock, double t) {
+    Unit *unit = c;
+    unit->t = t;
+    switch (clock) {
+    case EACH:
+        unit->x *= 1 - unit->k / 10;
+        unit->n += 1;
+        unit->waits = ++unit->ticks == 3;
+        return OK;
+    case TRIGGER: unit->x += unit->u; unit->n += 10; return OK;
+    case WAIT: unit->n += 100; return OK;
+    default: return ERROR;
+    }
+}
+EXPORT int fmi3GetIntervalDecimal(void *c, const uint32_t r[], size_t n, double v[], int q[]) {
+    Unit *unit = c;
+    for (size_t i = 0; i < n; i++) {
+        q[i] = r[i] == WAIT && unit->waits ? 2 : 1;
+        v[i] = 0.25;
+        if (q[i] == 2) unit->waits = false;
+    }
+    return OK;
+}
 EXPORT int fmi3DoStep(void *c, double t, double h, bool set, bool *event, bool *ends, bool *early, double *last) {
     (void)set; *event = *ends = *early = false; *last = t + h; return step(c, t, h);
 }

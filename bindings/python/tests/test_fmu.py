@@ -1,5 +1,5 @@
-"""Functional mock-up units: needs the library in exported ones, `cargo build -p gapilib-fmu`, in the
-variable GAPILIB_FMU_RUNTIME."""
+"""Functional mock-up units: needs the library in exported ones, in the package (`bindings/python/runtime`)
+or in the variable GAPILIB_FMU_RUNTIME."""
 
 import os
 
@@ -9,7 +9,7 @@ import pytest
 import gapilib
 
 needs_runtime = pytest.mark.skipif(
-    "GAPILIB_FMU_RUNTIME" not in os.environ, reason="GAPILIB_FMU_RUNTIME names no library"
+    "GAPILIB_FMU_RUNTIME" not in os.environ, reason="the package has no library of units, and GAPILIB_FMU_RUNTIME names none"
 )
 
 

@@ -27,7 +27,8 @@ pub(super) fn compile(archive: &Archive, folder: &Path) -> Result<(), String> {
     let words = |error: FmuError| error.to_string();
     let text = String::from_utf8_lossy(archive.file(DESCRIPTION).map_err(words)?);
     let description = description::read(&text).map_err(words)?;
-    for kind in [InterfaceKind::ModelExchange, InterfaceKind::CoSimulation] {
+    use InterfaceKind::{CoSimulation, ModelExchange, ScheduledExecution};
+    for kind in [ModelExchange, CoSimulation, ScheduledExecution] {
         // A kind that the unit does not have.
         let Ok(library) = library_path(&description, kind) else { continue };
         if folder.join(&library).exists() {

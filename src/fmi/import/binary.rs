@@ -118,6 +118,7 @@ impl<'b> Component<'b> {
                     _ if matches!(binary.functions, Functions::V2(_)) => "fmi2Instantiate",
                     InterfaceKind::ModelExchange => "fmi3InstantiateModelExchange",
                     InterfaceKind::CoSimulation => "fmi3InstantiateCoSimulation",
+                    InterfaceKind::ScheduledExecution => "fmi3InstantiateScheduledExecution",
                 };
                 Err((CallError { function, severity: Severity::Error }, log.take()))
             }
@@ -197,6 +198,14 @@ fn instance_3(
             let make = make.pointer.ok_or(missing(make.name))?;
             Ok(unsafe { make(name, token, resources, false, false, log, log_3) })
         }
+        InterfaceKind::ScheduledExecution => {
+            let make = f.instantiate_scheduled;
+            let make = make.pointer.ok_or(missing(make.name))?;
+            // What has changed is asked for after each part, and none is interrupted.
+            Ok(unsafe {
+                make(name, token, resources, false, false, log, log_3, ignore, nothing, nothing)
+            })
+        }
         InterfaceKind::CoSimulation => {
             let make = f.instantiate_simulation;
             let make = make.pointer.ok_or(missing(make.name))?;
@@ -208,6 +217,10 @@ fn instance_3(
         }
     }
 }
+
+unsafe extern "C" fn ignore(_: Handle) {}
+
+unsafe extern "C" fn nothing() {}
 
 /// Keeps a message of FMI 3.0. Units do not unwind, and neither does this.
 unsafe extern "C" fn log_3(

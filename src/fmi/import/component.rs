@@ -295,6 +295,28 @@ impl Component<'_> {
     }
 }
 
+/// Scheduled execution (FMI 3.0).
+impl Component<'_> {
+    /// Activates the part of a clock.
+    pub fn activate(&self, clock: u32, time: f64) -> Result<(), CallError> {
+        match self.functions() {
+            Functions::V2(_) => Ok(()),
+            Functions::V3(f) => call!(self, f.activate_partition, clock, time),
+        }
+    }
+
+    /// The new interval of a clock, if it has changed.
+    pub fn interval(&self, clock: u32) -> Result<Option<f64>, CallError> {
+        /// `fmi3IntervalChanged`
+        const CHANGED: c_int = 2;
+        let Functions::V3(f) = self.functions() else { return Ok(None) };
+        let (mut interval, mut qualifier) = (0.0, 0);
+        let places = (&raw mut interval, &raw mut qualifier);
+        call!(self, f.get_interval, &raw const clock, 1, places.0, places.1)?;
+        Ok(Some(interval).filter(|_| qualifier == CHANGED))
+    }
+}
+
 /// Co-simulation.
 impl Component<'_> {
     /// Makes a step.

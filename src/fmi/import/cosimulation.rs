@@ -43,6 +43,25 @@ impl From<CallError> for Stopped {
     }
 }
 
+/// Why a simulation may not go on after so many steps.
+pub(super) fn check_budget(
+    settings: &Settings,
+    deadline: Option<f64>,
+    steps: u64,
+) -> Result<(), Stopped> {
+    let is_late = settings.time_budget.zip(deadline).is_some_and(|(b, end)| (b.clock)() > end);
+    let kind = if settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        SimErrorKind::Cancelled
+    } else if is_late {
+        SimErrorKind::TimeBudget
+    } else if steps >= settings.max_total_steps {
+        SimErrorKind::StepBudget
+    } else {
+        return Ok(());
+    };
+    Err(Stopped::Kind(kind))
+}
+
 /// Where steps end.
 struct Points {
     /// The length of all steps, where it must be one.
@@ -144,25 +163,10 @@ impl<'a> CoSimulation<'a> {
             if ends || *t >= stop || same_time(*t, stop) {
                 return Ok(());
             }
-            self.check_budget(deadline, statistics)?;
+            check_budget(self.settings, deadline, statistics.steps)?;
             let target = self.target(*t, output, statistics.steps);
             ends = self.advance(t, target, (statistics, out))?;
         }
-    }
-
-    fn check_budget(&self, deadline: Option<f64>, statistics: &Statistics) -> Result<(), Stopped> {
-        let settings = self.settings;
-        let is_late = settings.time_budget.zip(deadline).is_some_and(|(b, end)| (b.clock)() > end);
-        let kind = if settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-            SimErrorKind::Cancelled
-        } else if is_late {
-            SimErrorKind::TimeBudget
-        } else if statistics.steps >= settings.max_total_steps {
-            SimErrorKind::StepBudget
-        } else {
-            return Ok(());
-        };
-        Err(Stopped::Kind(kind))
     }
 
     /// The end of the next step.

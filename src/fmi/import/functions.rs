@@ -73,6 +73,10 @@ pub(super) struct EventInfo2 {
 
 /// Takes a message of FMI 3.0: environment, status, category, message.
 pub(super) type Logger3 = unsafe extern "C" fn(Handle, Status, *const c_char, *const c_char);
+/// Is called by parts of scheduled execution: that a clock has changed, and around what must not be
+/// interrupted.
+pub(super) type ClockUpdate3 = unsafe extern "C" fn(Handle);
+pub(super) type Lock3 = unsafe extern "C" fn();
 /// Is called within steps of co-simulation.
 pub(super) type Intermediate3 = Option<unsafe extern "C" fn()>;
 
@@ -115,6 +119,7 @@ table! {
         version = "fmi3GetVersion" () -> *const c_char;
         instantiate_exchange = "fmi3InstantiateModelExchange" (*const c_char, *const c_char, *const c_char, bool, bool, Handle, Logger3) -> Handle;
         instantiate_simulation = "fmi3InstantiateCoSimulation" (*const c_char, *const c_char, *const c_char, bool, bool, bool, bool, *const u32, usize, Handle, Logger3, Intermediate3) -> Handle;
+        instantiate_scheduled = "fmi3InstantiateScheduledExecution" (*const c_char, *const c_char, *const c_char, bool, bool, Handle, Logger3, ClockUpdate3, Lock3, Lock3) -> Handle;
         free_instance = "fmi3FreeInstance" (Handle) -> ();
         enter_initialization = "fmi3EnterInitializationMode" (Handle, bool, f64, f64, bool, f64) -> Status;
         exit_initialization = "fmi3ExitInitializationMode" (Handle) -> Status;
@@ -157,6 +162,8 @@ table! {
         count_states = "fmi3GetNumberOfContinuousStates" (Handle, *mut usize) -> Status;
         directional = "fmi3GetDirectionalDerivative" (Handle, *const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize) -> Status;
         enter_step_mode = "fmi3EnterStepMode" (Handle) -> Status;
+        get_interval = "fmi3GetIntervalDecimal" (Handle, *const u32, usize, *mut f64, *mut c_int) -> Status;
+        activate_partition = "fmi3ActivateModelPartition" (Handle, u32, f64) -> Status;
         do_step = "fmi3DoStep" (Handle, f64, f64, bool, *mut bool, *mut bool, *mut bool, *mut f64) -> Status;
     }
 }

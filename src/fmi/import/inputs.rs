@@ -45,6 +45,10 @@ impl<'a> Inputs<'a> {
         let mut inputs = Inputs { followed: Vec::new(), variables: Vec::new() };
         for samples in all {
             let at = samples.place.variable;
+            // Clocks tick; they have no values.
+            if description.variables[at].kind == Kind::Clock {
+                continue;
+            }
             let variable = *known.entry(at).or_insert_with(|| {
                 let own = &description.variables[at];
                 let mut values = starts(own, layout.count(at));

@@ -3,7 +3,7 @@
 //! values that are given in their place.
 
 use crate::Description;
-use crate::description::{Dimension, Kind, Variable};
+use crate::description::{Causality, Dimension, Kind, Variable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -86,8 +86,17 @@ impl Layout {
 
 /// Whether the values of a variable are numbers that can be read and set.
 fn is_number(variable: &Variable) -> bool {
-    let is_time = variable.causality == crate::description::Causality::Independent;
-    !is_time && !matches!(variable.kind, Kind::String | Kind::Binary | Kind::Clock)
+    match variable.kind {
+        Kind::String | Kind::Binary => false,
+        Kind::Clock => is_triggered(variable),
+        _ => variable.causality != Causality::Independent,
+    }
+}
+
+/// Whether a variable is a clock that others trigger: an input that has no value.
+pub fn is_triggered(variable: &Variable) -> bool {
+    let by_others = variable.clock.as_ref().is_some_and(|own| own.variability == "triggered");
+    variable.causality == Causality::Input && by_others
 }
 
 fn sizes(

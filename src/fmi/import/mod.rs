@@ -4,7 +4,8 @@
 //! Pool ──Request──▶ worker: Unit ──▶ Component (functions of the shared library)
 //!      ◀──Answer───         │
 //!                           ├─ model exchange: ExchangeSystem, a system for `sim`
-//!                           └─ co-simulation: CoSimulation, steps between communication points
+//!                           ├─ co-simulation: CoSimulation, steps between communication points
+//!                           └─ scheduled execution: Scheduled, parts at the ticks of clocks
 //! ```
 //!
 //! Each simulation has an instance of its own: nothing of the one before remains, so that results do
@@ -35,6 +36,8 @@ mod message;
 mod plan;
 mod platform;
 mod pool;
+#[cfg(feature = "host")]
+mod scheduled;
 mod sources;
 #[cfg(feature = "host")]
 mod unit;
@@ -46,7 +49,7 @@ mod worker;
 pub use calls::CallWatch;
 pub use failure::{FailureClass, SimulationFailure};
 pub use imported::{Imported, is_parameter, why_not_set};
-pub use layout::{Layout, Place, Scalar, refusal, starts};
+pub use layout::{Layout, Place, Scalar, is_triggered, refusal, starts};
 pub use message::LogMessage;
 pub use plan::{InterfaceKind, Plan, Samples};
 pub use platform::library_path;

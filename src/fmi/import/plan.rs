@@ -10,6 +10,8 @@ pub enum InterfaceKind {
     ModelExchange,
     /// The unit integrates itself between communication points.
     CoSimulation,
+    /// This program activates its parts at the ticks of their clocks.
+    ScheduledExecution,
 }
 
 /// What simulations of a unit have in common.

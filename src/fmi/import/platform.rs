@@ -40,6 +40,9 @@ pub(super) fn interface(
     let (interface, name) = match kind {
         InterfaceKind::ModelExchange => (&description.model_exchange, "model exchange"),
         InterfaceKind::CoSimulation => (&description.co_simulation, "co-simulation"),
+        InterfaceKind::ScheduledExecution => {
+            (&description.scheduled_execution, "scheduled execution")
+        }
     };
     interface.as_ref().ok_or_else(|| format!("it is not made for {name}"))
 }

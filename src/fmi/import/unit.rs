@@ -10,6 +10,7 @@ use super::inputs::Inputs;
 use super::layout::Layout;
 use super::plan::{InterfaceKind, Plan};
 use super::platform::library_path;
+use super::scheduled::Scheduled;
 use super::values::{Assignment, Readings};
 use crate::Description;
 use crate::description::Causality;
@@ -162,10 +163,12 @@ impl Run<'_> {
             InterfaceKind::CoSimulation => {
                 let how = (*settings, *has_event_mode);
                 let mut simulation = CoSimulation::new(component, description, parts, how);
-                simulation.run(out).map_err(|(time, stopped)| match stopped {
-                    Stopped::Call(error) => of_call(time, error),
-                    Stopped::Kind(kind) => of_kind(time, kind),
-                })?
+                simulation.run(out).map_err(of_stopped)?
+            }
+            InterfaceKind::ScheduledExecution => {
+                let how = (*settings, plan.inputs.as_slice());
+                let mut simulation = Scheduled::new(component, description, parts, how);
+                simulation.run(out).map_err(of_stopped)?
             }
             InterfaceKind::ModelExchange => {
                 let system = ExchangeSystem::new(component, description, parts, settings);
@@ -185,6 +188,13 @@ impl Run<'_> {
 
 fn is_of_call(kind: SimErrorKind) -> bool {
     matches!(kind, SimErrorKind::Initialization(_) | SimErrorKind::Evaluation(_))
+}
+
+fn of_stopped((time, stopped): (f64, Stopped)) -> SimulationFailure {
+    match stopped {
+        Stopped::Call(error) => of_call(time, error),
+        Stopped::Kind(kind) => of_kind(time, kind),
+    }
 }
 
 fn of_call(time: f64, error: CallError) -> SimulationFailure {

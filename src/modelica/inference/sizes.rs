@@ -72,13 +72,27 @@ pub(crate) fn sizes_of<N: SizesOfNames>(names: &mut N, e: &Expression) -> Option
             Some(sizes)
         }
         ExpressionKind::Matrix(rows) => matrix(names, rows),
-        ExpressionKind::Range { .. } => Some(of_value(names, e).unwrap_or_else(|| vec![None])),
+        ExpressionKind::Range { .. } => match length_in_literals(e) {
+            Some(length) => Some(vec![Some(length)]),
+            None => Some(of_value(names, e).unwrap_or_else(|| vec![None])),
+        },
         ExpressionKind::Subscripted { base, subscripts } => {
             let sizes = sizes_of(names, base)?;
             subscripted(names, sizes, subscripts)
         }
         ExpressionKind::Call { function, arguments } => {
             of_call(names, function, arguments).or_else(|| of_value(names, e))
+        }
+        _ => None,
+    }
+}
+
+/// The length of a range such as `1:3`.
+fn length_in_literals(range: &Expression) -> Option<usize> {
+    let ExpressionKind::Range { start, step: None, stop } = &range.kind else { return None };
+    match (&start.kind, &stop.kind) {
+        (ExpressionKind::Integer(first), ExpressionKind::Integer(last)) => {
+            usize::try_from(last.checked_sub(*first)?.checked_add(1)?.max(0)).ok()
         }
         _ => None,
     }

@@ -195,6 +195,7 @@ fn import_fmu_openmodelica(session: &mut Session, mut args: Args) -> Result<Valu
         let kind = match unit.kind {
             InterfaceKind::ModelExchange => "me",
             InterfaceKind::CoSimulation => "cs",
+            InterfaceKind::ScheduledExecution => "se",
         };
         match given.as_str() {
             "Default" => format!("{}_{kind}_FMU", identifier(&unit.description.model_name)),

@@ -10,7 +10,7 @@ use crate::fmi::archive::DESCRIPTION;
 use crate::fmi::description::{self, Description, Kind};
 use crate::fmi::import::{
     FailureClass, Imported, InterfaceKind, LogMessage, Place, Pool, Samples, SimulationFailure,
-    is_parameter, library_path, refusal, sources, why_not_set,
+    is_parameter, is_triggered, library_path, refusal, sources, why_not_set,
 };
 use crate::fmi::{Archive, FmuError};
 use crate::identify::{ImportedModel, Model as _};
@@ -80,17 +80,15 @@ pub fn kind(file: &UnitFile, method: Option<&str>) -> Result<InterfaceKind, Faul
             "`{name}` says neither `ModelExchange` nor `CoSimulation`";
             help: "export it for model exchange or co-simulation"
         ),
-        (_, (false, false)) => bail!(
-            BAD_FMU,
-            "`{name}` is made for scheduled execution, which is not simulated here";
-            help: "export it for model exchange or co-simulation"
-        ),
+        (_, (false, false)) => InterfaceKind::ScheduledExecution,
     };
-    if let Some(clock) = description.variables.iter().find(|own| own.kind == Kind::Clock) {
+    let clock = description.variables.iter().find(|own| own.kind == Kind::Clock);
+    if let Some(clock) = clock.filter(|_| kind != InterfaceKind::ScheduledExecution) {
         bail!(
             BAD_FMU,
-            "`{name}` has the clock `{}`; FMUs with clocks are not simulated here", clock.name;
-            help: "export it without clocks, with events at times instead"
+            "`{name}` has the clock `{}`; FMUs with clocks are simulated here by scheduled \
+             execution alone", clock.name;
+            help: "export it for scheduled execution, or without clocks, with events at times instead"
         );
     }
     let required =
@@ -275,6 +273,7 @@ pub fn simulate(
     settings.reached.clone_from(&options.reached);
     let only = options.only.as_ref();
     let scalars = model.layout().scalars().iter();
+    let scalars = scalars.filter(|scalar| !is_triggered(unit.variable(scalar.place)));
     let kept = scalars.filter(|scalar| only.is_none_or(|only| only.is_match(&scalar.name)));
     let (parameters, recorded): (Vec<_>, Vec<_>) =
         kept.partition(|scalar| is_parameter(unit.variable(scalar.place)));

@@ -234,6 +234,67 @@ fn units_with_sources_alone_are_compiled() {
     }
 }
 
+/// The parts of a unit for scheduled execution run at the ticks of its clocks: periodic ones, those that
+/// the data trigger, and those that the unit asks for.
+#[test]
+fn parts_of_a_unit_run_at_the_ticks_of_clocks() {
+    let here = folder(&[]);
+    let Some(library) = library(3, here.path()) else { return };
+    let path = format!("binaries/{}/unit.so", platform(3).expect("a platform"));
+    let exchange =
+        "<ModelExchange modelIdentifier=\"unit\" needsCompletedIntegratorStep=\"true\"/>";
+    let simulation =
+        "<CoSimulation modelIdentifier=\"unit\" canHandleVariableCommunicationStepSize=\"true\"/>";
+    let clocks = "<Clock name=\"each\" valueReference=\"21\" causality=\"input\" priority=\"1\" \
+                  intervalVariability=\"constant\" intervalDecimal=\"0.5\"/>\
+                  <Clock name=\"tick\" valueReference=\"22\" causality=\"input\" priority=\"0\" \
+                  intervalVariability=\"triggered\"/>\
+                  <Clock name=\"wait\" valueReference=\"23\" causality=\"input\" priority=\"2\" \
+                  intervalVariability=\"countdown\"/></ModelVariables>";
+    let description = DESCRIPTION_3
+        .replace(exchange, "<ScheduledExecution modelIdentifier=\"unit\"/>")
+        .replace(simulation, "")
+        .replace("</ModelVariables>", clocks);
+    let bytes = archive(&[("modelDescription.xml", description.as_bytes()), (&path, &library)]);
+    fs::write(here.path().join("unit.fmu"), bytes).expect("written");
+    let data = "time,tick,u\n0,0,0\n0.6,1,2\n1.5,1,3\n2,0,0\n";
+    fs::write(here.path().join("t.csv"), data).expect("written");
+    let all = simulated(&here, &["--input", "t.csv"]);
+    let (time, n) = (column(&all, "time"), column(&all, "n"));
+    assert_eq!((time.last(), n.last()), (Some(&2.0), Some(&125.0)));
+    let at = |t: f64| *n.iter().zip(time).rfind(|(_, time)| **time <= t).expect("a row").0;
+    assert_eq!([at(0.0), at(0.55), at(0.6), at(1.2), at(1.25)], [1.0, 2.0, 12.0, 13.0, 113.0]);
+    // What is triggered comes before what is periodic at 1.5 s.
+    near(*column(&all, "y").last().expect("a row"), 4.47849, 1e-12);
+    assert!(all.iter().all(|(name, _)| name != "tick"));
+}
+
+/// The clocks of the reference unit tick as its description says.
+#[test]
+fn the_reference_unit_with_clocks_ticks() {
+    let Some(folder_of_units) = std::env::var_os("GAPILIB_REFERENCE_FMUS") else { return };
+    let unit = Path::new(&folder_of_units).join("3/Clocks.fmu");
+    if !unit.is_file() {
+        return;
+    }
+    let here = folder(&[]);
+    fs::copy(unit, here.path().join("unit.fmu")).expect("copied");
+    let ticks = |t: u32| u32::from([0, 1, 8, 9].contains(&t));
+    let rows = (0..=10).map(|t| format!("{t},{},{}\n", ticks(t), 10 * t)).collect::<String>();
+    let data = format!("time,inClock2,input2\n{rows}");
+    fs::write(here.path().join("t.csv"), data).expect("written");
+    let all = simulated(&here, &["--input", "t.csv", "--stop-time", "9.5"]);
+    let last = |name: &str| *column(&all, name).last().expect("a row");
+    assert_eq!(
+        [last("inClock1Ticks"), last("inClock2Ticks"), last("inClock3Ticks")],
+        [10.0, 4.0, 1.0]
+    );
+    assert_eq!(
+        [last("totalInClockTicks"), last("result2"), last("output3")],
+        [15.0, 180.0, 1000.0]
+    );
+}
+
 /// The step of an input is an event, and so is a state that falls below its threshold; Integers follow.
 #[test]
 fn inputs_and_events_are_those_of_the_data_and_of_the_unit() {
@@ -666,7 +727,7 @@ fn files_that_are_not_usable_units_are_refused() {
             "size",
         ),
         (of(&without_kinds), "neither `ModelExchange` nor `CoSimulation`"),
-        (of(&scheduled), "scheduled execution"),
+        (of(&scheduled), "cannot be loaded"),
         (changed("</ModelVariables>", clock), "clock `tick`"),
         (whole, "cannot be loaded"),
     ];

@@ -11,6 +11,9 @@ models natively.
     0.135335
 """
 
+import os as _os
+import pathlib as _pathlib
+
 from . import ga
 from ._gapilib import Fmu, GapilibError, Model, Session, SimulationResult, Simulator, __version__
 from ._run import run
@@ -30,3 +33,7 @@ __all__ = [
     "identify",
     "run",
 ]
+
+# The library in exported units comes with the package; a variable of the user's names another one.
+for _library in _pathlib.Path(__file__).parent.glob("*gapilib_fmu.*"):
+    _os.environ.setdefault("GAPILIB_FMU_RUNTIME", str(_library))

@@ -283,7 +283,7 @@ fn declared(unit: &Imported, layout: &Layout, name: &str) -> Result<Declared, Fa
     let variable = unit.variable(place);
     Ok(Declared {
         base: match variable.kind {
-            Kind::Boolean => BaseType::Boolean,
+            Kind::Boolean | Kind::Clock => BaseType::Boolean,
             kind if kind.is_float() => BaseType::Real,
             _ => BaseType::Integer,
         },
