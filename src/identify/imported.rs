@@ -6,7 +6,7 @@ use crate::errors::UNKNOWN_OUTPUT;
 use crate::fault;
 use crate::fmi::description::{Causality, Variable};
 use crate::fmi::import::{
-    FailureClass, Imported, InterfaceKind, Layout, NumberedPlan, Place, Plan, Samples,
+    Directions, FailureClass, Imported, InterfaceKind, Layout, NumberedPlan, Place, Plan, Samples,
     is_parameter, is_triggered, starts, why_not_set,
 };
 use crate::sim::{
@@ -80,14 +80,19 @@ impl ImportedModel {
                 return Err(fault!(UNKNOWN_OUTPUT, "`{name}` {why}"));
             }
         }
-        Ok(self.unit.pool.plan(Plan {
+        Ok(self.unit.pool.plan(self.plan(varied, observed)?))
+    }
+
+    fn plan(&self, varied: &[String], observed: &[String]) -> Result<Plan, Fault> {
+        Ok(Plan {
             kind: self.unit.kind,
             numbers: self.numbers.clone(),
             strings: self.strings.clone(),
             varied: self.places(varied)?,
             inputs: self.inputs.clone(),
             observed: self.places(observed)?,
-        }))
+            differentiates: false,
+        })
     }
 
     fn variable(&self, name: &str) -> Option<&Variable> {
@@ -182,8 +187,16 @@ impl Model for ImportedModel {
     }
 
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {
-        let (plan, unit) = (self.planned(varied, observed)?, self.unit.clone());
-        Ok(Box::new(ImportedInstance { unit, plan, values: Vec::new(), cause: String::new() }))
+        let (plain, unit) = (self.plan(varied, observed)?, self.unit.clone());
+        let with_derivatives = Plan { differentiates: true, ..plain.clone() };
+        Ok(Box::new(ImportedInstance {
+            refusal: Directions::of(&unit.description, &plain).err(),
+            plans: [plain, with_derivatives].map(|plan| unit.pool.plan(plan)),
+            unit,
+            differentiates: false,
+            values: Vec::new(),
+            cause: String::new(),
+        }))
     }
 
     fn portable(&self) -> Result<super::PortableModel, String> {
@@ -194,7 +207,11 @@ impl Model for ImportedModel {
 /// Simulations of a unit in another process.
 struct ImportedInstance {
     unit: Arc<Imported>,
-    plan: NumberedPlan,
+    /// Without and with derivatives.
+    plans: [NumberedPlan; 2],
+    differentiates: bool,
+    /// Why there are no derivatives, once that is known.
+    refusal: Option<String>,
     values: Vec<f64>,
     /// Why the last simulation failed.
     cause: String,
@@ -212,8 +229,12 @@ impl Instance for ImportedInstance {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        let asked = (&self.plan, self.values.as_slice());
+        let plan = &self.plans[usize::from(self.differentiates)];
+        let asked = (plan, self.values.as_slice());
         self.unit.pool.simulate(asked, settings, out).map_err(|failure| {
+            if failure.class == FailureClass::Derivatives {
+                self.refusal = Some(failure.message.clone());
+            }
             self.cause = failure.message;
             SimError { time: failure.time, kind: kind(failure.class), offending: None }
         })
@@ -229,10 +250,13 @@ impl Instance for ImportedInstance {
     }
 
     fn differentiate(&mut self, with_derivatives: bool) -> Result<(), String> {
-        match with_derivatives {
-            true => Err("the model is an FMU, whose equations are not known".to_owned()),
-            false => Ok(()),
-        }
+        let refusal = self.refusal.clone().filter(|_| with_derivatives);
+        self.differentiates = with_derivatives && refusal.is_none();
+        refusal.map_or(Ok(()), Err)
+    }
+
+    fn sensitivity_refusal(&self) -> Option<String> {
+        self.refusal.clone().filter(|_| self.differentiates)
     }
 
     fn explain(&self, _: &SimError) -> String {
@@ -242,7 +266,7 @@ impl Instance for ImportedInstance {
 
 fn kind(class: FailureClass) -> SimErrorKind {
     match class {
-        FailureClass::Unit | FailureClass::Process => {
+        FailureClass::Unit | FailureClass::Derivatives | FailureClass::Process => {
             SimErrorKind::Evaluation(Failure::Function { function: 0, at: 0, reason: 0 })
         }
         FailureClass::Solver => SimErrorKind::StepSize,

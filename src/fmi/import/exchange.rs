@@ -5,10 +5,13 @@
 
 use super::binary::Component;
 use super::calls::CallError;
+use super::directions::{Direction, Directions};
 use super::inputs::Inputs;
 use super::values::Readings;
 use crate::Description;
-use crate::sim::{EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive, Settings};
+use crate::sim::{
+    EventOutcome, Events, Failure, Modes, Pattern, Residual, Sensitive, Settings, same_time,
+};
 
 /// Increments of states for derivatives by differences, relative to their magnitude: the root of
 /// the precision of numbers.
@@ -36,6 +39,10 @@ pub(super) struct ExchangeSystem<'a> {
     /// Whether the unit must be notified of completed steps.
     needs_completed_step: bool,
     settings: &'a Settings,
+    /// What derivatives are carried along, and the values of what varies.
+    directions: Option<(Directions, &'a [f64])>,
+    /// Why derivatives cannot be carried on.
+    refusal: Option<&'static str>,
     next_event: Option<f64>,
     /// The end of the step after which the unit has asked for an event.
     asked_at: Option<f64>,
@@ -105,7 +112,7 @@ impl<'a> ExchangeSystem<'a> {
         component: &'a Component<'a>,
         description: &Description,
         (inputs, readings): (Inputs<'a>, Readings),
-        settings: &'a Settings,
+        (settings, directions): (&'a Settings, Option<(Directions, &'a [f64])>),
     ) -> Result<ExchangeSystem<'a>, CallError> {
         let of_description =
             [description.structure.derivatives.len(), description.event_indicators];
@@ -119,6 +126,8 @@ impl<'a> ExchangeSystem<'a> {
             indicators,
             needs_completed_step: interface.is_some_and(|own| own.needs_completed_step),
             settings,
+            directions,
+            refusal: None,
             next_event: None,
             asked_at: None,
             terminates: false,
@@ -131,6 +140,11 @@ impl<'a> ExchangeSystem<'a> {
     /// The call that failed last.
     pub fn failure(&self) -> Option<CallError> {
         self.failure
+    }
+
+    /// Why derivatives could not be carried on, if it was for these.
+    pub fn refusal(&self) -> Option<&'static str> {
+        self.refusal
     }
 
     /// Notes a failed call. After an error the instance must not be used any more.
@@ -149,6 +163,7 @@ impl<'a> ExchangeSystem<'a> {
         if self.is_broken() {
             return Err(FAILED);
         }
+        let y = &y[..self.n_differential()];
         let set = self.component.set_time(t);
         let set = set.and_then(|()| self.component.set_states(y));
         let set = set.and_then(|()| self.inputs.set(self.component, t, false));
@@ -161,7 +176,8 @@ impl<'a> ExchangeSystem<'a> {
         self.next_event = update.next_event;
         self.terminates |= update.terminates;
         self.component.enter_continuous_mode()?;
-        self.component.states(y)
+        let n = self.states.nominal.len();
+        self.component.states(&mut y[..n])
     }
 
     fn begin_simulation(&mut self, t: f64, y: &mut [f64]) -> Result<(), CallError> {
@@ -215,7 +231,8 @@ impl Residual for ExchangeSystem<'_> {
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y)?;
-        let computed = self.component.derivatives(out);
+        let n = self.n_differential();
+        let computed = self.component.derivatives(&mut out[..n]);
         self.done(computed)
     }
 
@@ -260,7 +277,15 @@ impl Residual for ExchangeSystem<'_> {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let begun = self.begin_simulation(t, y);
-        self.done(begun)
+        self.done(begun)?;
+        let n = self.n_differential();
+        y[n..].fill(0.0);
+        for (at, direction) in self.varied().iter().enumerate() {
+            if let Direction::Start(state) = direction {
+                y[n * (1 + at) + state] = 1.0;
+            }
+        }
+        Ok(())
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
@@ -279,17 +304,61 @@ impl Residual for ExchangeSystem<'_> {
     }
 
     fn n_observed(&self) -> usize {
-        self.readings.count()
+        self.readings.count() * (1 + self.n_directions())
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.set(t, y)?;
-        let read = self.readings.read(self.component, out);
-        self.done(read)
+        let (values, derivatives) = out.split_at_mut(self.readings.count());
+        let read = self.readings.read(self.component, values);
+        self.done(read)?;
+        self.along_directions(y, derivatives, |own| &own.observed)
     }
 }
 
-impl Sensitive for ExchangeSystem<'_> {}
+impl Sensitive for ExchangeSystem<'_> {
+    fn n_directions(&self) -> usize {
+        self.varied().len()
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        let Some((_, values)) = &self.directions else { return };
+        for (out, value) in out.iter_mut().zip(*values) {
+            *out = if value.abs() > 0.0 { value.abs() } else { 1.0 };
+        }
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.set(t, y)?;
+        self.along_directions(y, out, |own| &own.derivatives)
+    }
+}
+
+impl ExchangeSystem<'_> {
+    fn varied(&self) -> &[Direction] {
+        self.directions.as_ref().map_or(&[][..], |(own, _)| &own.varied)
+    }
+
+    /// Writes the derivatives of unknowns along all directions, those of the states following y.
+    fn along_directions(
+        &mut self,
+        y: &[f64],
+        out: &mut [f64],
+        unknowns: fn(&Directions) -> &[u32],
+    ) -> Result<(), Failure> {
+        let n = self.n_differential();
+        let Some((own, _)) = &self.directions else { return Ok(()) };
+        let unknowns = unknowns(own);
+        let mut done = Ok(());
+        for (at, out) in out.chunks_exact_mut(unknowns.len().max(1)).enumerate() {
+            let (knowns, seed) = own.seed(at, &y[n * (1 + at)..n * (2 + at)]);
+            done = done.and_then(|()| {
+                self.component.directional_derivative([unknowns, &knowns], &seed, out)
+            });
+        }
+        self.done(done)
+    }
+}
 
 impl Events for ExchangeSystem<'_> {
     /// The indicators of the unit, and a number that becomes negative where it has asked for an event.
@@ -322,8 +391,14 @@ impl Events for ExchangeSystem<'_> {
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.set(t, y)?;
         self.asked_at = None;
+        let is_own = self.next_event.is_some_and(|event| event <= t || same_time(event, t));
+        let before = y.to_vec();
         let handled = self.event(t, y);
         self.done(handled)?;
+        if self.directions.is_some() && (is_own || before != y) {
+            self.refusal = Some("the FMU has an event");
+            return Err(FAILED);
+        }
         Ok(match self.terminates {
             true => EventOutcome::Terminate,
             false => EventOutcome::Continue { y_changed: true },

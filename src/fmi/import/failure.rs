@@ -15,6 +15,8 @@ pub enum FailureClass {
     Time,
     /// It was cancelled.
     Cancelled,
+    /// Nothing tells how derivatives continue.
+    Derivatives,
     /// The process of the unit ended, or a call of it did not.
     Process,
 }

@@ -21,6 +21,7 @@ mod calls;
 mod component;
 #[cfg(feature = "host")]
 mod cosimulation;
+mod directions;
 #[cfg(feature = "host")]
 mod exchange;
 mod failure;
@@ -47,6 +48,7 @@ mod worker;
 
 #[cfg(feature = "host")]
 pub use calls::CallWatch;
+pub use directions::{Direction, Directions};
 pub use failure::{FailureClass, SimulationFailure};
 pub use imported::{Imported, is_parameter, why_not_set};
 pub use layout::{Layout, Place, Scalar, is_triggered, refusal, starts};

@@ -29,6 +29,8 @@ pub struct Plan {
     pub inputs: Vec<Samples>,
     /// What is recorded.
     pub observed: Vec<Place>,
+    /// Whether what is recorded is followed by its derivatives by what varies.
+    pub differentiates: bool,
 }
 
 /// Samples that an input follows.

@@ -4,6 +4,7 @@ use super::LogMessage;
 use super::binary::{Binary, Component, Identity};
 use super::calls::{CallError, CallWatch};
 use super::cosimulation::{CoSimulation, Stopped};
+use super::directions::Directions;
 use super::exchange::ExchangeSystem;
 use super::failure::{FailureClass, SimulationFailure};
 use super::inputs::Inputs;
@@ -171,10 +172,16 @@ impl Run<'_> {
                 simulation.run(out).map_err(of_stopped)?
             }
             InterfaceKind::ModelExchange => {
-                let system = ExchangeSystem::new(component, description, parts, settings);
+                let directions = plan.differentiates.then(|| Directions::of(description, plan));
+                let directions = directions.transpose().map_err(|why| refused(settings, &why))?;
+                let how = (*settings, directions.map(|own| (own, values)));
+                let system = ExchangeSystem::new(component, description, parts, how);
                 let mut system = system.map_err(at_start)?;
                 let run = simulator.run(&mut system, settings, out);
                 run.map_err(|error| match system.failure() {
+                    _ if system.refusal().is_some() => {
+                        refused(settings, system.refusal().unwrap_or_default())
+                    }
                     Some(call) if is_of_call(error.kind) => of_call(error.time, call),
                     _ => of_kind(error.time, error.kind),
                 })?
@@ -188,6 +195,11 @@ impl Run<'_> {
 
 fn is_of_call(kind: SimErrorKind) -> bool {
     matches!(kind, SimErrorKind::Initialization(_) | SimErrorKind::Evaluation(_))
+}
+
+fn refused(settings: &Settings, why: &str) -> SimulationFailure {
+    let message = why.to_owned();
+    SimulationFailure { time: settings.start, class: FailureClass::Derivatives, message }
 }
 
 fn of_stopped((time, stopped): (f64, Stopped)) -> SimulationFailure {

@@ -569,6 +569,57 @@ fn the_estimates_of_a_fit_are_given_away() {
     assert!(code == 1 && errors.contains(said), "{out}{errors}");
 }
 
+/// Derivatives by parameters and initial values are those that a unit of FMI 3.0 offers; they lead to the
+/// estimates and standard errors of the model. FMI 2.0 has none, and after an event nobody knows them.
+#[test]
+fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
+    if platform(3).is_none() {
+        return;
+    }
+    let jumping = DECAY.replace("end Decay;", "end Decay; model Jump extends Decay; equation \
+                                 when sample(0.5, 10) then reinit(x, 0.5*pre(x)); end when; end Jump;");
+    let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-2 * (37.0 * t).sin());
+    let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
+    let here = folder(&[("P.mo", &jumping), ("d.csv", &format!("time,y\n{data}"))]);
+    let fitted = |model: &str| {
+        let problem = format!(
+            "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\n\
+             k = {{ min = 0.1, max = 10 }}\nx = {{ min = 0.1, max = 10, initial = true }}\n\
+             [[experiment]]\ndata = \"d.csv\"\ntolerance = 1e-9\noutputs = {{ y = \"y\" }}\n"
+        );
+        fs::write(here.path().join("p.toml"), problem).expect("written");
+        let identify = ["identify", "p.toml", "--allow-external", "--out", "o", "--overwrite"];
+        let (code, out, errors) = gapi(&here, &identify);
+        assert_eq!(code, 0, "{out}{errors}");
+        let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
+        serde_json::from_str::<serde_json::Value>(&text).expect("JSON")
+    };
+    let export = |model: &str, version: &str| {
+        let base = ["export-fmu", "P.mo", "--model", model, "--kind", "me", "-o", "unit.fmu"];
+        let (code, out, errors) = exporting(&here, &[&base[..], &["--fmi", version]].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+    };
+    let says = |result: &serde_json::Value, words: &str| result.to_string().contains(words);
+    let own = fitted("P.Decay");
+    export("P.Decay", "3");
+    let unit = fitted("unit.fmu");
+    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
+    for at in 0..2 {
+        for what in ["value", "deviation"] {
+            let of = |result: &serde_json::Value| {
+                result["parameters"][at][what]
+                    .as_f64()
+                    .unwrap_or_else(|| panic!("{what}: {result}"))
+            };
+            near(of(&unit), of(&own), 1e-5 * of(&own).abs());
+        }
+    }
+    export("P.Decay", "2");
+    assert!(says(&fitted("unit.fmu"), "because FMUs of FMI 2.0 have no derivatives by parameters"));
+    export("P.Jump", "3");
+    assert!(says(&fitted("unit.fmu"), "because the FMU has"));
+}
+
 const PROBLEM: &str = "model = \"unit.fmu\"\n[parameters]\nk = { min = 0.1, max = 10 }\n\
                        x0 = { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\n\
                        outputs = { y = \"y\" }\n";
@@ -609,7 +660,12 @@ fn parameters_of_units_are_identified_on_any_number_of_threads() {
                     ],
                 );
                 assert_eq!(code, 0, "{said}{errors}");
-                assert!(said.contains("the model is an FMU"), "{said}");
+                let because = match (kind, version) {
+                    ("cs", _) => "the FMU integrates itself",
+                    (_, 2) => "FMUs of FMI 2.0 have no derivatives by parameters",
+                    _ => "the FMU has no directional derivatives",
+                };
+                assert!(said.contains(because), "{said}");
                 let text = fs::read_to_string(here.path().join(&out).join("result.json"));
                 results.push(text.expect("a result"));
             }
