@@ -5,6 +5,8 @@ pub(crate) mod cluster;
 pub(crate) mod conformance;
 pub(crate) mod flat_class;
 pub(crate) mod guide;
+pub(crate) mod guide_charts;
+pub(crate) mod guide_diagrams;
 pub(crate) mod program;
 pub(crate) mod shipped;
 pub(crate) mod simulated;

@@ -4,6 +4,7 @@
 use crate::support::guide::blocks;
 use crate::support::program::{folder, gapi};
 use crate::support::shipped::project;
+use crate::support::{guide_charts, guide_diagrams};
 use tempfile::TempDir;
 
 /// Where the chapters are that the program writes itself.
@@ -18,12 +19,23 @@ fn words(command: &str) -> Vec<&str> {
     parts.flat_map(words).collect()
 }
 
-/// Pictures whose title names a file that the examples of the chapter have made: they are the same.
+/// Pictures of a chapter: one whose title names a file is the file that the examples have made; the
+/// others are drawn here, by their names.
 fn compare_figures(here: &TempDir, chapter: &str, text: &str) {
     for picture in text.lines().filter_map(|line| line.strip_prefix("![")?.split_once("](")) {
-        let (file, made) = picture.1.trim_end_matches("\")").split_once(" \"").expect("a title");
+        let (file, title) = match picture.1.trim_end_matches(')').split_once(' ') {
+            Some((file, title)) => (file, Some(title.trim_matches('"'))),
+            None => (picture.1.trim_end_matches(')'), None),
+        };
         let place = project("docs/src").join(file);
-        let made = std::fs::read_to_string(here.path().join(made)).unwrap();
+        let name = place.file_stem().unwrap().to_string_lossy().into_owned();
+        let made = match title {
+            Some(made) => std::fs::read_to_string(here.path().join(made)).unwrap(),
+            None => guide_charts::chart(&name, here.path(), text)
+                .map(|chart| chart.svg())
+                .or_else(|| guide_diagrams::diagram(&name))
+                .unwrap_or_else(|| panic!("{chapter}: nothing draws {file}")),
+        };
         if is_update() {
             std::fs::write(&place, &made).unwrap();
         }
