@@ -16,7 +16,7 @@ use std::process::ExitCode;
 /// Arguments of `gapi new`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns are matched with model variables by name, unit and start value; parameter ranges are \
+Columns are matched with model variables by name, unit, description and start value; parameter ranges are \
                         those of the model, or one decade around its values. Every guess is marked by a comment.
 
 Examples:

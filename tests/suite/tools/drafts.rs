@@ -83,6 +83,51 @@ fn a_unit_or_the_beginning_of_a_name_decides() {
     assert!(text.contains("T = { min = 40.0, max = 80.0 }"), "{text}");
 }
 
+/// A date and a time of day in two columns; units after `in`, one with a slash; indoor and outdoor
+/// temperatures that come in the order in which they are mistaken for each other.
+#[test]
+fn a_logger_with_date_and_clock_is_matched_by_descriptions() {
+    let model = "model M\n  parameter Real C(unit = \"J/K\") = 1e6;\n  parameter Real R(unit = \"K/W\") = 0.01;\n\
+                 parameter Real A(unit = \"m2\") = 1;\n  input Real Ta(unit = \"degC\") \"outdoor temperature\";\n\
+                 input Real G(unit = \"W/m2\") \"global radiation\";\n\
+                 output Real Ti(unit = \"degC\", start = 20, fixed = true) \"room temperature\";\nequation\n\
+                 C*der(Ti) = (Ta - Ti)/R + A*G;\nend M;\n";
+    let head =
+        "Datum;Uhrzeit;Aussentemperatur in °C;Globalstrahlung in W/m²;Raumtemperatur in °C\n";
+    let table = rows(40, |k| {
+        let (day, hours) = (1.0 + (k / 24.0).floor(), k % 24.0);
+        format!("0{day}.02.2024;{hours:02}:00;-1,{};{};1{},2", k % 9.0, 10.0 * k, 5.0 + k % 4.0)
+    });
+    drafted(
+        &(head.to_owned() + &table),
+        model,
+        &[
+            "column = \"Uhrzeit\"",
+            "outputs.Ti = { column = \"Raumtemperatur\"",
+            "inputs.Ta = { column = \"Aussentemperatur\"",
+            "inputs.G = { column = \"Globalstrahlung\"",
+        ],
+    );
+}
+
+/// A state of charge ends at 1, whatever its value in the model.
+#[test]
+fn a_fraction_ends_at_one() {
+    let model = "model M\n  parameter Real SOC0(unit = \"1\") = 0.8 \"initial state of charge\";\n\
+                 parameter Real eta = 0.9 \"efficiency\";\n  parameter Real k = 0.5 \"rate\";\n\
+                 Real s(start = SOC0, fixed = true);\n  output Real y = s*eta;\nequation\n  der(s) = -k*s;\nend M;\n";
+    let table = format!("time,y\n{}", rows(10, |k| format!("{},{}", k / 10.0, 0.7 - k / 30.0)));
+    drafted(
+        &table,
+        model,
+        &[
+            "SOC0 = { min = 0.0, max = 1.0 }",
+            "eta = { min = 0.0, max = 1.0 }",
+            "k = { min = 0.05, max = 5.0 }",
+        ],
+    );
+}
+
 #[test]
 fn a_curve_is_matched_by_its_units() {
     let cell = "model M\n  parameter Real V0 = 1;\n  parameter Real R = 0.1;\n  input Real i(unit = \"A\");\n\

@@ -22,7 +22,7 @@ pub fn split(head: &str) -> (Option<&str>, Option<String>) {
         }
         return (Some(name.trim()), known);
     }
-    for mark in ["/", ",", " in "] {
+    for mark in [" in ", "/", ","] {
         let Some((name, unit)) = head.split_once(mark) else { continue };
         let unit = known(unit);
         if unit.is_some() && !name.trim().is_empty() {
@@ -83,6 +83,7 @@ mod tests {
             ("Leistung / W", owned("Leistung", "W")),
             ("Zeit in s", owned("Zeit", "s")),
             ("Temperatur in \u{b0}C", owned("Temperatur", "\u{b0}C")),
+            ("Globalstrahlung in W/m2", owned("Globalstrahlung", "W/m2")),
             ("Zeit in Minuten", owned("Zeit", "Minuten")),
             ("change in x", (None, None)),
             ("Vf [V vs. Ref.]", owned("Vf", "V")),

@@ -150,7 +150,12 @@ fn roles<'c>(
     let states: Vec<&str> = model.state_names().map(|name| &**name).collect();
     let meanings = matching::meanings(columns, flat, &states);
     let pairs = || columns.iter().zip(&meanings);
-    let time = pairs().find(|(column, meaning)| meaning.is_none() && column.is_time(flat));
+    // Where date and time of day are two columns, that of the time of day counts through the days.
+    let is_time = |(column, meaning): &(&DataColumn, &Option<Meaning>)| {
+        meaning.is_none() && column.is_time(flat)
+    };
+    let time = pairs().filter(is_time).find(|(column, _)| column.increases());
+    let time = time.or_else(|| pairs().find(is_time));
     let is_driver = |(_, meaning): &(&DataColumn, &Option<Meaning>)| {
         states.is_empty() && meaning.as_ref().is_some_and(|meaning| meaning.is_input)
     };
@@ -310,7 +315,8 @@ fn parameter_line(
         about.push(parameter.description.to_string());
     }
     let name = key(&parameter.name);
-    let declared = |[low, high]: [f64; 2]| [low.max(parameter.min), high.min(parameter.max)];
+    let [least, most] = fraction(parameter).unwrap_or([parameter.min, parameter.max]);
+    let declared = |[low, high]: [f64; 2]| [low.max(least), high.min(most)];
     let measured = measured.map(declared).filter(|[low, high]| low < high);
     let range = match measured {
         Some(range) => Some((range, "around the first measured value".to_owned())),
@@ -345,8 +351,24 @@ fn measured_start(flat: &FlatModel, roles: &Roles<'_>, parameter: &str) -> Optio
     Some([rounded(first - range)?, rounded(first + range)?])
 }
 
-/// A range and where it comes from: the model's own, else 20 degrees to both sides of a temperature on a
-/// scale with an offset, and a decade to both sides of any other value.
+/// What a fraction can be: 0 to 1, within the declared limits. A parameter is one if its value lies there
+/// and its unit is 1, or if it has none and its name or description says so.
+fn fraction(parameter: &ParameterInfo) -> Option<[f64; 2]> {
+    const WORDS: [&str; 5] = ["soc", "fraction", "efficiency", "emissivity", "porosity"];
+    let about = format!("{} {}", parameter.name, parameter.description).to_lowercase();
+    let mut words = about.split(|letter: char| !letter.is_alphanumeric());
+    let mut is_said = || match &*parameter.unit {
+        "1" => true,
+        "" => words.any(|own| WORDS.iter().any(|word| own.starts_with(word))),
+        _ => false,
+    };
+    let range = [parameter.min.max(0.0), parameter.max.min(1.0)];
+    ((range[0]..=range[1]).contains(&parameter.default) && range[0] < range[1] && is_said())
+        .then_some(range)
+}
+
+/// A range and where it comes from: the model's own, that of a fraction, else 20 degrees to both sides of a
+/// temperature on a scale with an offset, and a decade to both sides of any other value.
 fn range(parameter: &ParameterInfo) -> Option<([f64; 2], String)> {
     /// Degrees to both sides.
     const AROUND: f64 = 20.0;
@@ -356,6 +378,12 @@ fn range(parameter: &ParameterInfo) -> Option<([f64; 2], String)> {
     let limited = |limit: f64| limit.is_finite() && limit.abs() < 1e20;
     if limited(min) && limited(max) && min < max {
         return Some(([min, max], "range declared in the model".to_owned()));
+    }
+    if let Some(fraction) = fraction(parameter).filter(|_| 10.0 * value > 1.0) {
+        return Some((
+            fraction,
+            "a fraction, such as a state of charge or an efficiency".to_owned(),
+        ));
     }
     if !value.is_finite() {
         return None;

@@ -46,6 +46,8 @@ mod points {
     pub(super) const UNIT: u32 = 50;
     pub(super) const LETTER: u32 = 10;
     pub(super) const SYMBOL: u32 = 25;
+    /// For each word that a column and a description have in common.
+    pub(super) const WORD: u32 = 12;
     /// A name alone that begins as the other does is evidence for inputs and outputs only.
     pub(super) const ENOUGH: u32 = 26;
 }
@@ -59,6 +61,13 @@ const SYMBOLS: [(&str, &[&str]); 7] = [
     ("t", &["temperature", "temp", "temperatur"]),
     ("h", &["height", "level", "pegel"]),
     ("m", &["mass", "masse"]),
+];
+
+/// Words that say where something is measured: those of one line mean the same, and those of two lines
+/// exclude each other. They begin longer words, too: `aussentemperatur`.
+const WHERE: [&[&str]; 2] = [
+    &["outdoor", "outside", "ambient", "exterior", "aussen", "außen", "umgebung"],
+    &["indoor", "inside", "room", "zone", "interior", "innen", "raum"],
 ];
 
 /// Words that name a column of time.
@@ -240,9 +249,38 @@ fn score(column: &DataColumn, candidate: &Candidate<'_>, flat: &FlatModel) -> Op
         (Some(from), Some(to)) => from.to(to).map(|_| points::UNIT)?,
         _ => 0,
     };
-    let likeness = likeness(&own, &other);
+    let description = candidate.variable.description.as_deref().unwrap_or_default();
+    let about = format!("{other} {}", description.to_lowercase());
+    let likeness = likeness(&own, &other) + common_words(&own, &about)? * points::WORD;
     let evidence = if candidate.role == Role::State { unit } else { unit + likeness };
     (unit > 0 || evidence + role >= points::ENOUGH).then_some(unit + likeness + role)
+}
+
+/// How many words of a column the name and the description of a variable have, the place of a measurement
+/// for some; `None` where the places exclude each other.
+fn common_words(column: &str, about: &str) -> Option<u32> {
+    const MOST: usize = 2;
+    /// A common place counts as so many words.
+    const PLACE: u32 = 2;
+    let place = |text: &str| {
+        let mut words = text.split(|letter: char| !letter.is_alphanumeric());
+        words.find_map(|own| {
+            WHERE.iter().position(|place| place.iter().any(|word| own.starts_with(word)))
+        })
+    };
+    let places = match (place(column), place(about)) {
+        (Some(own), Some(other)) if own != other => return None,
+        (Some(_), Some(_)) => PLACE,
+        _ => 0,
+    };
+    let is_word = |word: &&str| word.chars().count() >= 4;
+    let words = |text: &'_ str| -> Vec<String> {
+        let words = text.split(|letter: char| !letter.is_alphanumeric());
+        words.filter(is_word).map(str::to_owned).collect()
+    };
+    let described = words(about);
+    let common = words(column).iter().filter(|word| described.contains(word)).count();
+    Some(places + common.min(MOST) as u32)
 }
 
 /// How much the names have in common: letters at their beginning where one begins as the whole other, or the
