@@ -42,13 +42,18 @@ impl From<&bytecode::Failure> for Failure {
 impl Program {
     /// A failed simulation in the model's words.
     pub fn explain(&self, error: &SimError) -> Diagnostic {
+        self.explain_with(error, None)
+    }
+
+    /// The same; `external`: the words of the external function that failed.
+    pub(super) fn explain_with(&self, error: &SimError, external: Option<&str>) -> Diagnostic {
         let when = format!("at t = {}", error.time);
         match error.kind {
-            SimErrorKind::Evaluation(failure) => self.explain_failure(failure, &when),
+            SimErrorKind::Evaluation(failure) => self.explain_failure(failure, &when, external),
             SimErrorKind::Initialization(
                 Failure::Newton { block } | Failure::Singular { block },
             ) => self.explain_block(self.block(block), &when, INITIALIZATION_FAILED),
-            SimErrorKind::Initialization(failure) => self.explain_failure(failure, &when),
+            SimErrorKind::Initialization(failure) => self.explain_failure(failure, &when, external),
             other => self.explain_end(other, error.offending, &when),
         }
     }
@@ -147,7 +152,7 @@ impl Program {
         }
     }
 
-    fn explain_failure(&self, failure: Failure, when: &str) -> Diagnostic {
+    fn explain_failure(&self, failure: Failure, when: &str, external: Option<&str>) -> Diagnostic {
         match failure {
             Failure::Domain { origin, operation } => self.without_value(origin, operation, when),
             Failure::Function { function, at, reason } => {
@@ -159,7 +164,9 @@ impl Program {
                 if functions.message(&failure).is_some() {
                     return fault!(ASSERTION_FAILED, "{words} ({when})").at(span);
                 }
-                if let Some(message) = self.external_message(failure) {
+                let external = external.filter(|_| failure.reason == Reason::External);
+                let known = external.map(str::to_owned).or_else(|| self.external_message(failure));
+                if let Some(message) = known {
                     words = format!("{words}: {message}");
                 }
                 fault!(DOMAIN_ERROR, "{words} ({when})").at(span)

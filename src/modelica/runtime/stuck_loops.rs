@@ -19,7 +19,8 @@ enum When {
 impl System {
     /// A failed simulation in the model's words, with what is known of the loop that failed.
     pub fn explain(&self, error: &SimError) -> Diagnostic {
-        let diagnostic = self.with_values(self.program().explain(error), error);
+        let said = self.program().explain_with(error, self.external_words(error));
+        let diagnostic = self.with_values(said, error);
         let failed = match error.kind {
             SimErrorKind::Evaluation(Failure::Initialization { block })
             | SimErrorKind::Initialization(Failure::Initialization { block }) => {
@@ -33,6 +34,23 @@ impl System {
             Some((block, when)) => self.with_nearest(diagnostic, block, when),
             None => diagnostic,
         }
+    }
+
+    /// The same in words that are equal for equal causes: `…` stands for the numbers in them.
+    pub fn explain_cause(&self, error: &SimError) -> Diagnostic {
+        let said = self.external_words(error).map(without_numbers);
+        self.program().explain_with(error, said.as_deref())
+    }
+
+    /// What the external function says that has failed with the present values of the parameters.
+    fn external_words(&self, error: &SimError) -> Option<&str> {
+        let (SimErrorKind::Evaluation(failure) | SimErrorKind::Initialization(failure)) =
+            error.kind
+        else {
+            return None;
+        };
+        let last = self.registers.calls.failure?;
+        (failure == Failure::from(&last)).then(|| self.registers.calls.message())
     }
 
     /// The diagnostic with the point at which least squares ended, and the equation that is
@@ -98,4 +116,16 @@ fn short(value: f64) -> String {
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }
     }
+}
+
+/// A sentence with `…` for each number.
+fn without_numbers(sentence: &str) -> String {
+    let word = |word: &str| {
+        let number = word.trim_end_matches([',', ';', '.', ':']);
+        match number.parse::<f64>() {
+            Ok(_) => format!("…{}", &word[number.len()..]),
+            Err(_) => word.to_owned(),
+        }
+    };
+    sentence.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }

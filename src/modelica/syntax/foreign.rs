@@ -27,6 +27,7 @@ impl Surroundings<'_> {
         self.operator()
             .or_else(|| self.decimal_comma())
             .or_else(|| self.loop_range())
+            .or_else(|| self.late_value())
             .or_else(|| self.unit_or_product())
             .or_else(|| self.missing_section())
     }
@@ -74,6 +75,16 @@ impl Surroundings<'_> {
         Some(Remedy {
             message: "`=` does not give a loop its range".to_owned(),
             help: format!("write `for {name} in {range} loop`"),
+        })
+    }
+
+    /// `Real x "level" = 1`
+    fn late_value(&self) -> Option<Remedy> {
+        let follows_description =
+            self.head.ends_with('"') && self.expected.contains("`annotation`");
+        (self.found == "=" && follows_description).then(|| Remedy {
+            message: "the value of a declaration precedes its description".to_owned(),
+            help: "write `Real x = 1 \"level\"`".to_owned(),
         })
     }
 

@@ -8,7 +8,7 @@ codes! {
         "## What it means\n\nAn operator, a function or a variable received a value of the wrong type. Only Integer is converted to Real implicitly; nothing is converted to String, Integer or Boolean.\n\n## Example\n\n`\"run\" + 3` adds a String and an Integer.\n\n## What to do\n\nConvert explicitly: `String(3)`, `integer(x)`, `Integer(e)`; for operators between a scalar and an array use the element-wise forms `.+`, `.-`, `./`, `.^`.",
     /// A subscript that names no element.
     INDEX_OUT_OF_RANGE = "index-out-of-range":
-        "## What it means\n\nA subscript is outside its dimension. The first element has the subscript 1, the last one `size(a, d)`.\n\n## Example\n\n`v[4]` where `v` has 3 elements.\n\n## What to do\n\nCompare the subscript with `size(v, 1)`; inside the brackets, `end` is the last subscript. What MATLAB writes as `v(1)` is `v[1]` here.",
+        "## What it means\n\nA subscript is outside its dimension. The first element has the subscript 1, the last one `size(a, d)`.\n\n## Example\n\n`v[4]` where `v` has 3 elements.\n\n## What to do\n\nCompare the subscript with `size(v, 1)`; inside the brackets, `end` is the last subscript. What MATLAB writes as `v(1)` is `v[1]` here. An array does not grow by an assignment: give it its size first, `v := zeros(3)`, or join arrays, `v := cat(1, v, {5})`.",
     /// Arrays whose sizes do not go together.
     SIZE_MISMATCH = "size-mismatch":
         "## What it means\n\nThe sizes of two arrays, or of an array and the variable it is assigned to, do not match.\n\n## Example\n\n`{1, 2} + {1, 2, 3}`\n\n## What to do\n\nCompare `size(a)` of both; `transpose`, `vector`, `matrix` and slices change shapes.",

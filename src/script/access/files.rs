@@ -194,10 +194,8 @@ impl Session {
         }
         let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", shown(path)));
         let fault = fault.help_if(escape_help(path)).help_if(drive_help(path));
-        fault.help_if(self.similar_file(path)).help(format!(
-            "relative paths start from the working directory `{}` or the script's folder",
-            self.world.current_dir().display()
-        ))
+        let start = self.execution.start_of_paths(&self.world.current_dir());
+        fault.help_if(self.similar_file(path)).help(start)
     }
 
     fn similar_file(&self, path: &Path) -> Option<String> {

@@ -49,6 +49,8 @@ pub type Iteration = (usize, Option<usize>);
 pub struct Execution {
     /// The folders of the scripts that are being run, outermost first.
     folders: Vec<PathBuf>,
+    /// The folder of the problem file that is being read, from which its paths start.
+    problem: Option<PathBuf>,
     stop: Option<Stop>,
     /// Whether the outermost script is a file, not what was typed at a prompt.
     is_file: bool,
@@ -72,6 +74,29 @@ impl Execution {
     /// The innermost script ends.
     pub fn leave(&mut self) {
         self.folders.pop();
+    }
+
+    /// A problem file that lies in this folder is read from here on, or none; what was read before.
+    pub(crate) fn read_problem(&mut self, folder: Option<PathBuf>) -> Option<PathBuf> {
+        std::mem::replace(&mut self.problem, folder)
+    }
+
+    /// Where relative paths start, in words; `working`: the working directory.
+    pub(crate) fn start_of_paths(&self, working: &Path) -> String {
+        let working = working.display();
+        match (&self.problem, self.folders.is_empty()) {
+            (Some(folder), true) if folder.as_os_str().is_empty() => {
+                format!("relative paths start from the folder of the problem file, `{working}`")
+            }
+            (Some(folder), true) => format!(
+                "relative paths start from the folder of the problem file, `{}`",
+                folder.display()
+            ),
+            (None, true) => format!("relative paths start from the working directory `{working}`"),
+            (_, false) => format!(
+                "relative paths start from the working directory `{working}` or the script's folder"
+            ),
+        }
     }
 
     /// Whether the outermost script is a file from here on.

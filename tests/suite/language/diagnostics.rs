@@ -91,3 +91,33 @@ fn every_explanation_has_its_headings() {
         }
     }
 }
+
+/// Each table of codes in the sources is one that `gapi explain` knows.
+#[test]
+fn every_code_of_the_sources_is_explained() {
+    fn slugs_below(folder: &Path, slugs: &mut BTreeSet<String>) {
+        for entry in fs::read_dir(folder).expect("a readable folder") {
+            let path = entry.expect("a readable entry").path();
+            if path.is_dir() {
+                slugs_below(&path, slugs);
+                continue;
+            }
+            if path.extension().is_none_or(|extension| extension != "rs") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).expect("a readable file");
+            for table in text.split("codes! {\n    /// ").skip(1) {
+                let table = table.split("\n}").next().unwrap_or_default();
+                let lines =
+                    table.lines().filter_map(|line| line.split_once(" = \"")?.1.split_once("\":"));
+                slugs.extend(
+                    lines.map(|(slug, _)| slug.to_owned()).filter(|slug| !slug.contains(' ')),
+                );
+            }
+        }
+    }
+    let mut written = BTreeSet::new();
+    slugs_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut written);
+    let known: BTreeSet<String> = codes::all().iter().map(|code| code.slug.to_owned()).collect();
+    assert_eq!(written, known, "codes in tables of the sources, and those that are explained");
+}

@@ -96,6 +96,7 @@ fn model(body: &str, words: &[&str]) {
 
 #[test]
 fn names_of_other_languages_are_answered_with_those_of_modelica() {
+    model("Real x \"level\" = 1;", &["precedes its description", "write `Real x = 1 \"level\"`"]);
     model("parameter Boolean on = True;", &["`True` is not declared", "write `true`"]);
     model("parameter float k = 1;", &["there is no class `float`", "write `Real`"]);
     model("Real x = 2*pi;", &["write `Modelica.Constants.pi`"]);
@@ -131,6 +132,46 @@ fn places_are_those_of_the_user() {
     let script = "openModel(\"C:/models/Decay.mo\");\n";
     let (code, _, errors) = gapi(&folder(&[("s.mos", script)]), &["run", "s.mos"]);
     assert!(code != 0 && (cfg!(windows) || errors.contains("no drive `C:`")), "{errors}");
+}
+
+/// A problem file is wrong where it names what is not there, or what it may not estimate.
+#[test]
+fn problem_files_say_where_files_are_sought_and_what_is_final() {
+    let problem = |data: &str, parameter: &str| {
+        format!(
+            "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\n{parameter} = {{ min = 0.1, max = 2 }}\n\
+             [[experiment]]\ndata = \"{data}\"\noutputs = {{ x = \"x\" }}\n"
+        )
+    };
+    let source = "model M\n  parameter Real k = 1;\n  final parameter Real c = 2;\n  Real x = c*exp(-k*time);\nend M;\n";
+    let here = folder(&[
+        ("sub/M.mo", source),
+        ("sub/d.csv", "time,x\n0,2\n1,0.8\n2,0.3\n"),
+        ("sub/missing.toml", &problem("none.csv", "k")),
+        ("sub/final.toml", &problem("d.csv", "c")),
+    ]);
+    let (code, _, errors) = gapi(&here, &["identify", "sub/missing.toml"]);
+    assert!(code != 0 && errors.contains("there is no file `sub/none.csv`"), "{errors}");
+    assert!(errors.contains("start from the folder of the problem file, `sub`"), "{errors}");
+    assert!(!errors.contains("script"), "{errors}");
+    let (code, _, errors) = gapi(&here, &["identify", "sub/final.toml"]);
+    assert!(code != 0 && errors.contains("`c` of `M` is declared `final`"), "{errors}");
+    assert!(errors.contains("M.mo:3:") && errors.contains("declared final here"), "{errors}");
+}
+
+/// A table whose abscissae no longer increase during a fit is named as the cause of failures.
+#[test]
+fn a_table_that_loses_its_order_says_so() {
+    let source = "model M\n  parameter Real b = 2;\n  Modelica.Blocks.Tables.CombiTable1Ds t(table = [0, 0; b, 2; 3, 3]);\n\
+                  Real x = t.y[1];\nequation\n  t.u = time;\nend M;\n";
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\nb = { min = 0.1, max = 6 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { x = \"x\" }\n";
+    let table = "time,x\n0,0\n0.5,0.6\n1,1.3\n2,2.1\n2.5,2.6\n3,3\n";
+    let here = folder(&[("M.mo", source), ("p.toml", problem), ("d.csv", table)]);
+    let (code, out, errors) = gapi(&here, &["identify", "p.toml"]);
+    assert_eq!(code, 0, "{errors}");
+    let said = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("must increase strictly, but … follows …"), "{out}");
 }
 
 /// A run without a result leaves nothing that the corrected problem stumbles over.

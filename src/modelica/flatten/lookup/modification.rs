@@ -260,8 +260,9 @@ impl Modifier {
     ) -> Result<Modifier, Diagnostic> {
         let changes = !outer.is_empty();
         if self.is_final && changes {
-            let error = fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified")
-                .at(outer.place().or(self.span).unwrap_or(Span::NONE));
+            let error = fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified";
+                help: "remove this value, or `final` where it is declared")
+            .at(outer.place().or(self.span).unwrap_or(Span::NONE));
             return Err(match self.span {
                 Some(place) if place != error.span() => error.related(place, "declared final here"),
                 _ => error,

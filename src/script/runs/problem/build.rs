@@ -16,6 +16,7 @@ use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::fmi::import::Imported;
 use crate::ga::optimizer::METHODS;
+use crate::identify::Descriptions;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
 use crate::identify::problem::{
@@ -83,20 +84,32 @@ pub(super) fn build(
     file: &mut ProblemFile,
     path: &Path,
 ) -> Result<Built, Vec<Diagnostic>> {
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    load_models(session, file, &folder)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let around = session.execution.read_problem(Some(folder.to_owned()));
+    let built = build_in(session, file, folder);
+    session.execution.read_problem(around);
+    built
+}
+
+/// The same; paths of the file start from this folder.
+fn build_in(
+    session: &mut Session,
+    file: &mut ProblemFile,
+    folder: &Path,
+) -> Result<Built, Vec<Diagnostic>> {
+    load_models(session, file, folder)?;
     let (mut notes, mut origins) = (Notes::default(), Origins::new());
-    let unit = imported::unit(session, file, &folder)?;
+    let unit = imported::unit(session, file, folder)?;
     if unit.is_none() {
         check_class(session, file)?;
     } else {
         let bytes = session.read_bytes(&folder.join(&file.model)).map_err(one)?;
         origins.add(format!("`{}`", file.model), &bytes);
     }
-    set_file::read(session, file, unit.as_deref(), &folder, (&mut notes, &mut origins))?;
+    set_file::read(session, file, unit.as_deref(), folder, (&mut notes, &mut origins))?;
     let file = &*file;
     origins.add_problem(&file.table);
-    let data = data_of(session, file, &folder, (&mut notes, &mut origins))?;
+    let data = data_of(session, file, folder, (&mut notes, &mut origins))?;
     let free = free_parameters(file, &data).map_err(one)?;
     let model = (file, unit.as_ref());
     let mut read = experiments(session, model, &data, &free, &mut notes)?;
@@ -116,6 +129,7 @@ pub(super) fn build(
     let method = operators::method(session, file, usual, parameters.len())?;
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, method, noise, Box::new(simulator)).map_err(one)?;
+    problem.descriptions = descriptions(&experiments, &problem.parameters, &inference);
     problem.inference = inference;
     let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
     adjust(&mut problem, adjustments).map_err(one)?;
@@ -324,6 +338,7 @@ fn assemble(
         title: title(file),
         model: file.model.clone(),
         text: file.text.clone(),
+        descriptions: Descriptions::default(),
         parameters,
         series,
         objectives,
@@ -336,6 +351,20 @@ fn assemble(
         inference: Inference::default(),
         simulator,
     })
+}
+
+/// What the models describe everything as that is measured, estimated or predicted.
+fn descriptions(experiments: &[Experiment], free: &[Free], inference: &Inference) -> Descriptions {
+    let mut descriptions = Descriptions::default();
+    for experiment in experiments {
+        let measured = experiment.observations.iter().map(|own| own.y_name.as_str());
+        // An initial value is that of a variable.
+        let estimated = free.iter().filter_map(|free| free.name.split('@').next());
+        let predicted = inference.band_variables.iter().map(String::as_str);
+        let names = measured.chain(estimated).chain(predicted).chain([experiment.x_name.as_str()]);
+        descriptions.add(experiment.model.as_ref(), names);
+    }
+    descriptions
 }
 
 /// A method that searches natural units has no logarithmic scale.

@@ -228,7 +228,7 @@ impl Source<'_> {
         let outputs = self.entry.outputs.keys().map(|name| (name.as_str(), places.column(name)));
         let names: Vec<(&str, Span)> = [(x_name, places.x)].into_iter().chain(outputs).collect();
         parameters::check_variables(&names, model).map_err(|error| vec![error])?;
-        parameters::check_free(file, &class.parameters, model).map_err(|error| vec![error])?;
+        parameters::check_free(session, file, &class.parameters, model)?;
         self.segment.check_initial_values(file, self.entry, model).map_err(|error| vec![error])?;
         parameters::check_taken(file, self.entry, model).map_err(|error| vec![error])?;
         parameters::check_initial(session, file, self.entry, model)

@@ -176,6 +176,8 @@ fn solve_stated(
     }
     let options = RunOptions { searches: options.searches.or(file.searches), ..options.clone() };
     let mut again = |session: &mut Session, change: Change<'_>| {
+        // What is to be said of the problem has been said.
+        let is_quiet = std::mem::replace(&mut session.options.quiet, true);
         let built = match change {
             Change::Seed(seed) => {
                 file.seed = Some(seed);
@@ -188,6 +190,7 @@ fn solve_stated(
                 built
             }
         };
+        session.options.quiet = is_quiet;
         built.map_err(|errors| {
             let first = errors.first().map(|error| error.message.clone()).unwrap_or_default();
             fault!(BAD_OPTION, "the problem cannot be read again: {first}")

@@ -183,19 +183,37 @@ impl Setting<'_> {
 /// Names that the model does not have, variables, constants, final and structural parameters, and
 /// parameters that are not Real.
 pub(super) fn check_free(
+    session: &mut Session,
     file: &ProblemFile,
     names: &[(usize, String)],
     model: &Translated,
-) -> Result<(), Diagnostic> {
+) -> Result<(), Vec<Diagnostic>> {
     for (_, name) in names {
         let settable = model.program.find_parameter(name).ok();
         let base = settable.map(|at| &model.program.parameters()[at].base);
         if matches!(base, Some(BaseType::Real)) {
             continue;
         }
-        return Err(not_free(name, base, model).at(file.places.parameter(name)));
+        let error = not_free(name, base, model).at(file.places.parameter(name));
+        return Err(vec![match final_place(session, name, model)? {
+            Some(place) => error.related(place, "declared final here"),
+            None => error,
+        }]);
     }
     Ok(())
+}
+
+/// Where a parameter is final: at its value if it has one, which a modification may give it.
+fn final_place(
+    session: &mut Session,
+    name: &str,
+    model: &Translated,
+) -> Result<Option<Span>, Vec<Diagnostic>> {
+    if !model.declarations.get(name).is_some_and(|declared| declared.is_final) {
+        return Ok(None);
+    }
+    let variable = flat_model_of(session, model)?.variables.get(name);
+    Ok(variable.map(|own| own.binding.as_ref().map_or(own.span, |binding| binding.span)))
 }
 
 /// Refuses values that the model does not take: a record that has a value as a whole keeps it

@@ -22,6 +22,8 @@ const DEEPER: [(&str, &str); 6] = [
 /// Entries above the first table in brackets.
 const TOP: [&str; 8] =
     ["title", "model", "files", "fitness", "seed", "searches", "constraints", "bands"];
+/// Entries of an experiment, of which there may be several.
+const OF_EXPERIMENTS: [&str; 6] = ["data", "x", "outputs", "inputs", "start", "stop_time"];
 
 /// The error of the parser in the words of problem files.
 pub(super) fn refusal(source: SourceId, text: &str, error: &toml::de::Error) -> Diagnostic {
@@ -179,6 +181,11 @@ impl<'t> Place<'t> {
                  `[stop]` is part of that table"
             )));
         }
+        if OF_EXPERIMENTS.contains(&name) && known.contains(&"experiment") {
+            return Some(fault.help(format!(
+                "`{name}` belongs to an experiment: write it below a line `[[experiment]]`"
+            )));
+        }
         let similar = match name {
             "experiments" => Some("write `[[experiment]]`, once for each measurement".to_owned()),
             "parameter" => Some("write `[parameters]`".to_owned()),
@@ -334,6 +341,7 @@ mod tests {
             ("% comment\n", ["`%` does not begin a comment", "write `#`"]),
             ("searches = 5\nsearches = 6\n", ["written twice", "keep one"]),
             ("sigma = 1\n", ["no entry `sigma`", "`files`"]),
+            ("data = \"d.csv\"\n", ["belongs to an experiment", "`[[experiment]]`"]),
         ];
         for (line, words) in all {
             let said = refused(&format!("{line}{rest}"));
