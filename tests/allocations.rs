@@ -12,11 +12,11 @@ use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::{Program, SensitivityCode};
 use gapilib::internals::flatten::{self, Library, LibraryFiles};
 use gapilib::internals::ga::optimizer::METHODS;
-use gapilib::internals::identify::CompiledModel;
 use gapilib::internals::identify::fitness::FITNESSES;
 use gapilib::internals::identify::problem::{
     Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma, Stop,
 };
+use gapilib::internals::identify::{CompiledModel, Descriptions};
 use gapilib::internals::name::Name;
 use gapilib::internals::registry::{self, Options};
 use gapilib::internals::runtime::System;
@@ -235,6 +235,7 @@ fn curve(evaluations: u64) -> Problem {
         title: String::new(),
         model: String::new(),
         text: String::new(),
+        descriptions: Descriptions::default(),
         parameters: names.map(free).to_vec(),
         series: vec![Series {
             experiment: "curve".to_owned(),

@@ -385,7 +385,8 @@ fn draw(
     table: &ResultTable,
 ) -> Result<(), Fault> {
     let panels = arguments.plot.iter().map(|name| panel(table, name));
-    let figure = Figure { title: class.to_owned(), panels: panels.collect::<Result<_, _>>()? };
+    let name = class.split('(').next().unwrap_or_default().rsplit('.').next().unwrap_or(class);
+    let figure = Figure { title: name.to_owned(), panels: panels.collect::<Result<_, _>>()? };
     match arguments.figure.as_ref().zip(picture) {
         Some((path, format)) => {
             session.permit_file(path);
@@ -399,8 +400,8 @@ fn draw(
 
 fn panel(table: &ResultTable, name: &str) -> Result<Panel, Fault> {
     let y = table.column(name)?;
-    let unit = table.series.iter().find(|series| series.name == name);
-    let unit = unit.map_or("", |series| &series.unit);
+    let known = table.series.iter().find(|series| series.name == name);
+    let (description, unit) = known.map_or(("", ""), |own| (&own.description, &own.unit));
     let line = plot::Series {
         name: name.to_owned(),
         x: table.time.clone(),
@@ -410,7 +411,7 @@ fn panel(table: &ResultTable, name: &str) -> Result<Panel, Fault> {
     };
     Ok(Panel {
         x: Axis::linear("time", "s"),
-        y: Axis::linear(name, unit),
+        y: Axis::of_variable(name, description, unit),
         height: 200.0,
         zero_line: false,
         series: vec![line],

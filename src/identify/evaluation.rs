@@ -10,7 +10,7 @@ use super::problem::{
 };
 use super::ranks::{Asked, Batch, Processors};
 use super::simulators::Simulators;
-use super::{Quantity, Study};
+use super::{Descriptions, Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
@@ -108,9 +108,12 @@ impl Evaluator {
             Ok(Box::new(one) as Box<dyn Simulate>)
         };
         let quantity = |p: &Parameter| Quantity { name: p.name.clone(), unit: p.unit.clone() };
+        let mut descriptions = Descriptions::default();
+        descriptions.add(shared.as_ref(), [x.name.as_str(), y.name.as_str()]);
         let study = Study {
-            model: model.name().to_owned(),
+            model: shared.name().to_owned(),
             parameters: parameters.iter().map(quantity).collect(),
+            descriptions,
             x,
             y,
         };

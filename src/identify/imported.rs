@@ -156,6 +156,10 @@ impl Model for ImportedModel {
         Some(self.unit.description.attributes_of(variable).unit.unwrap_or_default())
     }
 
+    fn description(&self, variable: &str) -> Option<String> {
+        self.variable(variable)?.description.clone()
+    }
+
     fn is_relative(&self, variable: &str) -> bool {
         let relative = |own| self.unit.description.attributes_of(own).is_relative;
         self.variable(variable).and_then(relative).unwrap_or(false)

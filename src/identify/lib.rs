@@ -16,6 +16,7 @@ pub mod fitness;
 pub mod problem;
 pub mod ranks;
 
+mod descriptions;
 mod evaluation;
 #[cfg(test)]
 mod evaluation_tests;
@@ -39,6 +40,7 @@ mod study;
 mod table;
 mod uncertainty;
 
+pub use descriptions::Descriptions;
 pub use evaluation::{Evaluator, Question, Simulated};
 pub use imported::ImportedModel;
 pub use model::{Instance, Model, Parameter, PortableModel};

@@ -16,6 +16,10 @@ pub trait Model: Send + Sync {
     fn names(&self) -> Vec<String>;
     /// The unit of a Real variable, empty if it has none; `None` if there is no such variable.
     fn unit(&self, variable: &str) -> Option<String>;
+    /// The description string of a variable; `None` if it has none.
+    fn description(&self, _variable: &str) -> Option<String> {
+        None
+    }
     /// Whether a variable is a difference, whose unit converts without an offset
     /// (`annotation(absoluteValue = false)`).
     fn is_relative(&self, _variable: &str) -> bool {

@@ -18,6 +18,7 @@ use super::recorder::{Recorder, ScriptBest};
 use super::study::Compared;
 use super::table::significant;
 use super::{Model, Objective, Parameter};
+use crate::Descriptions;
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::optimizer::METHODS;
@@ -160,6 +161,7 @@ impl Ending<'_> {
             title: self.title(best),
             model: models(best),
             text: String::new(),
+            descriptions: self.descriptions(best),
             stop: Stop { evaluations: Some(BUDGET * parameters.len() as u64), ..Stop::default() },
             parameters,
             series,
@@ -182,6 +184,18 @@ impl Ending<'_> {
 
     fn title(&self, best: ScriptBest<'_>) -> String {
         format!("Identified parameters of {}", models(best))
+    }
+
+    /// What the models describe the parameters, X and Y as.
+    fn descriptions(&self, best: ScriptBest<'_>) -> Descriptions {
+        let mut descriptions = Descriptions::default();
+        for (compared, model) in best.compared.iter().zip(&self.models) {
+            let Some(model) = model else { continue };
+            let study = &compared.study;
+            let quantities = study.parameters.iter().chain([&study.x, &study.y]);
+            descriptions.add(model.as_ref(), quantities.map(|quantity| quantity.name.as_str()));
+        }
+        descriptions
     }
 
     /// The parameters with these ranges.
@@ -295,7 +309,12 @@ impl Ending<'_> {
              identifiability."
         );
         Solution {
-            subject: Subject { title: self.title(best), model: models(best), ..Subject::default() },
+            subject: Subject {
+                title: self.title(best),
+                model: models(best),
+                descriptions: self.descriptions(best),
+                ..Subject::default()
+            },
             fitness: best.fitness,
             parameters: quantities.map(parameter).collect(),
             series: best.compared.iter().enumerate().filter_map(solved).collect(),

@@ -120,6 +120,10 @@ impl Model for CompiledModel {
         self.variable(variable).map(|variable| variable.unit.to_string())
     }
 
+    fn description(&self, variable: &str) -> Option<String> {
+        self.variable(variable).map(|variable| variable.description.to_string())
+    }
+
     fn is_relative(&self, variable: &str) -> bool {
         self.variable(variable).is_some_and(|variable| variable.is_relative)
     }
@@ -238,7 +242,7 @@ impl Instance for CompiledInstance {
     }
 
     fn explain(&self, error: &SimError) -> String {
-        let message = self.system.program().explain(error).message.clone();
+        let message = self.system.explain_cause(error).message.clone();
         // The time is kept apart, so that equal causes can be counted.
         let when = format!("at t = {}", error.time);
         let shortened = message.replace(&format!(" ({when})"), "").replace(&format!(" {when}"), "");

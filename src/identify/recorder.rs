@@ -331,6 +331,7 @@ mod tests {
             parameters: vec![quantity("p")],
             x: quantity("time"),
             y: quantity("y"),
+            descriptions: crate::Descriptions::default(),
         })
     }
 

@@ -1,6 +1,8 @@
 //! What a script identifies: the model, the quantities, the measured series, and these beside their
 //! simulation.
 
+use super::Descriptions;
+use crate::plot::Axis;
 use std::sync::Arc;
 
 /// What is simulated: the model, what varies, what is compared.
@@ -14,6 +16,15 @@ pub struct Study {
     pub x: Quantity,
     /// What was measured.
     pub y: Quantity,
+    /// What the model describes X and Y as.
+    pub descriptions: Descriptions,
+}
+
+impl Study {
+    /// The axis of X or Y.
+    pub fn axis(&self, Quantity { name, unit }: &Quantity) -> Axis {
+        Axis::of_variable(name, self.descriptions.of(name), unit)
+    }
 }
 
 /// A name and a unit.

@@ -8,12 +8,12 @@ use gapilib::internals::causalize::causalize;
 use gapilib::internals::codegen::Program;
 use gapilib::internals::flatten::{Library, flatten};
 use gapilib::internals::ga::optimizer::METHODS;
-use gapilib::internals::identify::CompiledModel;
 use gapilib::internals::identify::fitness::FITNESSES;
 use gapilib::internals::identify::problem::{
     Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma,
     Solution, Stop, conclude,
 };
+use gapilib::internals::identify::{CompiledModel, Descriptions};
 use gapilib::internals::name::Name;
 use gapilib::internals::registry::{self, Options};
 use gapilib::internals::sim::Settings;
@@ -138,6 +138,7 @@ impl Dataset {
             title: self.name.into(),
             model: self.name.into(),
             text: String::new(),
+            descriptions: Descriptions::default(),
             parameters: (0..self.rows.len()).map(free).collect(),
             series: self.groups().into_iter().map(|(z, rows)| self.series(z, &rows)).collect(),
             objectives: vec![(

@@ -130,7 +130,7 @@ impl Screen for LiveWorld {
 fn described(view: &View) -> serde_json::Value {
     let Progress { label, done, total, best, failures, main_cause } = &view.progress;
     let spread = |Spread { name, unit, value, best, generation }: &Spread| json!({ "name": name, "unit": unit, "value": value, "best": best, "generation": generation });
-    let fitted = |Fitted { y_name, x_name, x, measured, simulated }: &Fitted| json!({ "y_name": y_name, "x_name": x_name, "x": x, "measured": measured, "simulated": simulated });
+    let fitted = |Fitted { y_title, x_title, x, measured, simulated }: &Fitted| json!({ "y_name": y_title, "x_name": x_title, "x": x, "measured": measured, "simulated": simulated });
     json!({
         "title": view.title,
         "progress": { "label": label, "done": done, "total": total, "best": best, "failures": failures, "main_cause": main_cause },

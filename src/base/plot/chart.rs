@@ -1,6 +1,6 @@
 //! Figures as text, for terminals: each character holds two by four dots, with braille patterns.
 
-use super::{Figure, Panel, Scale, Series};
+use super::{Axis, Figure, Panel, Scale, Series};
 use crate::elementary;
 
 /// Dots of a character, columns of four from the left.
@@ -30,8 +30,7 @@ impl Figure {
 }
 
 fn chart(panel: &Panel, width: usize, height: usize) -> String {
-    let names: Vec<&str> = panel.series.iter().map(|series| &*series.name).collect();
-    let mut text = format!("{}\n", names.join(", "));
+    let mut text = format!("{}\n", heading(panel));
     let x = range(panel.series.iter().flat_map(|series| &series.x), panel.x.scale);
     let y = range(panel.series.iter().flat_map(|series| &series.y), panel.y.scale);
     let (Some(x), Some(y)) = (x, y) else {
@@ -55,11 +54,33 @@ fn chart(panel: &Panel, width: usize, height: usize) -> String {
         text.push_str(&format!("{margin} │{}\n", canvas.row(row)));
     }
     let (first, last) = (shown(x.0, panel.x.scale), shown(x.1, panel.x.scale));
-    let (first, last) = (format!("{first}"), format!("{last} {}", panel.x.unit));
     text.push_str(&format!("{} └{}\n", " ".repeat(11), "─".repeat(width)));
-    let gap = width.saturating_sub(first.chars().count()).max(1);
-    text.push_str(&format!("{}{first}{:>gap$}\n", " ".repeat(13), last.trim_end()));
+    let below = below([&format!("{first}"), &format!("{last}")], &panel.x, width);
+    text.push_str(&format!("{}{below}\n", " ".repeat(13)));
     text
+}
+
+/// What is drawn: the quantity, and the names of the series unless the only one is called as it is.
+fn heading(panel: &Panel) -> String {
+    let names: Vec<&str> = panel.series.iter().map(|series| &*series.name).collect();
+    match (panel.y.label.as_str(), names.join(", ")) {
+        ("", names) => names,
+        (label, names) if names.is_empty() || names == label => panel.y.title(),
+        (_, names) => format!("{}: {names}", panel.y.title()),
+    }
+}
+
+/// What stands below the axis: its ends, and between them the quantity; its unit alone where that has no
+/// place.
+fn below([first, last]: [&str; 2], x: &Axis, width: usize) -> String {
+    let (title, count) = (x.title(), |text: &str| text.chars().count());
+    let free = width.saturating_sub(count(first) + count(last));
+    if free >= count(&title) + 2 {
+        return format!("{first}{title:^free$}{last}");
+    }
+    let last = format!("{last} {}", x.unit);
+    let gap = width.saturating_sub(count(first)).max(1);
+    format!("{first}{:>gap$}", last.trim_end())
 }
 
 /// Least and greatest of what can be drawn; apart, even if all are equal.
@@ -130,7 +151,7 @@ impl Canvas {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, Mark};
+    use super::super::Mark;
     use super::*;
 
     fn figure(x: &[f64], y: &[f64]) -> Figure {
@@ -155,12 +176,22 @@ mod tests {
     fn a_diagonal_goes_from_corner_to_corner() {
         let text = figure(&[0.0, 2.0], &[1.0, 5.0]).text(4, 4);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "v");
+        assert_eq!(lines[0], "v (V)");
         assert!(lines[1].starts_with("   5.0000e0 │") && lines[4].starts_with("   1.0000e0 │"));
         // Eight columns and sixteen rows of dots: two dots a column, rising.
         assert_eq!(lines[4].chars().last(), lines[4].chars().nth(13), "{text}");
         assert!(lines[1].ends_with('\u{285c}'), "{text}");
         assert!(lines[6].trim_start().starts_with('0') && lines[6].ends_with("2 s"), "{text}");
+    }
+
+    #[test]
+    fn axes_are_named_where_there_is_room() {
+        let mut drawn = figure(&[0.0, 10.0], &[1.0, 5.0]);
+        drawn.panels[0].y = Axis::of_variable("v", "voltage", "V");
+        let text = drawn.text(30, 4);
+        assert_eq!(text.lines().next(), Some("voltage (V): v"));
+        let last = text.lines().last().unwrap_or_default();
+        assert_eq!(last, format!("{}0{:^27}10", " ".repeat(13), "time (s)"));
     }
 
     #[test]

@@ -212,17 +212,24 @@ fn cross_style(series: &Series, look: &'static Look) -> String {
     format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", colour(series, look))
 }
 
+impl Axis {
+    /// What stands beside it, as plain text: the quantity, with its unit in brackets.
+    pub fn title(&self) -> String {
+        raised(&axis_title(self, 0))
+    }
+}
+
 /// What stands beside an axis: the quantity with its unit.
 pub(super) fn axis_title(axis: &Axis, exponent: i32) -> String {
     if let Some(unit) = prefixed(&axis.unit, exponent) {
-        return format!("{} [{}]", axis.label, marked_unit(&unit));
+        return format!("{} ({})", axis.label, marked_unit(&unit));
     }
     let power = if exponent == 0 { String::new() } else { power_of_ten(exponent) };
     match (&*power, &*marked_unit(&axis.unit)) {
         ("", "") => axis.label.clone(),
-        (power, "") => format!("{} [{power}]", axis.label),
-        ("", unit) => format!("{} [{unit}]", axis.label),
-        (power, unit) => format!("{} [{power}\u{a0}{unit}]", axis.label),
+        (power, "") => format!("{} ({power})", axis.label),
+        ("", unit) => format!("{} ({unit})", axis.label),
+        (power, unit) => format!("{} ({power}\u{a0}{unit})", axis.label),
     }
 }
 
@@ -472,13 +479,13 @@ mod tests {
     #[test]
     fn powers_of_ten_are_prefixes_where_engineers_write_them() {
         let title = |unit: &str, exponent| axis_title(&Axis::linear("q", unit), exponent);
-        assert_eq!(title("V", -6), "q [µV]");
-        assert_eq!(title("Ohm.cm2", -3), "q [mΩ·cm^{2}]");
-        assert_eq!(title("J/K", 6), "q [MJ/K]");
-        assert_eq!(title("s", 3), "q [10^{3}\u{a0}s]");
-        assert_eq!(title("m2", -3), "q [10^{−3}\u{a0}m^{2}]");
-        assert_eq!(title("1", -3), "q [10^{−3}]");
-        assert_eq!(title("V", 0), "q [V]");
+        assert_eq!(title("V", -6), "q (µV)");
+        assert_eq!(title("Ohm.cm2", -3), "q (mΩ·cm^{2})");
+        assert_eq!(title("J/K", 6), "q (MJ/K)");
+        assert_eq!(title("s", 3), "q (10^{3}\u{a0}s)");
+        assert_eq!(title("m2", -3), "q (10^{−3}\u{a0}m^{2})");
+        assert_eq!(title("1", -3), "q (10^{−3})");
+        assert_eq!(title("V", 0), "q (V)");
     }
 
     #[test]

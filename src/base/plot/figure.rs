@@ -82,7 +82,23 @@ pub enum Mark {
     Area,
 }
 
+/// What a variable is called beside an axis: its description, up to a bracket or the end of a clause, if
+/// that is short; else its name.
+pub(super) fn quantity<'t>(name: &'t str, description: &'t str) -> &'t str {
+    /// Letters that fit beside an axis of a small figure.
+    const LONGEST: usize = 28;
+    let clause = description.split(['(', '[', '{', '=', ';', ':', ',']).next().unwrap_or_default();
+    let clause = clause.split(". ").next().unwrap_or_default().trim().trim_end_matches('.');
+    let is_short = (1..=LONGEST).contains(&clause.chars().count());
+    if is_short && clause.contains(char::is_alphabetic) { clause } else { name }
+}
+
 impl Axis {
+    /// The linear axis of a variable: `voltage (V)` for `v`, described as "voltage", in V.
+    pub fn of_variable(name: &str, description: &str, unit: &str) -> Axis {
+        Axis::linear(quantity(name, description), unit)
+    }
+
     /// A linear axis.
     pub fn linear(label: &str, unit: &str) -> Axis {
         Axis { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
@@ -91,5 +107,24 @@ impl Axis {
     /// A logarithmic axis.
     pub fn logarithmic(label: &str, unit: &str) -> Axis {
         Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_variable_is_called_by_its_description_where_that_is_short() {
+        let title = |description: &str| Axis::of_variable("r.v", description, "V").title();
+        assert_eq!(title("voltage"), "voltage (V)");
+        assert_eq!(
+            title("Voltage drop of the two pins (= p.v - n.v)"),
+            "Voltage drop of the two pins (V)"
+        );
+        assert_eq!(title("Voltage. Measured at the terminals"), "Voltage (V)");
+        assert_eq!(title(""), "r.v (V)");
+        assert_eq!(title("what a voltmeter between both terminals would show"), "r.v (V)");
+        assert_eq!(Axis::of_variable("i", "", "A/cm2").title(), "i (A/cm²)");
     }
 }

@@ -22,14 +22,14 @@ pub fn of_residuals(is_long: bool) -> Mark {
 }
 
 /// A measured and a simulated quantity at the same places.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Comparison<'a> {
     /// Title of the figure; may be empty.
     pub title: &'a str,
-    /// Quantity and unit of `x`.
-    pub x_label: (&'a str, &'a str),
-    /// Quantity and unit of `measured` and `simulated`.
-    pub y_label: (&'a str, &'a str),
+    /// The axis of `x`.
+    pub x_axis: Axis,
+    /// The axis of `measured` and `simulated`.
+    pub y_axis: Axis,
     /// Where it was measured, in any order.
     pub x: &'a [f64],
     /// Measured values.
@@ -42,7 +42,7 @@ pub struct Comparison<'a> {
 }
 
 /// Measured points and the simulated curve, and below them the residuals, measured less simulated.
-pub fn fit(data: &Comparison) -> Figure {
+pub fn fit(data: Comparison) -> Figure {
     let mut order: Vec<usize> = (0..data.x.len()).collect();
     order.sort_by(|a, b| data.x[*a].total_cmp(&data.x[*b]));
     let sorted = |values: &[f64]| order.iter().map(|i| values[*i]).collect::<Vec<f64>>();
@@ -52,10 +52,10 @@ pub fn fit(data: &Comparison) -> Figure {
         ([], _) => (x.clone(), simulated),
         (x, y) => (x.to_vec(), y.to_vec()),
     };
-    let x_axis = Axis::linear(data.x_label.0, data.x_label.1);
     let series =
         |name: &str, (x, y), mark, colour| Series { name: name.to_owned(), x, y, mark, colour };
     let is_long = x.len() > MANY;
+    let residual = Axis::linear("residual", &data.y_axis.unit);
     let mut fit = vec![
         series("simulated", curve, Mark::Line, 1),
         series("measured", (x.clone(), measured), of_points(x.len()), 0),
@@ -67,15 +67,15 @@ pub fn fit(data: &Comparison) -> Figure {
         title: data.title.to_owned(),
         panels: vec![
             Panel {
-                x: x_axis.clone(),
-                y: Axis::linear(data.y_label.0, data.y_label.1),
+                x: data.x_axis.clone(),
+                y: data.y_axis,
                 height: 270.0,
                 zero_line: false,
                 series: fit,
             },
             Panel {
-                x: x_axis,
-                y: Axis::linear("residual", data.y_label.1),
+                x: data.x_axis,
+                y: residual,
                 height: 110.0,
                 zero_line: true,
                 series: vec![series("", (x, residuals), of_residuals(is_long), 0)],

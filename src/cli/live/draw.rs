@@ -95,8 +95,8 @@ fn fit(fitted: &Fitted, frame: &mut Frame, area: Rect) {
             .style(Style::new().fg(Color::Cyan))
             .data(&measured),
     ];
-    let title = format!(" {}: o measured, line simulated ", fitted.y_name);
-    chart(sets, title, &fitted.x_name, [&measured, &simulated], frame, area);
+    let title = format!(" {}: o measured, line simulated ", fitted.y_title);
+    chart(sets, title, &fitted.x_title, [&measured, &simulated], frame, area);
 }
 
 fn chart(
@@ -112,9 +112,11 @@ fn chart(
     let axis = |[low, high]: [f64; 2]| {
         Axis::default().bounds([low, high]).labels([short(low), short(high)])
     };
+    // Beside the axis a title would cover the curve.
+    let below = Line::from(format!(" {x_name} ")).centered();
     let chart = Chart::new(sets)
-        .block(Block::new().borders(Borders::ALL).title(title))
-        .x_axis(axis(x).title(x_name.to_owned()))
+        .block(Block::new().borders(Borders::ALL).title(title).title_bottom(below))
+        .x_axis(axis(x))
         .y_axis(axis(y));
     frame.render_widget(chart, area);
 }
@@ -208,8 +210,8 @@ mod tests {
             best: (1..60).map(|k| 1.0 / f64::from(k * k)).collect(),
             spreads: vec![spread("A", 0.5, [0.4, 0.5, 0.7]), spread("B", 0.0, [0.0, 0.2, 1.0])],
             fitted: vec![Fitted {
-                y_name: "V / V".to_owned(),
-                x_name: "i / A/cm2".to_owned(),
+                y_title: "voltage (V)".to_owned(),
+                x_title: "current density (A/cm²)".to_owned(),
                 x: (0..20).map(f64::from).collect(),
                 measured: (0..20).map(|k| (f64::from(k) / 5.0).cos()).collect(),
                 simulated: (0..20).map(|k| (f64::from(k) / 5.0).cos()).collect(),

@@ -89,6 +89,7 @@ fn problem(
         title: "a test".into(),
         model: "M".into(),
         text: String::new(),
+        descriptions: crate::Descriptions::default(),
         parameters: truth.iter().enumerate().map(free).collect(),
         series,
         objectives: vec![(fitness.unwrap_or("objective").into(), objective)],

@@ -98,6 +98,7 @@ pub(crate) use statistics::{ResidualTest, distributions, residual_test};
 pub use text::modelica_number;
 pub(crate) use unpacked::unpacked;
 
+use super::Descriptions;
 use super::fitness::Fitness;
 use crate::ga::optimizer::Method;
 use std::sync::Arc;
@@ -220,6 +221,8 @@ pub struct Problem {
     pub model: String,
     /// The problem as it was written, for the report; empty where it is put in Rust.
     pub text: String,
+    /// What the models describe their variables and parameters as, for pictures.
+    pub descriptions: Descriptions,
     /// The parameters to identify.
     pub parameters: Vec<Free>,
     /// The measured series.

@@ -6,6 +6,7 @@ use super::{
     Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
     Profile, Profiles, Severity, SolvedDescent, residual_test,
 };
+use crate::Descriptions;
 use crate::elementary;
 use crate::ga::Generation;
 use crate::search_record::SearchRecord;
@@ -87,6 +88,9 @@ pub struct Subject {
     pub operators: indexmap::IndexMap<String, String>,
     /// The name of the first objective.
     pub fitness_name: String,
+    /// What the models describe their variables and parameters as.
+    #[serde(default, skip_serializing_if = "Descriptions::is_empty")]
+    pub descriptions: Descriptions,
 }
 
 /// What is known of the errors of measurement, and how the residuals agree with it.

@@ -186,6 +186,7 @@ fn searched(run: &Run, stop: &str) -> Solution {
         method: method(run),
         operators: chosen_operators(problem),
         fitness_name: problem.objectives[0].0.clone(),
+        descriptions: problem.descriptions.clone(),
     };
     let effort = Effort {
         generations: run.generations(),

@@ -50,6 +50,7 @@ pub(super) fn problem(
         title: "a test".into(),
         model: "M(q = 1)".into(),
         text: String::new(),
+        descriptions: crate::Descriptions::default(),
         parameters: (0..truth.len()).map(free).collect(),
         series: vec![series],
         objectives: vec![("sse".into(), (sse.make)(&mut Options::default()).unwrap())],

@@ -1,6 +1,7 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
 use super::{EndingKind, ScriptError, Solution, SolvedParameter, SolvedSeries, Verdict};
+use crate::Descriptions;
 use crate::plot::{self, Comparison, Figure};
 use crate::table::{counted, digits_of, ends, quoted, significant};
 use std::fmt::Write;
@@ -277,7 +278,7 @@ impl Solution {
     pub fn fit_figures(&self) -> Vec<(String, Figure)> {
         let named = |(k, series): (usize, &SolvedSeries)| {
             let name = if k == 0 { "fit.svg".to_owned() } else { format!("fit-{}.svg", k + 1) };
-            Some((name, series.figure(self.class_name())?))
+            Some((name, series.figure(self.class_name(), &self.subject.descriptions)?))
         };
         self.series.iter().enumerate().filter_map(named).collect()
     }
@@ -316,16 +317,16 @@ impl Solution {
 
 impl SolvedSeries {
     /// Measured and simulated points and their residuals; `None` where a simulation failed.
-    fn figure(&self, title: &str) -> Option<Figure> {
+    fn figure(&self, title: &str, descriptions: &Descriptions) -> Option<Figure> {
         let column = |j: usize| self.points.iter().map(|point| point[j]).collect::<Vec<f64>>();
         let (x, measured, simulated) = (column(0), column(1), column(2));
         let (curve_x, curve_y): (Vec<f64>, Vec<f64>) =
             self.curve.iter().map(|[x, y]| (*x, *y)).unzip();
         simulated.iter().all(|value| value.is_finite()).then(|| {
-            plot::fit(&Comparison {
+            plot::fit(Comparison {
                 title,
-                x_label: (&self.x[0], &self.x[1]),
-                y_label: (&self.y[0], &self.y[1]),
+                x_axis: descriptions.axis(&self.x),
+                y_axis: descriptions.axis(&self.y),
                 x: &x,
                 measured: &measured,
                 simulated: &simulated,

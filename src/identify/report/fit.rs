@@ -4,6 +4,7 @@ use super::Section;
 use super::explanations::BAND;
 use super::parts::{explained, figure, one_panel, series};
 use super::view::{self, CurvePoint, View};
+use crate::Descriptions;
 use crate::plot::{Axis, Figure, MANY, Mark, Panel, Series, of_points, of_residuals};
 use crate::problem::{Band, SolvedSeries};
 use maud::{Markup, html};
@@ -26,7 +27,7 @@ fn all<'v>(view: &'v View<'_>) -> Vec<Shown<'v>> {
 pub fn section(view: &View) -> Option<Section> {
     let (series, curve, kind) = all(view).into_iter().next()?;
     let content = html! {
-        (one(series, curve, kind))
+        (one(series, (curve, kind), &view.solution.subject.descriptions))
         @if curve.iter().any(|at| at.confidence.is_some()) { (explained(&BAND)) }
     };
     Some(Section { id: "fit", heading: "Fit and residuals", content, wide: false })
@@ -39,9 +40,10 @@ pub(super) fn others(view: &View) -> Option<Section> {
     if others.is_empty() && view.unmeasured.is_empty() {
         return None;
     }
+    let descriptions = &view.solution.subject.descriptions;
     let content = html! {
-        div.figures { @for (series, curve, kind) in others { (one(series, curve, kind)) }
-            @for band in &view.unmeasured { (unmeasured(band)) }
+        div.figures { @for (series, curve, kind) in others { (one(series, (curve, kind), descriptions)) }
+            @for band in &view.unmeasured { (unmeasured(band, descriptions)) }
         }
     };
     Some(Section { id: "series", heading: "Further series", content, wide: true })
@@ -52,7 +54,11 @@ fn name(series: &SolvedSeries, kind: &str) -> String {
     parts.iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(" / ")
 }
 
-fn one(series: &SolvedSeries, curve: &[CurvePoint], kind: &str) -> Markup {
+fn one(
+    series: &SolvedSeries,
+    (curve, kind): (&[CurvePoint], &str),
+    descriptions: &Descriptions,
+) -> Markup {
     let name = name(series, kind);
     if series.points.iter().any(|point| !point[2].is_finite()) {
         return html! { p.note { (name) ": the simulation failed, so no comparison is possible." } };
@@ -68,10 +74,10 @@ fn one(series: &SolvedSeries, curve: &[CurvePoint], kind: &str) -> Markup {
         @if let Some(name) = Path::new(&series.file).file_name() { " from " (name.to_string_lossy()) }
         ". Residual: measured minus simulated."
     };
-    figure(&drawing(series, curve), &label, &caption)
+    figure(&drawing(series, curve, descriptions), &label, &caption)
 }
 
-fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
+fn drawing(solved: &SolvedSeries, curve: &[CurvePoint], descriptions: &Descriptions) -> Figure {
     let mut points = solved.points.clone();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let column = |value: fn(&[f64; 3]) -> f64| -> Vec<(f64, f64)> {
@@ -81,7 +87,8 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
         true => column(|point| point[2]),
         false => curve.iter().map(|at| (at.x, at.y)).collect(),
     };
-    let x = Axis::linear(&solved.x[0], &solved.x[1]);
+    let [x, y] = [&solved.x, &solved.y].map(|quantity| descriptions.axis(quantity));
+    let residual = Axis::linear("residual", &y.unit);
     let mut fit = bands(curve);
     let is_long = points.len() > MANY;
     let measured = series("measured", &column(|point| point[1]), of_points(points.len()), 0);
@@ -94,19 +101,10 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
     }
     let residuals = column(|point| point[1] - point[2]);
     let residuals = vec![series("", &residuals, of_residuals(is_long), 0)];
-    let panel = |label: &str, height, zero_line, series| Panel {
-        x: x.clone(),
-        y: Axis::linear(label, &solved.y[1]),
-        height,
-        zero_line,
-        series,
-    };
+    let panel = |y, height, zero_line, series| Panel { x: x.clone(), y, height, zero_line, series };
     Figure {
         title: String::new(),
-        panels: vec![
-            panel(&solved.y[0], 230.0, false, fit),
-            panel("residual", 100.0, true, residuals),
-        ],
+        panels: vec![panel(y, 230.0, false, fit), panel(residual, 100.0, true, residuals)],
     }
 }
 
@@ -134,13 +132,13 @@ fn bands(curve: &[CurvePoint]) -> Vec<Series> {
 }
 
 /// The curve of a variable that was not measured.
-fn unmeasured(band: &Band) -> Markup {
+fn unmeasured(band: &Band, descriptions: &Descriptions) -> Markup {
     let points = view::points(band);
     let name = format!("{} / {}", band.experiment, band.y[0]);
     let mut all = bands(&points);
     let line: Vec<(f64, f64)> = points.iter().map(|at| (at.x, at.y)).collect();
     all.push(series("simulated", &line, Mark::Line, 1));
-    let [x, y] = [&band.x, &band.y].map(|[label, unit]| Axis::linear(label, unit));
+    let [x, y] = [&band.x, &band.y].map(|quantity| descriptions.axis(quantity));
     let label = format!("{name}: the simulated curve with its band; it was not measured");
     let caption = html! { strong { (name) } ": not measured." };
     figure(&one_panel(x, y, 230.0, all), &label, &caption)

@@ -3,7 +3,7 @@
 use super::explanations::Explanation;
 use crate::elementary;
 use crate::plot::{Axis, Figure, Mark, Panel, Scale, Series};
-use crate::problem::SolvedParameter;
+use crate::problem::{Solution, SolvedParameter};
 use crate::table::significant;
 use maud::{Markup, PreEscaped, html};
 
@@ -80,7 +80,16 @@ pub fn number(value: f64, digits: usize) -> String {
     }
 }
 
-/// The axis of a parameter.
+impl Solution {
+    /// The axis of a parameter, by its description.
+    pub(super) fn axis_of(&self, parameter: &SolvedParameter, logarithmic: bool) -> Axis {
+        let SolvedParameter { name, unit, .. } = parameter;
+        let scale = axis(parameter, logarithmic).scale;
+        Axis { scale, ..Axis::of_variable(name, self.subject.descriptions.of(name), unit) }
+    }
+}
+
+/// The axis of a parameter, by its name.
 pub fn axis(parameter: &SolvedParameter, logarithmic: bool) -> Axis {
     let scale = if logarithmic { Scale::Logarithmic } else { Scale::Linear };
     Axis { scale, ..Axis::linear(&parameter.name, &parameter.unit) }

@@ -3,7 +3,7 @@
 
 use super::Section;
 use super::explanations::PROFILE;
-use super::parts::{axis, explained, legend, number, one_panel, series, small_figure};
+use super::parts::{explained, legend, number, one_panel, series, small_figure};
 use super::view::{View, is_logarithmic};
 use crate::elementary;
 use crate::plot::{Axis, Figure, Mark};
@@ -21,7 +21,7 @@ impl Solution {
         let titled = |parameter: &SolvedParameter| {
             let profile = self.profile_of(parameter)?;
             let title = format!("{}: profile of {}", self.class_name(), profile.name);
-            Some((profile.name.clone(), Figure { title, ..drawing(parameter, profile) }))
+            Some((profile.name.clone(), Figure { title, ..drawing(self, parameter, profile) }))
         };
         self.parameters.iter().filter_map(titled).collect()
     }
@@ -33,10 +33,10 @@ pub fn section(view: &View) -> Option<Section> {
     let without: Vec<&str> =
         all().filter(|(_, found)| found.is_none()).map(|(own, _)| own.name.as_str()).collect();
     let content = html! {
-        @if let Some(first) = all().find_map(|(own, found)| Some(drawing(own, found?))) { (legend(&first)) }
+        @if let Some(first) = all().find_map(|(own, found)| Some(drawing(view.solution, own, found?))) { (legend(&first)) }
         div.figures.small {
             @for (parameter, profile) in all() {
-                @if let Some(profile) = profile { (one(parameter, profile)) }
+                @if let Some(profile) = profile { (one(view.solution, parameter, profile)) }
             }
         }
         @if !without.is_empty() {
@@ -50,7 +50,7 @@ pub fn section(view: &View) -> Option<Section> {
     Some(Section { id: "profiles", heading: "Profiles", content, wide: true })
 }
 
-fn one(parameter: &SolvedParameter, profile: &Profile) -> Markup {
+fn one(solution: &Solution, parameter: &SolvedParameter, profile: &Profile) -> Markup {
     let end = |end: Option<f64>| end.map_or("open".to_owned(), |value| number(value, 4));
     let [low, high] = profile.interval.map(end);
     let label = format!("Profile of {}; 95 % interval {low} to {high}", profile.name);
@@ -60,10 +60,10 @@ fn one(parameter: &SolvedParameter, profile: &Profile) -> Markup {
             ". " span.bad { "Open: the limit is not reached within the search range." }
         } @else { "." }
     };
-    small_figure(&drawing(parameter, profile), &label, &caption)
+    small_figure(&drawing(solution, parameter, profile), &label, &caption)
 }
 
-fn drawing(parameter: &SolvedParameter, profile: &Profile) -> Figure {
+fn drawing(solution: &Solution, parameter: &SolvedParameter, profile: &Profile) -> Figure {
     let points: Vec<(f64, f64)> = profile.points.iter().map(|point| (point[0], point[1])).collect();
     let least = points.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, 0.0));
     let top = SHOWN.mul_add(profile.limit - least.1, least.1);
@@ -84,7 +84,8 @@ fn drawing(parameter: &SolvedParameter, profile: &Profile) -> Figure {
     all.push(series("", &crossings, Mark::Crosses, 2));
     all.push(series("best", &[least], Mark::Points, 0));
     let logarithmic = is_logarithmic(parameter, ends[0], ends[1]);
-    one_panel(axis(parameter, logarithmic), Axis::linear("sum of squares", ""), 190.0, all)
+    let x = solution.axis_of(parameter, logarithmic);
+    one_panel(x, Axis::linear("sum of squares", ""), 190.0, all)
 }
 
 /// What the linearized model would give: a parabola through the ends of its interval.

@@ -59,7 +59,11 @@ fn row(view: &View, parameter: &SolvedParameter) -> Markup {
     ];
     html! {
         tr role="row" {
-            th scope="row" role="rowheader" { (parameter.name) }
+            th scope="row" role="rowheader" {
+                (parameter.name)
+                @let description = view.solution.subject.descriptions.of(&parameter.name);
+                @if !description.is_empty() { span.ends { (description) } }
+            }
             @for (heading, cell) in COLUMNS[1..].iter().zip(&cells) {
                 td role="cell" data-label=(heading) { div { (cell) } }
             }

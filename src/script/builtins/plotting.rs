@@ -339,25 +339,26 @@ fn results(session: &mut Session, file: &str) -> Result<Arc<ResultTable>, Fault>
     super::results::table(session, &file)
 }
 
-/// An axis with the script's title, or the name of a variable and its unit. A title stands as it is,
-/// unless it is the name.
-fn axis((title, name): (&str, &str), unit: &str, logarithmic: bool) -> Axis {
-    let (label, unit) = match title {
-        "" => (name, unit),
-        title if title == name => (title, unit),
-        title => (title, ""),
+/// An axis with the script's title, or that of a variable. A title stands as it is, unless it is the
+/// name.
+fn axis((title, name): (&str, &str), variable: Axis, logarithmic: bool) -> Axis {
+    let axis = match title {
+        "" => variable,
+        title if title == name => Axis::linear(title, &variable.unit),
+        title => Axis::linear(title, ""),
     };
-    if logarithmic { Axis::logarithmic(label, unit) } else { Axis::linear(label, unit) }
+    if logarithmic { Axis::logarithmic(&axis.label, &axis.unit) } else { axis }
 }
 
 fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
     let table = results(session, &drawing.file)?;
     let x = table.column(&drawing.x)?;
-    let unit = |name: &str| {
-        let series = table.series.iter().find(|series| series.name == name);
-        series.map_or(String::new(), |series| series.unit.clone())
+    let variable = |name: &str| {
+        let known = table.series.iter().find(|series| series.name == name);
+        let (description, unit) = known.map_or(("", ""), |own| (&own.description, &own.unit));
+        Axis::of_variable(name, description, unit)
     };
-    let units: Vec<String> = drawing.names.iter().map(|name| unit(name)).collect();
+    let units: Vec<String> = drawing.names.iter().map(|name| variable(name).unit).collect();
     let have_one_unit = units.windows(2).all(|pair| pair[0] == pair[1]);
     let mut series = Vec::with_capacity(drawing.names.len());
     for (at, name) in drawing.names.iter().enumerate() {
@@ -371,13 +372,19 @@ fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Faul
             colour: at + 1,
         });
     }
-    let x_unit = if drawing.x.eq_ignore_ascii_case("time") { "s".into() } else { unit(&drawing.x) };
-    let y_name = if let [only] = drawing.names.as_slice() { only.as_str() } else { "" };
-    let y_unit = units.first().filter(|_| have_one_unit).map_or("", String::as_str);
+    let is_time = drawing.x.eq_ignore_ascii_case("time");
+    let x_axis = if is_time { Axis::linear(&drawing.x, "s") } else { variable(&drawing.x) };
+    let (y_name, y_axis) = match drawing.names.as_slice() {
+        [only] => (only.as_str(), variable(only)),
+        _ => {
+            let unit = units.first().filter(|_| have_one_unit).map_or("", String::as_str);
+            ("", Axis::linear("", unit))
+        }
+    };
     let [log_x, log_y] = drawing.logarithmic;
     let axes = [
-        axis((&drawing.bottom_title, &drawing.x), &x_unit, log_x),
-        axis((&drawing.left_title, y_name), y_unit, log_y),
+        axis((&drawing.bottom_title, &drawing.x), x_axis, log_x),
+        axis((&drawing.left_title, y_name), y_axis, log_y),
     ];
     session.extension::<Plots>().vectors = None;
     write(session, &figure(drawing.title, axes, series))

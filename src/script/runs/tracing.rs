@@ -2,7 +2,7 @@
 
 use crate::Session;
 use crate::diag::{Diagnostic, Fault};
-use crate::identify::{Quantity, Study};
+use crate::identify::Study;
 use crate::source::Span;
 use crate::teach::{ScriptLine, Subject, Tracer};
 use std::path::{Path, PathBuf};
@@ -76,16 +76,8 @@ pub(super) fn subject(study: &Study) -> Subject {
         model: study.model.clone(),
         parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
         units: study.parameters.iter().map(|p| p.unit.clone()).collect(),
-        x_name: titled(&study.x),
-        y_name: titled(&study.y),
-    }
-}
-
-/// A quantity as the title of an axis.
-fn titled(quantity: &Quantity) -> String {
-    match quantity.unit.as_str() {
-        "" | "1" => quantity.name.clone(),
-        unit => format!("{} [{unit}]", quantity.name),
+        x_name: study.axis(&study.x).title(),
+        y_name: study.axis(&study.y).title(),
     }
 }
 

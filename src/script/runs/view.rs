@@ -1,6 +1,7 @@
 //! A run as it is now: data for drawing it during the run.
 
-use crate::identify::{Quantity, SearchRecord};
+use crate::identify::SearchRecord;
+use crate::plot::Axis;
 
 /// How far a long piece of work is: data for drawing it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -52,10 +53,10 @@ pub struct Spread {
 /// A measured series and its simulation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fitted {
-    /// What was measured, with its unit.
-    pub y_name: String,
-    /// What it is given over, with its unit.
-    pub x_name: String,
+    /// What was measured, with its unit, as an axis is called.
+    pub y_title: String,
+    /// What it is given over, in the same way.
+    pub x_title: String,
     /// X of the points.
     pub x: Vec<f64>,
     /// Measured Y.
@@ -111,22 +112,13 @@ impl Spread {
 
 impl Fitted {
     /// A series of y over x.
-    pub(super) fn of(
-        y: &Quantity,
-        x: &Quantity,
-        [points, measured, simulated]: [&[f64]; 3],
-    ) -> Fitted {
+    pub(super) fn of([y, x]: [&Axis; 2], [points, measured, simulated]: [&[f64]; 3]) -> Fitted {
         Fitted {
-            y_name: labelled(y),
-            x_name: labelled(x),
+            y_title: y.title(),
+            x_title: x.title(),
             x: points.to_vec(),
             measured: measured.to_vec(),
             simulated: simulated.to_vec(),
         }
     }
-}
-
-/// A name with its unit, if it has one.
-fn labelled(Quantity { name, unit }: &Quantity) -> String {
-    if unit.is_empty() || unit == "1" { name.clone() } else { format!("{name} / {unit}") }
 }

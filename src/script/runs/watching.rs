@@ -105,7 +105,8 @@ fn drawn(recorder: &Recorder, study: &Study, genomes: &Genomes) -> Drawn {
     let fitted = |compared: &Compared| {
         let measured = compared.measured.as_deref().unwrap_or_default();
         let study = &compared.study;
-        Fitted::of(&study.y, &study.x, [&compared.x, measured, &compared.simulated])
+        let axes = [&study.y, &study.x].map(|quantity| study.axis(quantity));
+        Fitted::of([&axes[0], &axes[1]], [&compared.x, measured, &compared.simulated])
     };
     Drawn {
         title: format!("Identification of {}", study.model),

@@ -13,10 +13,10 @@ fn polarization() -> Figure {
     let fine_y: Vec<f64> = fine_x.iter().map(voltage).collect();
     let noise = |(k, v): (usize, &f64)| v + 0.003 * ((7 * k) as f64).sin();
     let measured: Vec<f64> = simulated.iter().enumerate().map(noise).collect();
-    plot::fit(&Comparison {
+    plot::fit(Comparison {
         title: "Polarization curve, 20 °C & 50 % humidity",
-        x_label: ("current density", "A/cm2"),
-        y_label: ("cell voltage", "V"),
+        x_axis: Axis::linear("current density", "A/cm2"),
+        y_axis: Axis::linear("cell voltage", "V"),
         x: &x,
         measured: &measured,
         simulated: &simulated,
@@ -103,16 +103,16 @@ fn fit_has_a_circle_per_measurement_and_a_stem_per_residual() {
     let svg = polarization().svg();
     assert_eq!(svg.matches("fill=\"#ffffff\" stroke=\"#000000\"").count(), 18 + 1);
     assert_eq!(svg.matches("r=\"2.6\"").count(), 18);
-    assert!(svg.contains("cell voltage [V]") && svg.contains("current density [A/cm²]"));
+    assert!(svg.contains("cell voltage (V)") && svg.contains("current density (A/cm²)"));
     assert!(svg.contains("20 °C &amp; 50 % humidity"));
 }
 
 #[test]
 fn residuals_are_measured_less_simulated_in_the_order_of_x() {
-    let figure = plot::fit(&Comparison {
+    let figure = plot::fit(Comparison {
         title: "",
-        x_label: ("x", ""),
-        y_label: ("y", ""),
+        x_axis: Axis::linear("x", ""),
+        y_axis: Axis::linear("y", ""),
         x: &[2.0, 1.0],
         measured: &[5.0, 3.0],
         simulated: &[4.0, 3.5],

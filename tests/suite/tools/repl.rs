@@ -135,7 +135,7 @@ fn the_last_simulation_is_at_hand() {
         " = 0.0 V/s at time = 3.0\n",
         " = 3.0 at time = 3.0\n",
         " = 8\n",
-        "\nx\n   1.0500e1 │",
+        "\nx (V)\n   1.0500e1 │",
     ] {
         assert!(out.contains(expected), "{expected:?} is not in\n{out}");
     }

@@ -27,6 +27,7 @@ fn analysed(
     let method = crate::ga::optimizer::METHODS[0];
     let problem = Problem {
         text: String::new(),
+        descriptions: crate::Descriptions::default(),
         title: String::new(),
         model: String::new(),
         parameters: ["a", "b", "c"].map(free).to_vec(),

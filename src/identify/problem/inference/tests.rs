@@ -93,6 +93,7 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         title: "a test".into(),
         model: "M".into(),
         text: String::new(),
+        descriptions: crate::Descriptions::default(),
         parameters: ranges.iter().enumerate().map(free).collect(),
         series: vec![series],
         objectives: vec![("sse".into(), (sse.make)(&mut Options::default()).unwrap())],

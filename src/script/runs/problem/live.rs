@@ -1,9 +1,9 @@
 //! What users see of a run in progress, and what they may change then.
 
 use crate::Session;
-use crate::identify::Quantity;
 use crate::identify::problem::Free;
 use crate::identify::problem::Run;
+use crate::plot::Axis;
 use crate::runs::view::{Drawn, Fitted, Progress, Spread};
 use std::ops::ControlFlow;
 
@@ -41,15 +41,16 @@ impl Live {
             Spread::of((&free.name, &free.unit), values, run.fractions(k))
         };
         let mut rest = self.simulated.as_slice();
-        let quantity =
-            |name: &String, unit: &String| Quantity { name: name.clone(), unit: unit.clone() };
+        let descriptions = &run.problem.descriptions;
         let mut fitted = Vec::new();
         for series in &run.problem.series {
             let (own, others) = rest.split_at(series.x.len().min(rest.len()));
             rest = others;
-            let y = quantity(&series.y_name, &series.y_unit);
-            let x = quantity(&series.x_name, &series.x_unit);
-            fitted.push(Fitted::of(&y, &x, [&series.x, &series.y, own]));
+            let axis =
+                |name: &str, unit: &str| Axis::of_variable(name, descriptions.of(name), unit);
+            let y = axis(&series.y_name, &series.y_unit);
+            let x = axis(&series.x_name, &series.x_unit);
+            fitted.push(Fitted::of([&y, &x], [&series.x, &series.y, own]));
         }
         Drawn {
             title: run.problem.title.clone(),

@@ -15,7 +15,7 @@ const short = value => {
 const genome = (rows, n, k) => rows.slice(k * n, (k + 1) * n);
 const name = j => DATA.parameters[j] || "gene " + (j + 1);
 const unit = j => DATA.units[j] ? " " + DATA.units[j] : "";
-const titled = j => DATA.units[j] ? name(j) + " [" + DATA.units[j] + "]" : name(j);
+const titled = j => DATA.units[j] ? name(j) + " (" + DATA.units[j] + ")" : name(j);
 
 // An SVG element with attributes and children.
 function svg(tag, attributes, ...children) {
