@@ -402,8 +402,10 @@ fn panel(table: &ResultTable, name: &str) -> Result<Panel, Fault> {
     let y = table.column(name)?;
     let known = table.series.iter().find(|series| series.name == name);
     let (description, unit) = known.map_or(("", ""), |own| (&own.description, &own.unit));
+    let axis = Axis::of_variable(name, description, unit);
     let line = plot::Series {
-        name: name.to_owned(),
+        // An axis with the name needs no legend.
+        name: if axis.label == name { String::new() } else { name.to_owned() },
         x: table.time.clone(),
         y,
         mark: Mark::Line,
@@ -411,7 +413,7 @@ fn panel(table: &ResultTable, name: &str) -> Result<Panel, Fault> {
     };
     Ok(Panel {
         x: Axis::linear("time", "s"),
-        y: Axis::of_variable(name, description, unit),
+        y: axis,
         height: 200.0,
         zero_line: false,
         series: vec![line],

@@ -1,5 +1,6 @@
 //! Diagrams of the guide: boxes and arrows.
 
+use super::shipped::project;
 use gapilib::internals::plot::{Anchor, Letters, Svg, Writing};
 
 const INK: &str = "#222222";
@@ -24,6 +25,12 @@ pub(crate) fn diagram(name: &str) -> Option<String> {
         "islands" => islands(),
         "states" => states(),
         "permissions" => permissions(),
+        "live_view" => {
+            let file = "gapilib_cli__live__draw__tests__a_run_is_seen_at_one_glance.snap";
+            terminal(&format!("src/cli/live/snapshots/{file}"), "The live view of a run")
+        }
+        "teach_screen" => terminal("tests/teach/screen_crossover.snap", "A step of gapi teach"),
+        "teach_what_if" => terminal("tests/teach/screen_what_if.snap", "A run and a changed one"),
         _ => return None,
     })
 }
@@ -71,6 +78,30 @@ impl Diagram {
     fn finish(self) -> String {
         self.0.finish()
     }
+}
+
+/// A screen of the terminal, as the snapshot of a test has it.
+fn terminal(file: &str, title: &str) -> String {
+    const CHARACTER: [f64; 2] = [7.8, 16.0];
+    let text = std::fs::read_to_string(project(file)).expect("a snapshot");
+    let (_, screen) = text.split_once("\n---\n").expect("a head");
+    let lines: Vec<&str> = screen.lines().map(|line| line.trim_matches('"')).collect();
+    let columns = lines.iter().map(|line| line.chars().count()).max().unwrap_or_default();
+    let width = CHARACTER[0] * columns as f64;
+    let height = CHARACTER[1] * lines.len() as f64;
+    let mut svg = Svg::new(width + 16.0, height + 16.0, title, Letters::Text);
+    for (k, line) in lines.iter().enumerate() {
+        let padded = format!("{line:columns$}").replace(' ', "\u{a0}");
+        let at = (8.0, 20.0 + CHARACTER[1] * k as f64);
+        svg.text(at, Anchor::Start, writing(13.0), &padded);
+    }
+    // Every line has the same width, whatever face the viewer has for the patterns of dots.
+    let text = svg.finish().replace("<text ", &format!("<text textLength=\"{width}\" "));
+    text.replacen(
+        "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif",
+        "'DejaVu Sans Mono', 'Liberation Mono', monospace",
+        1,
+    )
 }
 
 /// What goes into the program and what comes out.
