@@ -368,9 +368,9 @@ fn statistics(s: &Statistics) -> String {
         ("sliding modes", s.slides),
         ("accumulations of impacts (Zeno)", s.accumulations),
     ];
-    let sampled = ("of these from sample to sample", s.sampled_steps);
+    let explicit = ("of these explicit, as not stiff", s.explicit_steps);
     let exact = ("of these with the exact solution", s.exact_steps);
-    let special = [exact, sampled].into_iter().filter(|(_, count)| *count > 0);
+    let special = [exact, explicit].into_iter().filter(|(_, count)| *count > 0);
     let special: Vec<_> = special.collect();
     let (first, others) = rows.split_at(1);
     let rows = first.iter().chain(&special).chain(others);

@@ -61,7 +61,7 @@ codes! {
         "## What it means\n\nThe command concerns a window of a graphical tool, so it has no effect here. Reported once per command.\n\n## Example\n\n`animationSetup()`\n\n## What to do\n\nNothing; the results are not affected.",
     /// An integration method of another tool, in whose place one of this program is taken.
     METHOD_REPLACED = "method-replaced":
-        "## What it means\n\nThe script selects an integration method of OpenModelica that is not available. `dassl` is used with the same tolerance. Reported once for each method.\n\n## Example\n\n`simulate(M, method = \"gbode\");`\n\n## What to do\n\nNothing, if only the tolerance matters; otherwise select `dassl`, `radau`, `rodas4`, `dopri5`, `rungekutta` or `euler`.",
+        "## What it means\n\nThe script selects an integration method of OpenModelica that is not available. `dassl` is used with the same tolerance. Reported once for each method.\n\n## Example\n\n`simulate(M, method = \"gbode\");`\n\n## What to do\n\nNothing, if only the tolerance matters; otherwise select `dassl`, `radau`, `rodas4`, `dopri5`, `dop853`, `rungekutta` or `euler`.",
     /// A statement that could not be done because an earlier one failed.
     FOLLOW_UP = "follow-up":
         "## What it means\n\nA statement uses a variable that has no value because an earlier statement that assigns it failed. The cause is reported at that statement; its consequences are not reported one by one.\n\n## Example\n\n`a = 1/\"x\"; b = a + 1;`\n\n## What to do\n\nCorrect the first error.",

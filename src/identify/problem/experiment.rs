@@ -282,11 +282,13 @@ impl Stage {
         if self.pointwise.is_some() {
             return self.one_by_one(out);
         }
-        let failed = match self.attempt(false, simulator, trajectory) {
+        let (failed, again) = match self.attempt(false, simulator, trajectory) {
             Ok(()) => return self.read(trajectory, out),
-            Err(failed) => failed,
+            Err((failed, is_start)) => {
+                let again = failed.kind == FailureKind::Solver && !is_start && self.retry.is_some();
+                (failed, again)
+            }
         };
-        let again = failed.kind == FailureKind::Solver && self.retry.is_some();
         if again && self.attempt(true, simulator, trajectory).is_ok() {
             let first = failed.at;
             return self.read(trajectory, out).map_err(|failed| Failed { at: first, ..failed });
@@ -346,7 +348,7 @@ impl Stage {
         let refusal = self.instance.sensitivity_refusal();
         // From here on values alone.
         let _ = self.instance.differentiate(false);
-        if let Err(failed) = attempt {
+        if let Err((failed, _)) = attempt {
             // Whether the model itself fails, a simulation without derivatives tells.
             let because =
                 |failed: Failed| format!("its equations have no derivatives: {}", failed.cause);
@@ -452,24 +454,26 @@ impl Stage {
         Some(before + share * (after - before))
     }
 
+    /// A simulation; why it failed, and whether at its start, which is the same with every method.
     fn attempt(
         &mut self,
         again: bool,
         simulator: &mut Simulator,
         trajectory: &mut Trajectory,
-    ) -> Result<(), Failed> {
-        let refused = |fault: Fault| Failed::new(FailureKind::Model, fault.message, 0.0);
+    ) -> Result<(), (Failed, bool)> {
+        let refused = |fault: Fault| (Failed::new(FailureKind::Model, fault.message, 0.0), true);
         self.instance.set(&self.values).map_err(refused)?;
         let settings = self.retry.as_ref().filter(|_| again).unwrap_or(&self.settings);
         let run = self.instance.simulate(simulator, settings, trajectory);
         run.map(|_| ()).map_err(|error| {
             let length = (settings.stop - settings.start).max(f64::MIN_POSITIVE);
-            Failed {
+            let failed = Failed {
                 kind: kind(&error),
                 cause: self.instance.explain(&error),
                 progress: (error.time - settings.start) / length,
                 at: Some(error.time),
-            }
+            };
+            (failed, matches!(error.kind, SimErrorKind::Initialization(_)))
         })
     }
 

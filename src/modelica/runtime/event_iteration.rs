@@ -289,7 +289,9 @@ impl System {
             match self.pass(t, stage, change) {
                 Ok(None) => return Ok(any),
                 Ok(Some(moved)) => any |= moved == Moved::Relation,
-                Err(_) if self.find_other_branch(t, stage) => return Ok(true),
+                Err(_) if !self.loops.is_brief && self.find_other_branch(t, stage) => {
+                    return Ok(true);
+                }
                 Err(failure) => return Err(failure),
             }
         }

@@ -2,6 +2,7 @@
 
 use super::execution::run;
 use super::instants::Stage;
+use super::parameter_path::places;
 use super::singular_systems::loops_of;
 use super::system::System;
 use crate::lower::Homotopy;
@@ -15,8 +16,31 @@ const FIRST_HOMOTOPY_STEP: f64 = 0.1;
 const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 
 impl System {
-    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    /// From the start values; where Newton's method fails with parameters that were set, from the solution
+    /// with those of the model, before everything else is tried.
     fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
+        if !self.has_other_parameters() {
+            return self.solve_from_start_values(t);
+        }
+        self.loops.is_brief = true;
+        let brief = self.solve_from_start_values(t).or_else(|_| self.lead_from_own_parameters(t));
+        self.loops.is_brief = false;
+        brief.or_else(|_| self.solve_from_start_values(t))
+    }
+
+    /// Solves the initial system from values of unknowns of loops and of relations, in the order of
+    /// [`places`](super::parameter_path).
+    pub(super) fn solve_start_from(&mut self, t: f64, values: &[f64]) -> Result<(), Failure> {
+        self.take_start_values(t)?;
+        let program = self.program.clone();
+        for (value, at) in values.iter().zip(places(&program)) {
+            self.registers[at] = *value;
+        }
+        self.iterate_events(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    pub(super) fn solve_from_start_values(&mut self, t: f64) -> Result<(), Failure> {
         if let Some(homotopy) = self.program.sorted.dae.homotopy
             && self.follow_homotopy(t, homotopy).is_ok()
         {

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
-//! initialization         the initial system and the first instant
+//! initialization         the initial system and the first instant; parameter_path, where parameters
+//!                        that were set are far from those of the model
 //! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
 //! newton                 torn loops: Newton, then global_newton and levenberg_marquardt; zeros that
 //!                        are isolated though the Jacobian is singular: multiple_roots; a start
@@ -39,6 +40,7 @@ mod newton;
 mod noevent_relations;
 mod open_loops;
 mod other_variables;
+mod parameter_path;
 mod partial_observation;
 mod postponement;
 mod profile;

@@ -31,6 +31,17 @@ use std::sync::Arc;
 /// enough to stay on the branch of the solution, and large enough for a Jacobian of its own.
 const DISPLACEMENT: f64 = 1e-3;
 
+/// What is tried for a loop.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Attempts {
+    /// Whether it is one of the initial system.
+    pub(super) initial: bool,
+    /// Whether the solution may be far from the values at hand.
+    pub(super) may_jump: bool,
+    /// Whether it is given up where Newton's method fails.
+    pub(super) is_brief: bool,
+}
+
 /// The workspace of one loop.
 #[derive(Debug, Clone)]
 pub(super) struct LoopSolver {
@@ -88,8 +99,7 @@ impl LoopSolver {
         &mut self,
         torn: &CompiledLoop,
         r: &mut Memory,
-        initial: bool,
-        may_jump: bool,
+        Attempts { initial, may_jump, is_brief }: Attempts,
     ) -> Result<(), Failure> {
         for (value, unknown) in self.guess.iter_mut().zip(&torn.unknowns) {
             *value = r[*unknown as usize];
@@ -97,9 +107,44 @@ impl LoopSolver {
         self.x.copy_from_slice(&self.guess);
         let nominal = self.nominal.clone();
         let mut equations = Evaluation { torn, r, nominal, has_jacobian: false, count: 0 };
-        let mut outcome = self.attempt(&mut equations, initial);
+        let outcome = match is_brief {
+            true => self.attempt_briefly(&mut equations),
+            false => self.attempt_everything(&mut equations, initial, may_jump),
+        };
+        let solution = if outcome.is_ok() { &self.x } else { &self.guess };
+        // What follows from the unknowns is computed from the values they end with.
+        let evaluated = equations.evaluate(solution);
+        self.solutions += 1;
+        self.evaluations += equations.count;
+        outcome.and(evaluated)
+    }
+
+    /// Newton's method from the guess alone.
+    fn attempt_briefly(&mut self, equations: &mut Evaluation) -> Result<(), Failure> {
+        self.is_singular = false;
+        let block = equations.torn.block;
+        let solved = self.newton.solve(equations, &mut self.x, &self.nominal);
+        solved.map_err(|_| Failure::Newton { block })?;
+        self.return_from_leap(equations);
+        Ok(())
+    }
+
+    /// What leaps because nothing determines it stays at the guess.
+    fn return_from_leap(&mut self, equations: &mut Evaluation) {
+        let from = (&self.guess[..], &self.nominal[..]);
+        self.is_singular |= return_from_leap(equations, from, &mut self.x);
+    }
+
+    /// All that the head of this file lists.
+    fn attempt_everything(
+        &mut self,
+        equations: &mut Evaluation,
+        initial: bool,
+        may_jump: bool,
+    ) -> Result<(), Failure> {
+        let mut outcome = self.attempt(equations, initial);
         if initial {
-            outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
+            outcome = self.attempt_from_nominal(equations, initial, outcome);
         }
         for side in [1.0, -1.0] {
             if matches!(outcome, Err(Failure::Singular { .. } | Failure::Newton { .. })) {
@@ -107,38 +152,33 @@ impl LoopSolver {
                 {
                     *x = guess + side * DISPLACEMENT * guess.abs().max(*nominal);
                 }
-                outcome = self.attempt(&mut equations, initial).or(outcome);
+                outcome = self.attempt(equations, initial).or(outcome);
             }
         }
         if may_jump && matches!(outcome, Err(Failure::Domain { .. })) {
             // The guess may lie a little outside the domain, as -1e-8 for a root.
             self.x.fill(0.0);
-            outcome = self.attempt(&mut equations, initial).or(outcome);
+            outcome = self.attempt(equations, initial).or(outcome);
         }
         if outcome.is_err() && may_jump {
             self.x.copy_from_slice(&self.guess);
             let (newton, nominal) = (&mut self.newton, &self.nominal);
             let n = nominal.len();
             let continuation = self.continuation.get_or_insert_with(|| Continuation::new(n).into());
-            let found = continuation.solve(newton, &mut equations, &mut self.x, nominal);
+            let found = continuation.solve(newton, equations, &mut self.x, nominal);
             outcome = if found.is_ok() { Ok(()) } else { outcome };
         }
         if !initial {
             // A fan that starts needs half of its speed at once: the solution at rest has ended.
-            outcome = self.attempt_from_nominal(&mut equations, initial, outcome);
+            outcome = self.attempt_from_nominal(equations, initial, outcome);
         }
         if initial && outcome.is_err() {
             self.x.copy_from_slice(&self.guess);
             let (newton, nominal) = (&mut self.newton, &self.nominal);
-            let found = solve_bracketed(newton, &mut equations, &mut self.x, nominal);
+            let found = solve_bracketed(newton, equations, &mut self.x, nominal);
             outcome = found.or(outcome);
         }
-        let solution = if outcome.is_ok() { &self.x } else { &self.guess };
-        // What follows from the unknowns is computed from the values they end with.
-        let evaluated = equations.evaluate(solution);
-        self.solutions += 1;
-        self.evaluations += equations.count;
-        outcome.and(evaluated)
+        outcome
     }
 
     /// Where least squares ended without a solution, and the residuals there.
@@ -165,11 +205,10 @@ impl LoopSolver {
         self.attempt(equations, initial).or(outcome)
     }
 
-    /// Solves from x; what leaps because nothing determines it stays at the guess.
+    /// Solves from x.
     fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
         self.attempt_from_x(equations, initial)?;
-        let from = (&self.guess[..], &self.nominal[..]);
-        self.is_singular |= return_from_leap(equations, from, &mut self.x);
+        self.return_from_leap(equations);
         Ok(())
     }
 

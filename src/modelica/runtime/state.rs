@@ -74,6 +74,16 @@ impl RelationState {
     }
 }
 
+/// Values of a start that was solved: those of unknowns of loops and of relations.
+#[derive(Debug, Clone)]
+pub(super) struct SolvedStart {
+    pub(super) time: f64,
+    /// Of recorded inputs that were set from outside.
+    pub(super) given: Vec<(u32, f64)>,
+    /// In the order of the places that are restored; none where it could not be solved.
+    pub(super) values: Option<Vec<f64>>,
+}
+
 /// Solvers of algebraic loops, and the states that were selected.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LoopState {
@@ -81,6 +91,10 @@ pub(super) struct LoopState {
     pub(super) initial_solvers: Vec<LoopSolver>,
     pub(super) solvers: Vec<LoopSolver>,
     pub(super) event_solvers: Vec<LoopSolver>,
+    /// Whether a start is given up where Newton's method fails with the branches at hand.
+    pub(super) is_brief: bool,
+    /// The start with the parameters of the model, once it was needed.
+    pub(super) own_start: Option<Box<SolvedStart>>,
     /// One for every selection of states.
     pub(super) choices: Vec<Choice>,
     /// The unknowns of linear systems, by their workspaces.

@@ -2,7 +2,7 @@
 
 use super::execution::{Operation, read, run, run_assignments, run_parameter, run_strictly};
 use super::instants::{Change, Stage, either, same_time};
-use super::newton::LoopSolver;
+use super::newton::{Attempts, LoopSolver};
 use super::partial_observation::OtherVariables;
 use super::sensitivity_state::Sensitivity;
 use super::state::{DelayState, EventState, LoopState, MessageState, OutputState, RelationState};
@@ -360,20 +360,21 @@ impl System {
             self.registers.forget_solutions();
         }
         let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
+        let attempts = Attempts { initial, may_jump, is_brief: initial && self.loops.is_brief };
         let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
                 Step::Run(code) => run_assignments(code, &mut self.registers)?,
                 Step::Solve(torn) => {
                     let solver = solvers.next().expect("every loop has its solver");
-                    solver.solve(torn, &mut self.registers, initial, may_jump).map_err(
-                        |f| match (f, initial) {
+                    solver.solve(torn, &mut self.registers, attempts).map_err(|f| {
+                        match (f, initial) {
                             (Failure::Newton { block } | Failure::Singular { block }, true) => {
                                 Failure::Initialization { block }
                             }
                             _ => f,
-                        },
-                    )?
+                        }
+                    })?
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! Where explicit steps from sample to sample begin and end: see [`sampled`](super::integrators::sampled).
+//! Where explicit steps of systems that are not stiff begin and end: see
+//! [`nonstiff`](super::integrators::nonstiff).
 
 use super::SimErrorKind;
 use super::simulator::{After, Run};
@@ -6,22 +7,22 @@ use super::simulator::{After, Run};
 impl Run<'_> {
     /// Takes explicit steps from here on, if they suit.
     pub(crate) fn begin_explicit_steps(&mut self) {
-        let Some((sampled, distance)) = self.sampled.take() else { return };
+        let Some((nonstiff, distance)) = self.nonstiff.take() else { return };
         let problem = &mut self.problem;
         problem.statistics.jacobian_evaluations += 1;
         let start = (self.t, &self.y[..]);
-        let suits = sampled.suits(&mut *problem.system, start, problem.nominal, distance);
+        let suits = nonstiff.suits(&mut *problem.system, start, problem.nominal, distance);
         self.patience = suits.ok().flatten();
         if self.patience.is_some() {
-            (self.integrator, self.is_explicit) = (&mut sampled.method, true);
+            let method = nonstiff.method(self.problem.settings.tolerance, distance);
+            (self.integrator, self.is_explicit) = (method, true);
         }
     }
 
     /// Ends explicit steps where they have become too short.
     pub(crate) fn watch_explicit_steps(&mut self) -> Result<(), SimErrorKind> {
-        let Some(patience) = self.patience else { return Ok(()) };
-        let time = self.t - self.problem.settings.start;
-        if patience.is_exhausted(self.problem.statistics.attempts(), time)
+        let Some(patience) = &mut self.patience else { return Ok(()) };
+        if patience.is_exhausted(self.problem.statistics.attempts(), self.t)
             && !self.problem.system.is_constrained()
         {
             self.end_explicit_steps()?;

@@ -20,7 +20,7 @@ pub struct Settings {
     /// The integration method, from [`find_integrator`](super::find_integrator).
     pub method: &'static Entry<dyn Integrator>,
     /// Whether another method may take its place where it suits: exact steps of a system that is linear
-    /// between events, explicit ones of one that is not stiff, from sample to sample of its inputs.
+    /// between events, explicit ones of one that is not stiff.
     pub takes_exact_steps: bool,
     /// Step of the methods with fixed step, seconds; `None` for the distance of the output points.
     pub step: Option<f64>,

@@ -3,7 +3,7 @@
 use super::before_event::BeforeEvent;
 use super::event::CrossingSearch;
 use super::instants::same_time;
-use super::integrators::sampled::{self, Patience, Sampled};
+use super::integrators::nonstiff::{self, Distance, Nonstiff, Patience};
 use super::integrators::{Exact, Integrator, Problem, WithoutUnknowns, bdf};
 use super::norm::nominal_share;
 use super::progress::Progress;
@@ -54,7 +54,7 @@ pub struct Simulator {
     integrator: Option<(&'static str, Box<dyn Integrator>)>,
     without_unknowns: WithoutUnknowns,
     exact: Exact,
-    sampled: Sampled,
+    nonstiff: Nonstiff,
     /// Slides where the method is explicit.
     implicit: Option<Box<dyn Integrator>>,
     crossings: CrossingSearch,
@@ -186,7 +186,7 @@ impl Simulator {
     ) -> Result<(End, Statistics), SimError> {
         let (n, is_explicit, solves_loops) = self.prepare(system, settings, from, out);
         let linearity = system.linearity().filter(|_| settings.takes_exact_steps && n > 0);
-        let distance = sampled::distance(system, settings).filter(|_| linearity.is_none());
+        let distance = nonstiff::distance(system, settings).filter(|_| linearity.is_none());
         let integrator: &mut dyn Integrator = match linearity {
             _ if n == 0 => &mut self.without_unknowns,
             Some(linearity) => {
@@ -212,7 +212,7 @@ impl Simulator {
             },
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
-            sampled: distance.map(|distance| (&mut self.sampled, distance)),
+            nonstiff: distance.map(|distance| (&mut self.nonstiff, distance)),
             patience: None,
             is_explicit: is_explicit || linearity.is_some(),
             solves_loops,
@@ -336,8 +336,8 @@ pub struct Run<'a> {
     pub(super) integrator: &'a mut dyn Integrator,
     /// Takes the place of an explicit one in slides, and the other way round.
     pub(super) implicit: &'a mut dyn Integrator,
-    /// The method for so distant samples, until it is known whether it suits.
-    pub(super) sampled: Option<(&'a mut Sampled, f64)>,
+    /// The explicit method for steps of this length, until it is known whether it suits.
+    pub(super) nonstiff: Option<(&'a mut Nonstiff, Distance)>,
     /// How long it may continue, while it does.
     pub(super) patience: Option<Patience>,
     /// Whether the method is explicit, or exact.
@@ -472,7 +472,7 @@ impl Run<'_> {
     }
 
     fn count_step(&mut self) {
-        self.problem.statistics.sampled_steps += u64::from(self.patience.is_some());
+        self.problem.statistics.explicit_steps += u64::from(self.patience.is_some());
         if self.problem.settings.counts_effort {
             Effort::count(&mut self.effort.unknowns, self.integrator.dominant());
         }

@@ -7,8 +7,8 @@ pub struct Statistics {
     pub steps: u64,
     /// Of these, steps with the exact solution of a linear system.
     pub exact_steps: u64,
-    /// Of these, explicit steps from sample to sample of recorded inputs.
-    pub sampled_steps: u64,
+    /// Of these, explicit steps of a system that was found not to be stiff.
+    pub explicit_steps: u64,
     /// Steps rejected by the error test.
     pub error_failures: u64,
     /// Steps rejected because the corrector did not converge or an evaluation failed.

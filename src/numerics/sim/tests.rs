@@ -68,11 +68,45 @@ fn errors_follow_the_tolerance() {
             assert!(error < allowed * tolerance, "{error:e} at {tolerance:e}");
         }
     }
-    for tolerance in [1e-4, 1e-6, 1e-8] {
-        let settings = by("dopri5", settings(10.0, tolerance));
-        let error = error(&mut problems::oscillator(), &settings, |t| vec![t.cos(), -t.sin()]);
-        assert!(error < 20.0 * tolerance, "{error:e} at {tolerance:e}");
+    for (method, tolerances) in
+        [("dopri5", [1e-4, 1e-6, 1e-8].as_slice()), ("dop853", &[1e-4, 1e-6, 1e-8, 1e-10, 1e-12])]
+    {
+        for tolerance in tolerances {
+            let settings = by(method, settings(10.0, *tolerance));
+            let error = error(&mut problems::oscillator(), &settings, |t| vec![t.cos(), -t.sin()]);
+            assert!(error < 20.0 * tolerance, "{method}: {error:e} at {tolerance:e}");
+        }
     }
+}
+
+/// Errors of the interpolation in the middle of the first of steps of some length.
+#[test]
+fn explicit_methods_interpolate_with_their_order() {
+    for (method, order) in [("dopri5", 4.0), ("dop853", 7.0)] {
+        let error_with = |step: f64| {
+            let mut settings = by(method, settings(2.0 * step, 1.0));
+            settings.output = OutputGrid::At(vec![0.5 * step, 0.8 * step]);
+            (settings.initial_step, settings.max_step) = (Some(step), step);
+            error(&mut problems::oscillator(), &settings, |t| vec![t.cos(), -t.sin()])
+        };
+        // The local error is of one order more.
+        let estimated = (error_with(0.8) / error_with(0.4)).log2();
+        assert!(
+            estimated > order + 0.7 && estimated < order + 2.0,
+            "{method} interpolates with order {estimated}"
+        );
+    }
+}
+
+/// Where tolerances are tight, the method of order 8 needs far fewer evaluations.
+#[test]
+fn a_high_order_needs_few_evaluations_at_tight_tolerances() {
+    let evaluations = |method: &str| {
+        let settings = by(method, settings(20.0, 1e-10));
+        simulate(&mut problems::oscillator(), &settings).unwrap().1.rhs_evaluations
+    };
+    let (high, low) = (evaluations("dop853"), evaluations("dopri5"));
+    assert!(2 * high < low, "{high} and {low}");
 }
 
 #[test]
@@ -109,6 +143,7 @@ fn every_one_step_method_has_its_order_on_every_problem() {
         ("euler", 1.0, 0.01),
         ("rungekutta", 4.0, 0.05),
         ("dopri5", 5.0, 0.1),
+        ("dop853", 8.0, 0.25),
         ("rodas4", 4.0, 0.05),
         ("radau", 5.0, 0.2),
     ] {

@@ -30,7 +30,7 @@ const IMPLICIT: &[&str] = &[
 ];
 
 /// Methods that keep the tolerance with explicit formulas.
-const EXPLICIT: &[&str] = &["cerk23", "cerk34", "cerk45", "dopri853", "godess"];
+const EXPLICIT: &[&str] = &["cerk23", "cerk34", "cerk45", "godess"];
 
 /// The options with a method that there is; said when it is another one than asked for.
 pub(super) fn with_method_of_ours(

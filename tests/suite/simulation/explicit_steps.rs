@@ -62,14 +62,14 @@ fn a_tank_follows_its_held_inflow_in_one_step_for_each_sample() {
     let program = driven(TANK, true);
     for tolerance in [1e-4, 1e-6] {
         let (trajectory, statistics) = run(&mut observing(&program, "x"), true, tolerance);
-        assert_eq!(statistics.sampled_steps, statistics.steps);
+        assert_eq!(statistics.explicit_steps, statistics.steps);
         assert!(statistics.steps <= SAMPLES as u64 * 6 / 5, "{statistics:?}");
         assert!(statistics.rhs_evaluations <= 8 * statistics.steps, "{statistics:?}");
         let error = (end(&trajectory) - exact).abs();
         assert!(error < tolerance, "{error:e} at {tolerance:e}");
     }
     let (_, named) = run(&mut observing(&program, "x"), false, 1e-6);
-    assert_eq!(named.sampled_steps, 0);
+    assert_eq!(named.explicit_steps, 0);
     assert!(named.attempts() > 2 * SAMPLES as u64, "{named:?}");
 }
 
@@ -90,7 +90,7 @@ fn derivatives_are_those_of_difference_quotients() {
         system.set_parameter(k, 1.0).expect("a number");
         system.differentiate(Some(&code));
         let (trajectory, statistics) = run(&mut system, true, 1e-9);
-        assert_eq!(statistics.sampled_steps, statistics.steps, "{statistics:?}");
+        assert_eq!(statistics.explicit_steps, statistics.steps, "{statistics:?}");
         let derivative = *trajectory.column(1).last().expect("a row");
         assert!((derivative / quotient - 1.0).abs() < 1e-6, "{derivative} {quotient}");
     }
@@ -101,7 +101,7 @@ fn a_stiff_model_is_left_to_the_implicit_method() {
     let text = TANK.replace("u - k*x^2", "1e4*(u - k*x^2)");
     let program = driven(&text, false);
     let (free, statistics) = run(&mut observing(&program, "x"), true, 1e-6);
-    assert_eq!(statistics.sampled_steps, 0);
+    assert_eq!(statistics.explicit_steps, 0);
     let (named, _) = run(&mut observing(&program, "x"), false, 1e-6);
     assert_eq!(end(&free), end(&named));
 }
@@ -112,8 +112,8 @@ fn a_model_that_becomes_stiff_is_handed_over() {
     let text = TANK.replace("u - k*x^2", "exp(min(10, max(0, 10*(time - 5))))*(u - k*x^2)");
     let program = driven(&text, false);
     let (free, statistics) = run(&mut observing(&program, "x"), true, 1e-6);
-    assert!(statistics.sampled_steps >= 95, "{statistics:?}");
-    assert!(statistics.sampled_steps < statistics.steps, "{statistics:?}");
+    assert!(statistics.explicit_steps >= 95, "{statistics:?}");
+    assert!(statistics.explicit_steps < statistics.steps, "{statistics:?}");
     let (named, dassl) = run(&mut observing(&program, "x"), false, 1e-6);
     assert!(statistics.attempts() < 2 * dassl.attempts() + 1000, "{statistics:?} {dassl:?}");
     assert!((end(&free) - end(&named)).abs() < 1e-5, "{} {}", end(&free), end(&named));

@@ -295,7 +295,7 @@ fn a_dip_within_one_step_is_seen() {
 fn an_assertion_fails_at_the_time_when_it_begins_to() {
     let text = "model M Real x(start = 1, fixed = true); equation der(x) = -1;
         assert(x > 0.5, \"level below half\"); end M;";
-    for method in ["dassl", "radau", "rodas4", "dopri5", "euler"] {
+    for method in ["dassl", "radau", "rodas4", "dopri5", "dop853", "euler"] {
         let method = gapilib::internals::sim::find_integrator(method).unwrap();
         let settings = Settings { method, ..Settings::default() };
         let error = gapilib::internals::sim::simulate(&mut program(text).system(), &settings);

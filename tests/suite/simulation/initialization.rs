@@ -123,11 +123,40 @@ fn the_nominal_value_of_an_alias_scales_the_errors() {
     Run::of(text, 1.0).follows("x", 1e-16, |t| -1e-9 * (-t).exp_m1());
 }
 
+/// From the start values the loop is not solved; from the solution with p = 0.1 it is, along p. Simulations
+/// before it do not matter.
+#[test]
+fn a_start_far_from_the_parameters_of_the_model_is_reached_from_theirs() {
+    let text = "model Q parameter Real p = 0.1; Real y(start = 0.1), z(start = 0.1);
+        Real x(start = 1, fixed = true);
+        equation sqrt(y) - sqrt(p) + 2*sin(3*(z - p)) = 0; sqrt(z)*exp(z - y) = sqrt(y);
+        der(x) = -x; end Q;";
+    let program = program(text);
+    let p = program.find_parameter("p").expect("a parameter");
+    let solved = |before: &[f64]| {
+        let mut system = program.system();
+        system.observe_only(&["y", "z"].map(|n| program.find_variable(n).expect("a variable")));
+        let mut start = Vec::new();
+        for value in before.iter().chain(&[30.0]) {
+            system.set_parameter(p, *value).expect("a number");
+            let (trajectory, _) = simulate(&mut system, &Settings::default()).expect("a start");
+            start = vec![trajectory.column(0)[0], trajectory.column(1)[0]];
+        }
+        start
+    };
+    let alone = solved(&[]);
+    let (y, z) = (alone[0], alone[1]);
+    let residual = y.sqrt() - 30f64.sqrt() + 2.0 * (3.0 * (z - 30.0)).sin();
+    assert!(residual.abs() < 1e-8, "{residual:e} at {y}, {z}");
+    assert!((y - z).abs() < 1e-8, "{y} {z}");
+    assert_eq!(alone, solved(&[100.0, 0.1, 10.0]));
+}
+
 #[test]
 fn explicit_methods_solve_loops_in_every_evaluation() {
     let text = "model E Real x(start = 1, fixed = true); Real y(start = 1); Real z;
         equation der(x) = -y; y + 0.1*(y^3 - x^3) = x; z + x*z = y; end E;";
-    for method in ["dopri5", "rungekutta", "euler"] {
+    for method in ["dopri5", "dop853", "rungekutta", "euler"] {
         let settings = Settings {
             tolerance: 1e-9,
             step: Some(1e-3),

@@ -314,7 +314,7 @@ fn a_pendulum_of_index_three_is_solved_by_every_implicit_method() {
     // After half a period it stands level on the other side; the quarter period is the complete
     // elliptic integral at modulus sin(π/4) over √g.
     let half = 2.0 * 1.854_074_677_301_371_9 / 9.81f64.sqrt();
-    for method in ["dassl", "rodas4", "radau", "dopri5"] {
+    for method in ["dassl", "rodas4", "radau", "dopri5", "dop853"] {
         let method_entry = find_integrator(method).expect("a method");
         let settings =
             Settings { stop: half, tolerance: 1e-8, method: method_entry, ..Settings::default() };

@@ -34,7 +34,7 @@ static TABLEAU: Tableau = Tableau {
     weights: &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
     embedded: Some(Embedded {
         order: 4,
-        error: [
+        error: &[
             71.0 / 57600.0,
             0.0,
             -71.0 / 16695.0,
@@ -43,7 +43,9 @@ static TABLEAU: Tableau = Tableau {
             22.0 / 525.0,
             -1.0 / 40.0,
         ],
-        dense: [
+        coarse_error: None,
+        inner_stages: &[],
+        dense: &[&[
             -12715105075.0 / 11282082432.0,
             0.0,
             87487479700.0 / 32700410799.0,
@@ -51,6 +53,6 @@ static TABLEAU: Tableau = Tableau {
             701980252875.0 / 199316789632.0,
             -1453857185.0 / 822651844.0,
             69997945.0 / 29380423.0,
-        ],
+        ]],
     }),
 };

@@ -4,7 +4,13 @@
 //! kᵢ = f(t + cᵢ h, x + h Σⱼ aᵢⱼ kⱼ);  x₁ = x + h Σ bᵢ kᵢ
 //! ```
 //!
-//! Between steps: cubic Hermite interpolation, with the term of order 4 where the tableau has one.
+//! Between steps: cubic Hermite interpolation, with terms of higher order where the tableau has them:
+//!
+//! ```text
+//! x(t + θ h) = x + θ (F₀ + (1 − θ) (F₁ + θ (F₂ + (1 − θ) (F₃ + θ (F₄ + …)))))
+//! F₀ = x₁ − x,  F₁ = h k₁ − F₀,  F₂ = F₀ − h f(t + h, x₁) − F₁,  Fᵢ = h Σ dᵢⱼ kⱼ
+//! ```
+//!
 //! For systems without algebraic unknowns. Derivatives along directions are integrated with y, as
 //! unknowns of the same method, and take part in the error test.
 
@@ -25,16 +31,24 @@ pub(crate) struct Tableau {
     pub(super) embedded: Option<Embedded>,
 }
 
-/// What a method with variable step knows besides. The last of the seven derivatives is the one at the
-/// end of the step.
+/// What a method with variable step knows besides. Its derivatives are those of the stages, then the one
+/// at the end of the step, then those of the stages for the interpolation.
 pub(crate) struct Embedded {
     /// Order of the method the error is measured against.
     pub(super) order: i32,
     /// Error = h Σ eᵢ kᵢ
-    pub(super) error: [f64; 7],
-    /// Term of order 4 of the interpolation = h Σ dᵢ kᵢ
-    pub(super) dense: [f64; 7],
+    pub(super) error: &'static [f64],
+    /// The error of a method of low order, in the same way, which damps the other one where that is
+    /// small by chance.
+    pub(super) coarse_error: Option<&'static [f64]>,
+    /// Nodes and coefficients of stages that the interpolation needs besides.
+    pub(super) inner_stages: &'static [(f64, &'static [f64])],
+    /// Terms from order 4 on of the interpolation = h Σ dᵢ kᵢ
+    pub(super) dense: &'static [&'static [f64]],
 }
+
+/// The part of a coarse error that counts in the denominator of the finer one.
+const COARSE: f64 = 0.1;
 
 /// A step is at most this many times longer than the one before.
 const MOST_FACTOR: f64 = 5.0;
@@ -55,14 +69,22 @@ pub(crate) struct ExplicitRungeKutta {
     derivatives: Vec<Vec<f64>>,
     /// Derivative at the end of the step.
     derivative_end: Vec<f64>,
+    /// Derivatives of the stages for the interpolation.
+    inner: Vec<Vec<f64>>,
     /// Whether the derivative at the end is another one since.
     is_outdated: bool,
-    /// Error estimate, then term of order 4 of the interpolation.
+    /// Error estimate.
     combined: Vec<f64>,
+    /// Terms from order 4 on of the interpolation.
+    terms: Vec<Vec<f64>>,
 }
 
 impl ExplicitRungeKutta {
     pub fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
+        let (inner, terms) = match &tableau.embedded {
+            Some(embedded) => (embedded.inner_stages.len(), embedded.dense.len()),
+            None => (0, 0),
+        };
         ExplicitRungeKutta {
             tableau,
             t: 0.0,
@@ -75,8 +97,10 @@ impl ExplicitRungeKutta {
             nominal: Vec::new(),
             derivatives: vec![Vec::new(); tableau.nodes.len()],
             derivative_end: Vec::new(),
+            inner: vec![Vec::new(); inner],
             is_outdated: false,
             combined: Vec::new(),
+            terms: vec![Vec::new(); terms],
         }
     }
 
@@ -89,7 +113,8 @@ impl ExplicitRungeKutta {
             &mut self.derivative_end,
             &mut self.combined,
         ];
-        for vector in workspaces.into_iter().chain(&mut self.derivatives) {
+        let stages = self.derivatives.iter_mut().chain(&mut self.inner).chain(&mut self.terms);
+        for vector in workspaces.into_iter().chain(stages) {
             vector.resize(n, 0.0);
         }
     }
@@ -106,23 +131,25 @@ impl ExplicitRungeKutta {
         differentiate(problem, attempt.end, &self.y, &mut self.derivative_end)
     }
 
-    /// Writes h Σ cᵢ kᵢ over all derivatives and the one at the end.
-    fn combine_all(&mut self, h: f64, coefficients: &[f64; 7]) {
-        for (i, combined) in self.combined.iter_mut().enumerate() {
-            let derivatives = self.derivatives.iter().chain([&self.derivative_end]);
-            let sum: f64 =
-                coefficients.iter().zip(derivatives).map(|(c, derivative)| c * derivative[i]).sum();
-            *combined = h * sum;
-        }
-    }
-
     /// The error of the attempt relative to the tolerance.
     fn error(&mut self, problem: &Problem, h: f64, embedded: &Embedded) -> f64 {
-        self.combine_all(h, &embedded.error);
         set_weights(problem.settings.tolerance, &self.y_old, &self.nominal, &mut self.weights);
         let n = problem.nominal.len().max(1);
-        let blocks = self.combined.chunks_exact(n).zip(self.weights.chunks_exact(n));
-        blocks.map(|(error, weights)| weighted_rms(error, weights)).fold(0.0, f64::max)
+        let mut norms = [0.0; 2];
+        let errors = [Some(embedded.error), embedded.coarse_error];
+        for (norm, coefficients) in norms.iter_mut().zip(errors) {
+            let Some(coefficients) = coefficients else { continue };
+            let derivatives = self.derivatives.iter().chain([&self.derivative_end]);
+            combine_all(h, coefficients, derivatives, &mut self.combined);
+            let blocks = self.combined.chunks_exact(n).zip(self.weights.chunks_exact(n));
+            *norm = blocks.map(|(error, weights)| weighted_rms(error, weights)).fold(0.0, f64::max);
+        }
+        let [fine, coarse] = norms;
+        let damped = COARSE * coarse;
+        if damped == 0.0 {
+            return fine;
+        }
+        fine * fine / (fine * fine + damped * damped).sqrt()
     }
 
     /// An error of a derivative times what its direction changes counts as one of y.
@@ -136,12 +163,22 @@ impl ExplicitRungeKutta {
         }
     }
 
-    fn accept(&mut self, attempt: Attempt) {
-        match &self.tableau.embedded {
-            Some(embedded) => self.combine_all(attempt.h, &embedded.dense),
-            None => self.combined.fill(0.0),
-        }
+    /// Ends a step, and computes what the interpolation needs.
+    fn accept(&mut self, problem: &mut Problem, attempt: Attempt) -> Result<(), SimErrorKind> {
+        let (h, tableau) = (attempt.h, self.tableau);
         self.t = attempt.end;
+        let Some(embedded) = &tableau.embedded else { return Ok(()) };
+        for (i, (node, coefficients)) in embedded.inner_stages.iter().enumerate() {
+            let (known, next) = self.inner.split_at_mut(i);
+            let derivatives = self.derivatives.iter().chain([&self.derivative_end]).chain(&*known);
+            combine(&self.y_old, h, coefficients, derivatives, &mut self.stage);
+            differentiate(problem, self.t_old + h * node, &self.stage, &mut next[0])?;
+        }
+        for (coefficients, term) in embedded.dense.iter().zip(&mut self.terms) {
+            let derivatives = self.derivatives.iter().chain([&self.derivative_end]);
+            combine_all(h, coefficients, derivatives.chain(&self.inner), term);
+        }
+        Ok(())
     }
 }
 
@@ -161,13 +198,39 @@ fn differentiate(
 }
 
 /// out = y + h Σ cᵢ kᵢ
-fn combine(y: &[f64], h: f64, coefficients: &[f64], derivatives: &[Vec<f64>], out: &mut [f64]) {
+fn combine<'a>(
+    y: &[f64],
+    h: f64,
+    coefficients: &[f64],
+    derivatives: impl IntoIterator<Item = &'a Vec<f64>>,
+    out: &mut [f64],
+) {
     out.copy_from_slice(y);
     for (coefficient, derivative) in coefficients.iter().zip(derivatives) {
-        for (out, derivative) in out.iter_mut().zip(derivative) {
-            *out += h * coefficient * derivative;
+        if *coefficient != 0.0 {
+            for (out, derivative) in out.iter_mut().zip(derivative) {
+                *out += h * coefficient * derivative;
+            }
         }
     }
+}
+
+/// out = h Σ cᵢ kᵢ
+fn combine_all<'a>(
+    h: f64,
+    coefficients: &[f64],
+    derivatives: impl IntoIterator<Item = &'a Vec<f64>>,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (coefficient, derivative) in coefficients.iter().zip(derivatives) {
+        if *coefficient != 0.0 {
+            for (out, derivative) in out.iter_mut().zip(derivative) {
+                *out += coefficient * derivative;
+            }
+        }
+    }
+    out.iter_mut().for_each(|out| *out *= h);
 }
 
 impl Integrator for ExplicitRungeKutta {
@@ -203,7 +266,7 @@ impl Integrator for ExplicitRungeKutta {
             let advanced = self.advance(problem, attempt);
             let Some(embedded) = &self.tableau.embedded else {
                 advanced.inspect_err(|_| problem.statistics.newton_failures += 1)?;
-                self.accept(attempt);
+                self.accept(problem, attempt)?;
                 problem.statistics.steps += 1;
                 return Ok(());
             };
@@ -211,12 +274,17 @@ impl Integrator for ExplicitRungeKutta {
                 Ok(()) => {
                     let error = self.error(problem, attempt.h, embedded);
                     let factor = error_factor(error, embedded.order, SAFETY, MOST_FACTOR);
-                    if error <= 1.0 {
-                        self.accept(attempt);
-                        self.control.accept(problem, attempt, factor);
-                        return Ok(());
+                    if error > 1.0 || error.is_nan() {
+                        self.control.reject(problem, attempt, factor)?;
+                        continue;
                     }
-                    self.control.reject(problem, attempt, factor)?;
+                    match self.accept(problem, attempt) {
+                        Ok(()) => {
+                            self.control.accept(problem, attempt, factor);
+                            return Ok(());
+                        }
+                        Err(failure) => self.control.fail(problem, attempt, failure)?,
+                    }
                 }
                 Err(failure) => self.control.fail(problem, attempt, failure)?,
             }
@@ -246,7 +314,12 @@ impl Integrator for ExplicitRungeKutta {
             let difference = self.y[i] - self.y_old[i];
             let start = h * self.derivatives[0][i] - difference;
             let end = difference - h * self.derivative_end[i] - start;
-            let inner = start + theta * (end + rest * self.combined[i]);
+            let mut tail = 0.0;
+            for (order, term) in self.terms.iter().enumerate().rev() {
+                let factor = if order % 2 == 0 { theta } else { rest };
+                tail = term[i] + factor * tail;
+            }
+            let inner = start + theta * (end + rest * tail);
             *y = self.y_old[i] + theta * (difference + rest * inner);
         }
     }

@@ -1,16 +1,17 @@
 //! Integrators: methods that advance x and v by one step.
 
 pub(super) mod bdf;
+mod dop853;
 mod dopri5;
 mod euler;
 mod exact;
 mod explicit;
 mod exponential;
 mod mass_matrix;
+pub(super) mod nonstiff;
 mod radau;
 mod rodas;
 mod rungekutta;
-pub(super) mod sampled;
 mod step_control;
 mod without_unknowns;
 
@@ -29,6 +30,7 @@ pub(crate) const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
     &rodas::ENTRY,
     &radau::ENTRY,
     &dopri5::ENTRY,
+    &dop853::ENTRY,
     &euler::ENTRY,
     &rungekutta::ORDER_2,
     &rungekutta::ORDER_3,
