@@ -48,9 +48,8 @@ impl System {
     fn start_with_own_parameters(&mut self, t: f64) -> Result<Vec<f64>, Failure> {
         let unsolved = Failure::Initialization { block: 0 };
         let known = self.loops.own_start.take();
-        let is_known =
-            |start: &Box<SolvedStart>| start.time == t && start.given == self.events.given;
-        let start = match known.filter(is_known) {
+        let is_known = |start: &SolvedStart| start.time == t && start.given == self.events.given;
+        let start = match known.filter(|start| is_known(start)) {
             Some(start) => start,
             None => {
                 let set = vec![None; self.set.len()];
