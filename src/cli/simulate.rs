@@ -16,7 +16,7 @@ use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::final_state::FinalState;
-use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
+use crate::script::models::simulation::{Simulated, SimulationOptions, Translated, Unfinished};
 use crate::script::models::{parameter_sets, simulation};
 use crate::script::runs::problem;
 use crate::script::runs::view::Progress;
@@ -210,22 +210,43 @@ fn run(
     if let Some(driven) = &driven {
         driven.note_outside(session, span);
     }
-    let mut simulated = with_progress(span, options, global, |options| {
-        simulation::simulate(session, &model, &options).map_err(|error| vec![error])
-    })?;
-    problem::Driven::without_own_inputs(&mut simulated.table);
-    session.print(&summary(class, &simulated));
+    let simulated = with_progress(span, options, global, |options| {
+        simulation::simulate(session, &model, &options)
+    });
+    // What was computed until a failure is shown as a whole simulation is: it says the most about it.
+    let (simulated, why) = match simulated {
+        Ok(simulated) => (simulated, None),
+        Err(Unfinished { why, until: Some(until) }) => (*until, Some(why)),
+        Err(Unfinished { why, until: None }) => return Err(vec![why]),
+    };
     if arguments.from.is_none() {
         session.note_default_starts(&model);
     }
+    let shown = show(session, class, arguments, picture, format, simulated);
+    let errors = why.into_iter().chain(shown.err().map(|fault| fault.at(Span::NONE)));
+    let errors: Vec<Diagnostic> = errors.collect();
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// Shows and writes what the options ask for.
+fn show(
+    session: &mut Session,
+    class: &str,
+    arguments: &SimulateArgs,
+    picture: Option<plot::Picture>,
+    format: Option<Box<dyn results::Format>>,
+    mut simulated: Simulated,
+) -> Result<(), Fault> {
+    problem::Driven::without_own_inputs(&mut simulated.table);
+    session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
         session.print(&simulated.hardest.as_ref().map(effort::table).unwrap_or_default());
     }
     if !arguments.plot.is_empty() {
-        draw(session, class, (arguments, picture), &simulated.table).map_err(one)?;
+        draw(session, class, (arguments, picture), &simulated.table)?;
     }
-    write_or_show(session, arguments, format, &simulated.table).map_err(one)
+    write_or_show(session, arguments, format, &simulated.table)
 }
 
 /// Writes the results to the file that is asked for, or shows the last values.

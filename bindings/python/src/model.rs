@@ -247,7 +247,7 @@ fn simulated(
         engine.set_parameter(name, *value).map_err(fault)?;
     }
     let simulated = simulation::simulate(engine, &model, &options);
-    let simulated = checked(engine, simulated.map_err(|error| vec![error]))?;
+    let simulated = checked(engine, simulated.map_err(|unfinished| vec![unfinished.why]))?;
     Ok((simulated.table, simulated.statistics))
 }
 

@@ -31,7 +31,11 @@ impl Run<'_> {
         self.y.truncate(n);
         self.nominals.show_states(n);
         self.problem.nominal = self.nominals.plain();
-        self.restart().map_err(|_| kind)?;
+        // A loop that has no solution here says more than a step that is too small.
+        self.restart().map_err(|inside| match inside {
+            SimErrorKind::Evaluation(_) => inside,
+            _ => kind,
+        })?;
         Ok(After::Restarted)
     }
 }

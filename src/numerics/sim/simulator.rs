@@ -64,6 +64,7 @@ pub struct Simulator {
     y: Vec<f64>,
     observed: Vec<f64>,
     effort: Effort,
+    statistics: Statistics,
 }
 
 /// How a simulation ended.
@@ -144,6 +145,11 @@ impl Simulator {
         &self.effort
     }
 
+    /// What the last run cost, also where it failed.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
     /// Simulates a system. The observed variables at the output points and at both sides of every
     /// event become the rows of `out`, which keeps what was computed until a failure.
     ///
@@ -155,7 +161,7 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        self.run_from(system, settings, None, out).map(|(_, statistics)| statistics)
+        self.run_from(system, settings, None, out).map(|_| self.statistics)
     }
 
     /// Continues a simulation of a system that is initialized, from y at the start of the settings, with
@@ -174,7 +180,7 @@ impl Simulator {
         if self.y.len() == y.len() {
             y.copy_from_slice(&self.y);
         }
-        done.map(|(end, _)| end)
+        done
     }
 
     fn run_from(
@@ -183,7 +189,7 @@ impl Simulator {
         settings: &Settings,
         from: Option<&[f64]>,
         out: &mut Trajectory,
-    ) -> Result<(End, Statistics), SimError> {
+    ) -> Result<End, SimError> {
         let (n, is_explicit, solves_loops) = self.prepare(system, settings, from, out);
         let linearity = system.linearity().filter(|_| settings.takes_exact_steps && n > 0);
         let distance = nonstiff::distance(system, settings).filter(|_| linearity.is_none());
@@ -195,7 +201,7 @@ impl Simulator {
             }
             None => integrator(&mut self.integrator, settings),
         };
-        let mut statistics = Statistics::default();
+        self.statistics = Statistics::default();
         if let Some(kind) = refused(settings, integrator, system) {
             return Err(SimError { time: settings.start, kind, offending: None });
         }
@@ -208,7 +214,7 @@ impl Simulator {
                 settings,
                 budget,
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
-                statistics: &mut statistics,
+                statistics: &mut self.statistics,
             },
             integrator,
             implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
@@ -233,8 +239,7 @@ impl Simulator {
         let ended = run.run();
         let why =
             ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
-        let end = End { time: run.t, why, next_step: run.integrator.next_step() };
-        Ok((end, statistics))
+        Ok(End { time: run.t, why, next_step: run.integrator.next_step() })
     }
 
     /// Sets up the workspace; the number of unknowns, whether the method is explicit, and whether the

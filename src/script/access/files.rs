@@ -4,7 +4,7 @@ use super::faults::{cannot, drive_help, escape_help, plain, shown};
 use super::policy::{Access, Grant, Refusal, refusal_of};
 use crate::Session;
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::errors::FILE_ERROR;
 use crate::language::transcript::PROMPT;
 use crate::results::{self, Format, ResultTable};
@@ -66,6 +66,7 @@ impl Session {
         let Some(reason) = self.outdated.reason(&path) else { return Ok(()) };
         let shown = path.display();
         let state = match self.world.exists(&path) {
+            true if self.outdated.is_unfinished(&path) => "ends before its simulation was to end",
             true => "is older than this script expects",
             false => "was not written",
         };
@@ -118,6 +119,30 @@ impl Session {
         self.write_by(&path, &mut |session| {
             session.world.write_with(&path, &mut |to| format.write_to(table, to))
         })
+    }
+
+    /// The same for what a simulation had computed when it failed: for people and other programs, while
+    /// the script that expected all of it is told so when it reads it. What says why it failed then says
+    /// where this is.
+    pub fn write_unfinished(
+        &mut self,
+        path: &Path,
+        table: &ResultTable,
+        why: Diagnostic,
+    ) -> Diagnostic {
+        let format = results::format_of_file(&path.to_string_lossy());
+        let last = table.time.last().copied().unwrap_or(f64::NAN);
+        let kept = format.and_then(|format| self.write_results(path, format.as_ref(), table));
+        match kept {
+            Ok(()) => {
+                let file = normalized(&self.world.absolute(&self.expanded(path)));
+                self.outdated.note_unfinished(&file);
+                why.help(format!("the results until t = {last} are in `{}`", shown(path)))
+            }
+            Err(fault) => {
+                why.help(format!("the results until t = {last} are not kept: {}", fault.message))
+            }
+        }
     }
 
     /// The same for results that are written already.

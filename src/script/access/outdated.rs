@@ -11,12 +11,19 @@ pub(crate) struct Outdated {
     /// Files that the commands being executed are going to write. They can be read until then: a model may
     /// read what the simulation before has written.
     expected: BTreeSet<PathBuf>,
+    /// Files that hold what their simulations had computed when they failed.
+    unfinished: BTreeSet<PathBuf>,
 }
 
 impl Outdated {
     /// Why a file is older than a script believes, if it is.
     pub fn reason(&self, file: &Path) -> Option<&str> {
         self.files.get(file).map(String::as_str)
+    }
+
+    /// Whether a file holds what a simulation had computed when it failed.
+    pub fn is_unfinished(&self, file: &Path) -> bool {
+        self.unfinished.contains(file)
     }
 
     /// A command is going to write this file.
@@ -28,6 +35,13 @@ impl Outdated {
     pub(crate) fn note_written(&mut self, file: &Path) {
         self.expected.remove(file);
         self.files.remove(file);
+        self.unfinished.remove(file);
+    }
+
+    /// The file was written as far as its simulation came; what was to be written is still missing.
+    pub(crate) fn note_unfinished(&mut self, file: &Path) {
+        self.unfinished.insert(file.to_path_buf());
+        self.expected.insert(file.to_path_buf());
     }
 
     /// The file could not be written.

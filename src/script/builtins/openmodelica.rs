@@ -10,7 +10,7 @@ use crate::errors::BAD_ARGUMENT;
 use crate::fault;
 use crate::flatten::Experiment;
 use crate::models::simulation;
-use crate::models::simulation::{SimulationOptions, Translated};
+use crate::models::simulation::{SimulationOptions, Translated, Unfinished};
 use crate::name::{Ident, Name};
 use crate::openmodelica::flat_model::{flat_text, trivial_equations};
 use crate::results::{ResultTable, Values};
@@ -72,16 +72,18 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let filter = filter_of(&given)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
+    let mut failed = "Failed to build model";
     let done = flags_of(session, &flags).and_then(|flags| {
         if let Some(unit) = imported_units::unit_of(session, &class.to_string())? {
             return run_unit(session, unit, &options, flags, (&file, &filter));
         }
         let model = driven_model(session, &class.to_string(), &flags)?;
+        failed = "Simulation execution failed for model";
         run(session, &model, &options, flags, (&file, &filter))
     });
     let messages = match &done {
         Ok(_) => String::new(),
-        Err(_) => format!("Failed to build model: {class}"),
+        Err(_) => format!("{failed}: {class}"),
     };
     let (result_file, options) = match session.or_report_all(done) {
         Some((used, file)) => (session.world.absolute(file.as_ref()).display().to_string(), used),
@@ -219,18 +221,33 @@ pub(super) fn run(
     let before = session.current_values();
     let set = flags.apply(session).at(at);
     let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
-    let done = set.and_then(|()| simulation::simulate(session, model, &applied));
+    let done =
+        set.map_err(Unfinished::from).and_then(|()| simulation::simulate(session, model, &applied));
     session.restore_values(before);
-    let mut done = done.map_err(one)?;
-    Driven::without_own_inputs(&mut done.table);
+    match done {
+        Ok(done) => {
+            let table = recorded(done.table, filter);
+            write_results(session, &table, file).at(at).map_err(one)?;
+            Ok((options, file.to_owned()))
+        }
+        Err(Unfinished { why, until: Some(until) }) if !file.ends_with(NO_FILE) => {
+            let table = recorded(until.table, filter);
+            Err(one(session.write_unfinished(file.as_ref(), &table, why)))
+        }
+        Err(Unfinished { why, .. }) => Err(one(why)),
+    }
+}
+
+/// The results that the file of a simulation holds.
+fn recorded(mut table: ResultTable, filter: &Regex) -> ResultTable {
+    Driven::without_own_inputs(&mut table);
     if filter.as_str() != "^(?:.*)$" {
-        done.table = done.table.only(|name| filter.is_match(name));
+        table = table.only(|name| filter.is_match(name));
     }
-    if done.table.time.len() == 1 {
-        begun_and_ended(&mut done.table);
+    if table.time.len() == 1 {
+        begun_and_ended(&mut table);
     }
-    write_results(session, &done.table, file).at(at).map_err(one)?;
-    Ok((options, file.to_owned()))
+    table
 }
 
 /// Simulates an imported unit and writes the results; the settings used, and the file.

@@ -8,7 +8,7 @@ use crate::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
 use crate::fault;
 use crate::flatten;
 use crate::models::simulation;
-use crate::models::simulation::{Simulated, SimulationOptions, Translated};
+use crate::models::simulation::{Simulated, SimulationOptions, Translated, Unfinished};
 use crate::results::{self, ResultTable};
 use crate::value::Value;
 use crate::{Dialect, Session};
@@ -190,7 +190,7 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         && let Ok(model) = done
     {
         let simulated = simulation::simulate(session, &model, &SimulationOptions::default());
-        done = simulated.map(|_| model).map_err(|error| vec![error]);
+        done = simulated.map(|_| model).map_err(|unfinished| vec![unfinished.why]);
     }
     Ok(session.or_report_all(done).is_some().into())
 }
@@ -308,15 +308,25 @@ pub(super) fn run_model(
     options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let simulated = simulation::simulate(session, model, options).map_err(|error| vec![error])?;
-    let grid = grid(&model.program.experiment(), options)
-        .at(session.call_site())
-        .map_err(|error| vec![error])?;
-    let table = super::output::stored(session, model, &simulated.table, &grid);
-    let written = write(session, table, file).at(session.call_site());
-    written.map_err(|error| vec![error])?;
-    super::final_states::write_final(session);
-    Ok(simulated)
+    let (at, one) = (session.call_site(), |error: Diagnostic| vec![error]);
+    let done = simulation::simulate(session, model, options);
+    let grid = grid(&model.program.experiment(), options).at(at).map_err(one)?;
+    match done {
+        Ok(simulated) => {
+            let table = super::output::stored(session, model, &simulated.table, &grid);
+            write(session, table, file).at(at).map_err(one)?;
+            super::final_states::write_final(session);
+            Ok(simulated)
+        }
+        Err(Unfinished { why, until: Some(until) }) => {
+            let last = until.table.time.last().copied().unwrap_or(f64::NEG_INFINITY);
+            let grid = &grid[..grid.partition_point(|time| *time <= last)];
+            let table =
+                named_as_in_dymola(super::output::stored(session, model, &until.table, grid));
+            Err(one(session.write_unfinished(&result_path(file), &table, why)))
+        }
+        Err(Unfinished { why, until: None }) => Err(one(why)),
+    }
 }
 
 /// The path of a result file; without an ending that names a format, `.mat` is added.
@@ -327,13 +337,17 @@ pub(super) fn result_path(file: &str) -> PathBuf {
     }
 }
 
+/// Results whose time has the name that it has in Dymola's result files.
+fn named_as_in_dymola(mut table: ResultTable) -> ResultTable {
+    table.time_name = "Time".to_owned();
+    table
+}
+
 /// Writes a result file.
-fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<(), Fault> {
+fn write(session: &mut Session, table: ResultTable, file: &str) -> Result<(), Fault> {
     let path = result_path(file);
     let format = results::format_of_file(&path.to_string_lossy())?;
-    // The name that Dymola's result files have.
-    table.time_name = "Time".to_owned();
-    session.write_results(&path, format.as_ref(), &table)?;
+    session.write_results(&path, format.as_ref(), &named_as_in_dymola(table))?;
     super::last_results::note_results(session, &path.to_string_lossy());
     Ok(())
 }

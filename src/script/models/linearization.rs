@@ -67,7 +67,8 @@ fn linearized_variant(
     let mut inputs = Vec::new();
     let model = session
         .vary_current(|model, flat| with_states_for_inputs(model, flat.clone(), &mut inputs))?;
-    let done = simulation::simulate(session, &model, options).map_err(one)?;
+    let done =
+        simulation::simulate(session, &model, options).map_err(|unfinished| one(unfinished.why))?;
     let time = done.table.time.last().copied().unwrap_or(0.0);
     let last =
         |name: &str| Ok::<f64, Fault>(done.table.column(name)?.last().copied().unwrap_or(f64::NAN));

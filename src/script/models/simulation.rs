@@ -59,6 +59,21 @@ pub struct SimulationOptions {
     pub reached: Option<Arc<AtomicU64>>,
 }
 
+/// A simulation that failed, or was stopped.
+#[derive(Debug)]
+pub struct Unfinished {
+    /// Why.
+    pub why: Diagnostic,
+    /// What was computed until then; `None` where it did not begin.
+    pub until: Option<Box<Simulated>>,
+}
+
+impl From<Diagnostic> for Unfinished {
+    fn from(why: Diagnostic) -> Unfinished {
+        Unfinished { why, until: None }
+    }
+}
+
 /// A simulation that reached its end, or what was computed until it failed.
 #[derive(Debug)]
 pub struct Simulated {
@@ -380,12 +395,13 @@ pub(super) const MOST_STEPS: u64 = 1_000_000_000;
 /// Simulates a model with the parameter values that scripts gave to it.
 ///
 /// # Errors
-/// A wish that cannot be fulfilled, or the failure in the model's words.
+/// A wish that cannot be fulfilled, or the failure in the model's words with what was computed until
+/// then.
 pub fn simulate(
     session: &mut Session,
     model: &Translated,
     options: &SimulationOptions,
-) -> Result<Simulated, Diagnostic> {
+) -> Result<Simulated, Unfinished> {
     let call = session.call_site();
     let mut settings = settings(&model.program.experiment(), options).at(call)?;
     settings.cancel = session.world.interrupt_flag();
@@ -406,22 +422,27 @@ pub fn simulate(
     report_undetermined(session, &system.system);
     report_notices(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
-    match run {
-        Ok(statistics) => {
+    let why = match run {
+        Ok(_) => {
             written?;
             let span = (settings.start, settings.stop);
             let end = FinalState::of(model, &system.system, &trajectory, span);
             session.models.end = Some(end);
-            let table = result_table(model, &system.system, trajectory, options.only.as_ref());
-            let hardest = settings
-                .counts_effort
-                .then(|| hardest(session, &system.system, simulator.effort()));
-            Ok(Simulated { table, statistics, hardest })
+            None
         }
         Err(_) if session.world.interrupted() => {
-            Err(Fault::new(INTERRUPTED, "interrupted").at(call))
+            Some(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
-        Err(error) => Err(system.system.explain(&error)),
+        Err(error) => Some(system.system.explain(&error)),
+    };
+    let has_begun = !trajectory.is_empty();
+    let hardest =
+        settings.counts_effort.then(|| hardest(session, &system.system, simulator.effort()));
+    let table = result_table(model, &system.system, trajectory, options.only.as_ref());
+    let simulated = Simulated { table, statistics: *simulator.statistics(), hardest };
+    match why {
+        None => Ok(simulated),
+        Some(why) => Err(Unfinished { why, until: has_begun.then(|| Box::new(simulated)) }),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::ga::Genomes;
 use crate::ga::errors::BAD_POPULATION;
 use crate::identify::problem::Failed;
 use crate::identify::{Recorder, Simulated, Study};
-use crate::models::simulation::{SimulationOptions, simulate, translated};
+use crate::models::simulation::{SimulationOptions, Translated, simulate, translated};
 use crate::models::static_curve::DRIVER;
 use crate::source::Span;
 use std::sync::Arc;
@@ -84,12 +84,17 @@ impl Session {
             self.set_parameter(&parameter.name, *gene).ok()?;
         }
         if model.program.find_parameter(DRIVER).is_err() {
-            return simulate(self, &model, &SimulationOptions::default()).err();
+            return self.failure_of(&model);
         }
         x.iter().find_map(|point| {
             self.set_parameter(DRIVER, *point).ok()?;
-            simulate(self, &model, &SimulationOptions::default()).err()
+            self.failure_of(&model)
         })
+    }
+
+    fn failure_of(&mut self, model: &Translated) -> Option<Diagnostic> {
+        let done = simulate(self, model, &SimulationOptions::default());
+        done.err().map(|unfinished| unfinished.why)
     }
 }
 

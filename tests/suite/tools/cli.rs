@@ -541,6 +541,29 @@ fn simulations_tell_what_made_them_work() {
     assert!(!out.contains("`slow`"), "{out}");
 }
 
+/// What was computed until a failure is written, counted and drawn: it says the most about it.
+#[test]
+fn simulations_that_fail_keep_what_they_have() {
+    let text = "model M Real x(start = 1, fixed = true); Real y; equation der(x) = -x; \
+                y = sqrt(x - 0.5); end M;";
+    let here = folder(&[("M.mo", text), ("out.csv", "\"time\",\"x\"\n0.0,7.0\n")]);
+    let base = ["simulate", "M.mo", "--model", "M", "--intervals", "10"];
+    let shown = ["--stats", "--plot", "x", "--output", "out.csv"];
+    let (code, out, errors) = gapi(&here, &[&base[..], &shown[..]].concat());
+    assert_eq!(code, 1);
+    assert!(out.contains("M: 0 s to 0.6 s, 7 points"), "{out}");
+    assert!(out.contains("accepted steps") && out.contains("trajectories: out.csv"), "{out}");
+    assert!(errors.contains("`y` has no value at t = 0.7"), "{errors}");
+    let written = fs::read_to_string(here.path().join("out.csv")).unwrap();
+    assert_eq!(written.lines().count(), 8, "{written}");
+    assert!(written.lines().last().unwrap().starts_with("0.6,0.548"), "{written}");
+    // One that does not begin leaves what there is.
+    let refused = [&base[..], &["--set", "x=0.1", "--output", "out.csv"]].concat();
+    let (code, out, errors) = gapi(&here, &refused);
+    assert_eq!((code, &*out), (1, ""), "{errors}");
+    assert_eq!(fs::read_to_string(here.path().join("out.csv")).unwrap(), written);
+}
+
 #[test]
 fn simulations_tell_their_cost_and_draw() {
     let here = folder(&[("Decay.mo", DECAY)]);
