@@ -12,6 +12,9 @@ use crate::sim::{Equations, Newton};
 /// doublings.
 const NEAREST: i32 = 6;
 const FARTHEST: i32 = 10;
+/// Of another branch beside a turning point, which may be near: the first point lies so many halvings
+/// away. Those of a cooling coil whose valve follows its own outlet lie 1e-3 of the flow apart.
+const NEXT_BRANCH: i32 = 20;
 /// Towards zero: x₀/2, x₀/4, …
 const MAX_HALVINGS: i32 = 40;
 /// After these many halvings of the interval Newton's method makes the last steps.
@@ -60,6 +63,36 @@ pub(super) fn solve_bracketed(
     Err(NoBracket)
 }
 
+/// Replaces x by the solution nearest to it, where Newton's method stays in the valley that a turning
+/// point has left; on failure x is anything.
+pub(super) fn solve_next_branch(
+    newton: &mut Newton,
+    equations: &mut dyn Equations,
+    x: &mut [f64],
+    nominal: &[f64],
+) -> Result<(), NoBracket> {
+    let ([guess], [nominal_of_x]) = (&*x, nominal) else { return Err(NoBracket) };
+    let guess = *guess;
+    let at_guess = residual(equations, guess).ok_or(NoBracket)?;
+    let scale = guess.abs().max(*nominal_of_x);
+    // The last point on each side at which the residual has the sign that it has at the guess.
+    let mut sides = [(1.0, Some(guess)), (-1.0, Some(guess))];
+    for k in -NEXT_BRANCH..=FARTHEST {
+        for (side, last) in &mut sides {
+            let Some(inner) = *last else { continue };
+            let outer = guess + *side * scale * powi(2.0, k);
+            *last =
+                residual(equations, outer).filter(|value| value * at_guess > 0.0).map(|_| outer);
+            if last.is_none()
+                && halved(newton, equations, x, nominal, [inner, outer], at_guess).is_ok()
+            {
+                return Ok(());
+            }
+        }
+    }
+    Err(NoBracket)
+}
+
 /// Looks for the solution in an interval; at its first end the residual has the sign of `at_guess`.
 fn halved(
     newton: &mut Newton,
@@ -100,7 +133,7 @@ fn residual(equations: &mut dyn Equations, x: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{NoBracket, solve_bracketed};
+    use super::{NoBracket, solve_bracketed, solve_next_branch};
     use crate::sim::{Equations, Failure, Newton};
 
     struct Function<F>(F);
@@ -131,6 +164,32 @@ mod tests {
         };
         assert!((solved(pressure, 227.0).expect("a solution") - 2.5).abs() < 1e-9);
         assert!((solved(|x| [x + 3.0, 1.0], 0.0).expect("a solution") + 3.0).abs() < 1e-9);
+    }
+
+    /// The residual of a cooling coil as it was sampled: two solutions have met at 1, where its slope
+    /// jumps, the next one is at 1.00024, a valley without one at 1.0155, and it jumps at 1.0225.
+    #[test]
+    fn the_branch_beside_a_turning_point_is_found() {
+        let coil = |y: f64| match y - 1.0 {
+            s if s < 0.0 => [2e-4 - 540.0 * s, -540.0],
+            s if s < 3e-4 => [2e-4 + 80.0 * s * (1.0 - s / 2.3e-4), 80.0 * (1.0 - s / 1.15e-4)],
+            s if s < 0.01 => [-7.1e-3 - 2.8 * (s - 3e-4), -2.8],
+            s if s < 0.0225 => [-0.0213 - 440.0 * (s - 0.0155).powi(2), -880.0 * (s - 0.0155)],
+            _ => [2e-4 - y, -1.0],
+        };
+        let next = |function: &dyn Fn(f64) -> [f64; 2], guess| {
+            let mut x = [guess];
+            let newton = &mut Newton::new(1);
+            solve_next_branch(newton, &mut Function(function), &mut x, &[1.0]).map(|()| x[0])
+        };
+        let found = next(&coil, 1.0).expect("a solution");
+        assert!((found - 1.000_232_48).abs() < 1e-8, "{found}");
+        // The nearest one is taken, on whichever side it is.
+        let three = |x: f64| [(x - 1.0) * (x - 2.0) * (x - 4.0), 0.0];
+        assert_eq!(next(&three, 1.9).map(|x| (x - 2.0).abs() < 1e-9), Ok(true));
+        assert_eq!(next(&three, 3.7).map(|x| (x - 4.0).abs() < 1e-9), Ok(true));
+        assert_eq!(next(&three, 1.2).map(|x| (x - 1.0).abs() < 1e-9), Ok(true));
+        assert_eq!(next(&|x| [x * x + 1.0, 2.0 * x], 1.0), Err(NoBracket));
     }
 
     #[test]

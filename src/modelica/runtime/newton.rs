@@ -8,6 +8,7 @@
 //!     otherwise the same from beside the guess, where the Jacobian may be less singular
 //!     otherwise the same from zero, if the guess is outside the domain
 //!     otherwise the global Newton method, where a jump is no error
+//!     otherwise the nearest change of sign of a single residual, likewise
 //! ```
 //!
 //! A loop whose Jacobian is singular at an isolated solution is solved. Otherwise it need not have
@@ -15,7 +16,7 @@
 //! one nearest to the values at hand is, with a warning as well, where equations that depend on each
 //! other leave unknowns open; at a turning point it is an error.
 
-use super::bracketing::solve_bracketed;
+use super::bracketing::{solve_bracketed, solve_next_branch};
 use super::difference_quotients::quotient;
 use super::execution::run_loop;
 use super::global_newton::Continuation;
@@ -167,6 +168,12 @@ impl LoopSolver {
             let continuation = self.continuation.get_or_insert_with(|| Continuation::new(n).into());
             let found = continuation.solve(newton, equations, &mut self.x, nominal);
             outcome = if found.is_ok() { Ok(()) } else { outcome };
+        }
+        if outcome.is_err() && may_jump && !initial {
+            self.x.copy_from_slice(&self.guess);
+            let (newton, nominal) = (&mut self.newton, &self.nominal);
+            let found = solve_next_branch(newton, &mut equations, &mut self.x, nominal);
+            outcome = found.or(outcome);
         }
         if !initial {
             // A fan that starts needs half of its speed at once: the solution at rest has ended.
