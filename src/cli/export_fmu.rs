@@ -71,7 +71,9 @@ pub(super) fn export_fmu(arguments: &ExportFmuArgs, global: &Global) -> ExitCode
         Ok(watch) => watch,
         Err(code) => return code,
     };
-    let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
+    let opened = session::world(global).and_then(|world| {
+        session::with_class(world, global, arguments.model.as_ref(), &arguments.files)
+    });
     let (mut session, class) = match opened {
         Ok(opened) => opened,
         Err(code) => return code,

@@ -92,11 +92,23 @@ pub(super) fn with_files(
     global: &Global,
     files: &[PathBuf],
 ) -> Result<(Session, Vec<Name>), ExitCode> {
+    with_files_in(world(global)?, global, files)
+}
+
+/// The world of a command that has no folder of results.
+pub(super) fn world(global: &Global) -> Result<SystemWorld, ExitCode> {
     let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
-    let world = world.map_err(|error| {
+    world.map_err(|error| {
         terminal::eprint(&format!("error: {error}\n"));
         ExitCode::FAILURE
-    })?;
+    })
+}
+
+fn with_files_in(
+    world: SystemWorld,
+    global: &Global,
+    files: &[PathBuf],
+) -> Result<(Session, Vec<Name>), ExitCode> {
     let mut session = open(global, world);
     let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
@@ -127,12 +139,13 @@ pub(super) fn class_and_files(
 
 /// A session in which these files are loaded, and the class that is meant.
 pub(super) fn with_class(
+    world: SystemWorld,
     global: &Global,
     model: Option<&String>,
     files: &[PathBuf],
 ) -> Result<(Session, String), ExitCode> {
     let (class, files) = class_and_files(model, files);
-    let (session, names) = with_files(global, &files)?;
+    let (session, names) = with_files_in(world, global, &files)?;
     // The only class of the files need not be named.
     let only = if let [only] = &names[..] { Some(only.to_string()) } else { None };
     let class = class.or(only).ok_or_else(|| {

@@ -30,7 +30,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Arguments of `gapi simulate`.
 #[derive(Debug, Args)]
@@ -141,18 +141,23 @@ const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
-    let _watch = match limits::enforce(&arguments.limits) {
-        Ok(watch) => watch,
-        Err(code) => return code,
+    let done = match imported::unit_of(&arguments.files) {
+        Some(path) => limits::enforce(&arguments.limits)
+            .map(|_watch| imported::simulate(path, arguments, global)),
+        None => simulate_model(arguments, global),
     };
-    if let Some(path) = imported::unit_of(&arguments.files) {
-        return imported::simulate(path, arguments, global);
-    }
-    let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
-    let (mut session, class) = match opened {
-        Ok(opened) => opened,
-        Err(code) => return code,
-    };
+    done.unwrap_or_else(|code| code)
+}
+
+/// One that is stopped, by the user or by a limit, shows and writes what it has.
+fn simulate_model(arguments: &SimulateArgs, global: &Global) -> Result<ExitCode, ExitCode> {
+    let started = Instant::now();
+    let world = session::world(global)?;
+    world.catch_interrupts();
+    let _watch = limits::watch(&arguments.limits, started, world.stopping())?;
+    let _unheard = limits::end_unheard(world.stopping());
+    let (mut session, class) =
+        session::with_class(world, global, arguments.model.as_ref(), &arguments.files)?;
     for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
         session.world.grant(Grant::Named(file));
     }
@@ -161,12 +166,13 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
         session.world.grant(Grant::Read(file));
     }
     if session::lists_permissions(&mut session, global) {
-        return ExitCode::SUCCESS;
+        return Ok(ExitCode::SUCCESS);
     }
-    match run(&mut session, &class, arguments, global) {
+    Ok(match run(&mut session, &class, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
+        Err(_) if session.is_interrupted() => session::stopped(&mut session),
         Err(errors) => session::failed(&mut session, errors),
-    }
+    })
 }
 
 fn run(

@@ -76,6 +76,25 @@ fn simulations_end() {
     ends(&["simulate", "Slow.mo"], ["--time-limit", "0.3"], "time limit");
 }
 
+/// A million points of a pendulum take minutes; what there is after the limit is in the file.
+#[test]
+fn a_simulation_that_is_stopped_writes_what_it_has() {
+    let text = "model Pendulum Real x(start = 1, fixed = true); Real v(start = 0, fixed = true); equation
+      der(x) = v; der(v) = -1e6*sin(x); end Pendulum;";
+    let here = folder(&[("Pendulum.mo", text)]);
+    let arguments =
+        ["simulate", "Pendulum.mo", "--stop-time", "1e5", "--intervals", "1000000", "-o", "x.csv"];
+    let (code, out, errors) = gapi(&here, &[&arguments[..], &["--time-limit", "3"]].concat());
+    assert_eq!(code, 1, "{errors}");
+    assert!(errors.contains("error[limit-reached]: the time limit is reached: 3 s"), "{errors}");
+    assert!(out.contains("Pendulum: 0 s to ") && out.contains("trajectories: x.csv"), "{out}");
+    let written = std::fs::read_to_string(here.path().join("x.csv")).unwrap();
+    let times = written.lines().skip(1).map(|line| line.split(',').next().unwrap().parse::<f64>());
+    let times = times.collect::<Result<Vec<f64>, _>>().unwrap();
+    let last = times.last().unwrap();
+    assert!(*last > 0.0 && *last < 1e5, "{last}");
+}
+
 #[test]
 fn what_ends_in_time_does_not_meet_its_limits() {
     let here = folder(&[("M.mo", "model M Real x = time; end M;")]);
