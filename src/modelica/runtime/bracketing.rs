@@ -166,8 +166,8 @@ mod tests {
         assert!((solved(|x| [x + 3.0, 1.0], 0.0).expect("a solution") + 3.0).abs() < 1e-9);
     }
 
-    /// The residual of a cooling coil as it was sampled: two solutions have met at 1, where its slope
-    /// jumps, the next one is at 1.00024, a valley without one at 1.0155, and it jumps at 1.0225.
+    /// The residual of a cooling coil as it was sampled: two solutions have met at 1, where its
+    /// derivative jumps, the next one is at 1.00024, a valley without one at 1.0155, and it jumps at 1.0225.
     #[test]
     fn the_branch_beside_a_turning_point_is_found() {
         let coil = |y: f64| match y - 1.0 {

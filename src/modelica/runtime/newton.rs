@@ -161,19 +161,8 @@ impl LoopSolver {
             self.x.fill(0.0);
             outcome = self.attempt(equations, initial).or(outcome);
         }
-        if outcome.is_err() && may_jump {
-            self.x.copy_from_slice(&self.guess);
-            let (newton, nominal) = (&mut self.newton, &self.nominal);
-            let n = nominal.len();
-            let continuation = self.continuation.get_or_insert_with(|| Continuation::new(n).into());
-            let found = continuation.solve(newton, equations, &mut self.x, nominal);
-            outcome = if found.is_ok() { Ok(()) } else { outcome };
-        }
-        if outcome.is_err() && may_jump && !initial {
-            self.x.copy_from_slice(&self.guess);
-            let (newton, nominal) = (&mut self.newton, &self.nominal);
-            let found = solve_next_branch(newton, &mut equations, &mut self.x, nominal);
-            outcome = found.or(outcome);
+        if outcome.is_err() && may_jump && self.jump(equations, initial) {
+            outcome = Ok(());
         }
         if !initial {
             // A fan that starts needs half of its speed at once: the solution at rest has ended.
@@ -186,6 +175,19 @@ impl LoopSolver {
             outcome = found.or(outcome);
         }
         outcome
+    }
+
+    /// Solves where a jump is no error; whether it did.
+    fn jump(&mut self, equations: &mut Evaluation, initial: bool) -> bool {
+        self.x.copy_from_slice(&self.guess);
+        let (newton, nominal) = (&mut self.newton, &self.nominal);
+        let n = nominal.len();
+        let continuation = self.continuation.get_or_insert_with(|| Continuation::new(n).into());
+        if continuation.solve(newton, equations, &mut self.x, nominal).is_ok() {
+            return true;
+        }
+        self.x.copy_from_slice(&self.guess);
+        !initial && solve_next_branch(newton, equations, &mut self.x, nominal).is_ok()
     }
 
     /// Where least squares ended without a solution, and the residuals there.

@@ -79,7 +79,8 @@ fn simulations_end() {
 /// A million points of a pendulum take minutes; what there is after the limit is in the file.
 #[test]
 fn a_simulation_that_is_stopped_writes_what_it_has() {
-    let text = "model Pendulum Real x(start = 1, fixed = true); Real v(start = 0, fixed = true); equation
+    let text =
+        "model Pendulum Real x(start = 1, fixed = true); Real v(start = 0, fixed = true); equation
       der(x) = v; der(v) = -1e6*sin(x); end Pendulum;";
     let here = folder(&[("Pendulum.mo", text)]);
     let arguments =
