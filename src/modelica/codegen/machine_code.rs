@@ -397,7 +397,7 @@ mod tests {
                 }
                 let succeeds = code.tape.run(&mut memory).is_ok();
                 // Machine code may leave to the tape what is nearly singular and what overflows where
-                // the tape goes on, but nothing else.
+                // the tape continues, but nothing else.
                 prop_assert!(!done || succeeds);
                 let is_system = |(kind, _): &Step| kind % 20 >= 16;
                 let may_leave = memory.overflow.is_some() || steps.iter().any(is_system);
