@@ -1,6 +1,6 @@
 //! Functional mock-up units of files: read, allowed, and simulated.
 
-use super::simulation::{Simulated, SimulationOptions, settings};
+use super::simulation::{MOST_STEPS, Simulated, SimulationOptions, settings};
 use crate::Session;
 use crate::diag::{Fault, suggest};
 use crate::errors::{BAD_FMU, FMU_MESSAGE};
@@ -271,6 +271,7 @@ pub fn simulate(
     let mut settings = settings(&experiment(&unit.description), &options)?;
     settings.cancel = session.world.interrupt_flag();
     settings.reached.clone_from(&options.reached);
+    settings.max_total_steps = MOST_STEPS;
     let only = options.only.as_ref();
     let scalars = model.layout().scalars().iter();
     let scalars = scalars.filter(|scalar| !is_triggered(unit.variable(scalar.place)));
