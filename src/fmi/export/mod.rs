@@ -208,7 +208,7 @@ fn describe(
         provides_adjoint_derivatives: version == Version::V3,
         ..Interface::default()
     };
-    let exchange = Interface { needs_completed_step: false, ..interface.clone() };
+    let exchange = Interface { needs_completed_step: program.checks_steps(), ..interface.clone() };
     let co_simulation = Interface {
         can_handle_variable_steps: true,
         has_event_mode: version == Version::V3,

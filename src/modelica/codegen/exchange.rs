@@ -43,6 +43,11 @@ impl VariableInfo {
 }
 
 impl Program {
+    /// Whether anything must hold between events: assertions that a simulator checks after each step.
+    pub fn checks_steps(&self) -> bool {
+        !(self.assertions.is_empty() && self.log_assertions.is_empty())
+    }
+
     /// The attributes of a variable of [`Program::variables`].
     pub fn attributes(&self, variable: usize) -> Attributes {
         let Some(info) = self.variables().get(variable) else { return Attributes::default() };

@@ -465,6 +465,24 @@ fn scripts_write_and_simulate_units() {
 }
 
 /// The number that stands alone in a line, the one of this number.
+/// Assertions of a model hold in its unit, too: importers announce completed steps where it has any.
+#[test]
+fn assertions_between_events_hold_in_units() {
+    let text = "model Limited Real x(start = 0, fixed = true); equation der(x) = 1; \
+                assert(x < 0.5, \"x too large\"); end Limited;";
+    let here = folder(&[("Limited.mo", text)]);
+    for version in ["2", "3"] {
+        let export = ["export-fmu", "Limited.mo", "--model", "Limited", "--fmi", version];
+        let (code, out, errors) = exporting(&here, &[&export[..], &["-o", "unit.fmu"]].concat());
+        assert_eq!(code, 0, "{out}{errors}");
+        for method in ["dassl", "co-simulation"] {
+            let unit = ["simulate", "unit.fmu", "--allow-external", "--method", method];
+            let (code, _, errors) = gapi(&here, &unit);
+            assert!(code == 1 && errors.contains("x too large"), "{method}: {errors}");
+        }
+    }
+}
+
 fn number_after(text: &str, which: usize) -> f64 {
     let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
     numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
