@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 /// Set to 0, the process takes no part in a job: for programs that are MPI jobs themselves and call
 /// this one.
-const SWITCH: &str = "GAPI_MPI";
+pub(super) const SWITCH: &str = "GAPI_MPI";
 
 /// Variables with the size of the job and the rank of the process: Open MPI; MPICH, Intel MPI and
 /// Slurm's PMI; a step of Slurm, also one that was started without any of them (`--mpi=none`, the

@@ -82,6 +82,8 @@ impl Start for LocalStart {
     fn start(&self) -> Result<Box<dyn Process>, String> {
         let mut command = program();
         command.arg("fmu-worker").arg(&self.folder.0);
+        // It belongs to this process, not to the job that a launcher has started this one in.
+        command.env(super::launcher::SWITCH, "0");
         Ok(Box::new(WorkerProcess::start(command)?))
     }
 }
