@@ -3,7 +3,7 @@
 use super::simulation::{MOST_STEPS, Simulated, SimulationOptions, settings};
 use crate::Session;
 use crate::diag::{Fault, suggest};
-use crate::errors::{BAD_FMU, FMU_MESSAGE};
+use crate::errors::{BAD_FMU, BAD_PARAMETER_VALUE, FMU_MESSAGE};
 use crate::external::errors::EXTERNAL_REFUSED;
 use crate::flatten::Experiment;
 use crate::fmi::archive::DESCRIPTION;
@@ -213,6 +213,7 @@ impl Given {
         if let Some(why) = refusal(unit.variable(place).kind, value) {
             bail!(BAD_FMU, "`{name}` of `{}` {why}", unit.file);
         }
+        check_range(unit, name, place, value)?;
         self.numbers.retain(|(known, _)| *known != place);
         self.numbers.push((place, value));
         Ok(())
@@ -227,6 +228,28 @@ impl Given {
                 .help_if(suggest::did_you_mean(name, names()))
         })
     }
+}
+
+/// As for parameters of models: a value outside the range that its variable declares, or that no literal
+/// of its enumeration has, is not computed with.
+fn check_range(unit: &Imported, name: &str, place: Place, value: f64) -> Result<(), Fault> {
+    let variable = unit.variable(place);
+    let own = unit.description.attributes_of(variable);
+    let (min, max) = (own.min.unwrap_or(f64::NEG_INFINITY), own.max.unwrap_or(f64::INFINITY));
+    if !(min..=max).contains(&value) {
+        bail!(
+            BAD_PARAMETER_VALUE,
+            "`{name}` of `{}` is {value}, outside its range from {min} to {max}", unit.file;
+            help: "the range is that of the unit's description"
+        );
+    }
+    let items = unit.description.type_of(variable).map_or(&[][..], |own| &own.items[..]);
+    if items.is_empty() || items.iter().any(|item| item.value as f64 == value) {
+        return Ok(());
+    }
+    let literals: Vec<&str> = items.iter().map(|item| &*item.name).collect();
+    Err(fault!(BAD_PARAMETER_VALUE, "`{name}` of `{}` cannot be {value}", unit.file)
+        .help(format!("its values are {}", literals.join(", "))))
 }
 
 fn refuse_unless_settable(unit: &Imported, name: &str, variable: usize) -> Result<(), Fault> {

@@ -483,6 +483,31 @@ fn assertions_between_events_hold_in_units() {
     }
 }
 
+/// What a unit is not made for is refused as it is for a model.
+#[test]
+fn values_outside_the_range_of_a_unit_are_refused() {
+    let text = "model Tank type Level = enumeration(low, high); \
+                parameter Real A(min = 0.01) = 1; parameter Level at = Level.low; \
+                Real x(start = 1, fixed = true); Real y; equation der(x) = -A*x; \
+                y = if at == Level.low then 1 else 2; end Tank;";
+    let here = folder(&[("Tank.mo", text)]);
+    let export = ["export-fmu", "Tank.mo", "--model", "Tank", "-o", "unit.fmu"];
+    let (code, out, errors) = exporting(&here, &export);
+    assert_eq!(code, 0, "{out}{errors}");
+    let unit = ["simulate", "unit.fmu", "--allow-external", "--set"];
+    for (value, expected) in [
+        ("A=-1", "`A` of `unit.fmu` is -1, outside its range from 0.01 to inf"),
+        ("at=7", "`at` of `unit.fmu` cannot be 7"),
+    ] {
+        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
+        assert!(code == 1 && errors.contains(expected), "{errors}");
+    }
+    for value in ["A=0.01", "at=high"] {
+        let (code, _, errors) = gapi(&here, &[&unit[..], &[value]].concat());
+        assert_eq!(code, 0, "{errors}");
+    }
+}
+
 fn number_after(text: &str, which: usize) -> f64 {
     let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
     numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
