@@ -483,6 +483,24 @@ fn assertions_between_events_hold_in_units() {
     }
 }
 
+/// In co-simulation inputs stand still during a step, which is said.
+#[test]
+fn inputs_held_between_communication_points_are_noted() {
+    let text =
+        "model Sum input Real u; Real x(start = 0, fixed = true); equation der(x) = u; end Sum;";
+    let here = folder(&[("Sum.mo", text), ("u.csv", "time,u\n0,0\n1,1\n2,0\n")]);
+    let (code, out, errors) =
+        exporting(&here, &["export-fmu", "Sum.mo", "--model", "Sum", "-o", "unit.fmu"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let unit = ["simulate", "unit.fmu", "--allow-external", "--input", "u.csv", "--method"];
+    for (method, is_noted) in [("co-simulation", true), ("dassl", false)] {
+        let (code, _, errors) = gapi(&here, &[&unit[..], &[method]].concat());
+        assert_eq!(code, 0, "{errors}");
+        let note = "during a step the inputs `u` have their values at its beginning";
+        assert_eq!(errors.contains(note), is_noted, "{errors}");
+    }
+}
+
 /// What a unit is not made for is refused as it is for a model.
 #[test]
 fn values_outside_the_range_of_a_unit_are_refused() {

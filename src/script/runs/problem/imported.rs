@@ -16,7 +16,7 @@ use crate::errors::BAD_FMU;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::fmi::description::{Causality, Kind};
-use crate::fmi::import::{Imported, Layout, Samples, is_parameter, why_not_set};
+use crate::fmi::import::{Imported, InterfaceKind, Layout, Samples, is_parameter, why_not_set};
 use crate::identify::problem::Experiment;
 use crate::identify::{ImportedModel, Model};
 use crate::models::imported::{self, Given};
@@ -250,6 +250,16 @@ fn samples(
     let layout = layout.map_err(|why| fault!(BAD_FMU, "{why}").at(Span::NONE))?;
     let declared = |name: &str| declared(unit, &layout, name);
     let (all, undecided) = inputs::recorded(entry, table, times, &declared, notes)?;
+    let varying = all.iter().filter(|one| !one.is_held());
+    let varying: Vec<String> = varying.map(|one| format!("`{}`", one.name)).collect();
+    if unit.kind == InterfaceKind::CoSimulation && !varying.is_empty() {
+        notes.add(format!(
+            "co-simulation: during a step the inputs {} have their values at its beginning, whatever \
+             their interpolation; more output points, or model exchange where the FMU has it, follow them \
+             closer",
+            varying.join(", ")
+        ));
+    }
     let sampled = all.iter().filter_map(|one| {
         Some(Samples {
             place: layout.find(&one.name)?,
