@@ -317,6 +317,34 @@ def beyond_upper_bound():
 
 
 @problem
+def decay_beyond_its_range():
+    x = np.arange(0, 205, 5.0)
+    y = np.round(10 * np.exp(-0.01 * x) + noise(4, len(x), 0.05), 3)
+    return Problem(
+        "decay_beyond_its_range",
+        """A rate of 0.01/s and a range from 0.1 to 10, drawn around the model's 1: at its lower end the fit
+        is worse than a constant. The range says so, first of all; it is no statement on the rate.""",
+        static("k = 1", "10*exp(-k*x)"), {"k": between(0.1, 10)},
+    ).data(x=x, y=y).of("k", [], (0.1, 1e-9), none=True).says(
+        "k lies at the lower end 0.1 of its search range.*down to 0.001.*drawn around", "worse than a constant",
+        "Minimum found within the search ranges").never("any value", "k is practically")
+
+
+@problem
+def rate_without_effect_in_its_range():
+    x = np.arange(1000, 1400, 20.0)
+    y = np.round(10 * np.exp(-0.001 * x) + noise(5, len(x), 0.02), 3)
+    return Problem(
+        "rate_without_effect_in_its_range",
+        """The decay is over in the whole range of the rate before the data begin: all values fit alike, and
+        worse than a constant. That is said of the range.""",
+        static("k = 1", "10*exp(-k*x)"), {"k": between(0.1, 10)},
+    ).data(x=x, y=y).of("k", [], none=True).says(
+        "All values of k in its search range, 0.1 to 10, fit alike.*Widen the range").never(
+        "any value", "k is practically")
+
+
+@problem
 def small_offset_on_log_range():
     x = np.arange(1, 13.0)
     y = np.round(3 * x + 0.02 + noise(3, 12, 0.1), 3)

@@ -207,7 +207,7 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
         Finding::new(
             FindingKind::PoorFit,
             format!(
-                "The fit of {} is worse than a constant (R² {}): {words}.",
+                "The fit of {} is worse than a constant (R² {}): within the search ranges, {words}.",
                 own.label,
                 significant(r_squared, 3)
             ),

@@ -18,6 +18,9 @@ use serde::{Deserialize, Serialize};
 /// A minimum with a larger relative offset is one whose residuals are those of rounding.
 const OF_ROUNDING: f64 = 0.02;
 
+/// How the sentence about a minimum begins.
+const FOUND: &str = "Minimum found";
+
 /// Where a run ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -97,6 +100,14 @@ impl Ending {
             ),
             ..Ending::default()
         }
+    }
+
+    /// The same, where a parameter stands at an end of its range: elsewhere may be a better point.
+    pub(super) fn within_ranges(mut self) -> Ending {
+        if let Some(rest) = self.words.strip_prefix(FOUND) {
+            self.words = format!("{FOUND} within the search ranges{rest}");
+        }
+        self
     }
 
     /// Tests the best point of a run.
@@ -203,7 +214,7 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
             let by = reached.filter(|[n, of]| *n > 0 && *of > 1);
             let by =
                 by.map_or_else(String::new, |[n, of]| format!(", reached by {n} of {of} descents"));
-            return format!("Minimum found ({measure}){by}.");
+            return format!("{FOUND} ({measure}){by}.");
         }
         EndingKind::StepLimit => "the step limit of the descent was reached",
         EndingKind::Budget => "the budget was exhausted",
@@ -239,7 +250,7 @@ fn at_limits(
         kind: EndingKind::Minimum,
         relative_offset: relative,
         reached,
-        words: format!("Minimum found at the limit of {}{measure}.", constraints.join(" and ")),
+        words: format!("{FOUND} at the limit of {}{measure}.", constraints.join(" and ")),
         derivatives: Some(derivatives(found)),
         simulations: found.simulations,
     })
@@ -249,7 +260,7 @@ fn by_holding(run: &Run) -> String {
     let names: Vec<&str> =
         run.conclusion.held.iter().map(|&k| run.problem.parameters[k].name.as_str()).collect();
     format!(
-        "Minimum found: no other value of {} is better when the others are fitted again. The \
+        "{FOUND}: no other value of {} is better when the others are fitted again. The \
          objective has a kink or is flat there, so that its derivative does not show the minimum.",
         names.join(" and ")
     )
@@ -257,7 +268,7 @@ fn by_holding(run: &Run) -> String {
 
 fn by_curvature(offset: f64) -> String {
     format!(
-        "Minimum found by second derivatives (a Newton step moves the parameters by {} standard \
+        "{FOUND} by second derivatives (a Newton step moves the parameters by {} standard \
          errors): the first derivatives vanish or jump there.",
         significant(offset, 2)
     )

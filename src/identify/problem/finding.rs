@@ -17,7 +17,7 @@ pub enum FindingKind {
     PracticallyNonIdentifiable,
     /// Limits of a parameter that are not those of a standard error.
     Interval,
-    /// A parameter lies at an end of its range.
+    /// A parameter lies at an end of its range, or no value in its range fits.
     AtBound,
     /// Strongly correlated parameters.
     Correlated,

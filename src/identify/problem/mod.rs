@@ -38,6 +38,7 @@ mod parts;
 mod portable;
 mod profile;
 mod profiled;
+mod range_notes;
 mod refit;
 mod run;
 mod saddle;

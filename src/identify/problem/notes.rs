@@ -150,8 +150,8 @@ fn about_parameters(
         }
         findings.push(Finding::new(kind, sentence).parameters(names));
     }
-    for (parameter, judged) in solution.parameters.iter().zip(judged) {
-        findings.extend(about_parameter(parameter, judged));
+    for (k, judged) in judged.iter().enumerate() {
+        findings.extend(about_parameter(solution, k, judged));
     }
     findings.extend(super::valley::determined(solution, statistics));
     let pairs = solution.strongly_correlated();

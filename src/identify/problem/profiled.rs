@@ -133,12 +133,12 @@ impl Solution {
                 continue;
             }
             let judged = self.adopt(k, profile, found.simulations);
-            let own = self.parameters[k].clone();
+            let name = self.parameters[k].name.clone();
             // What was said before of it alone.
             self.findings.retain(|finding| {
-                !(finding.kind.is_about_profile() && finding.parameters == [own.name.clone()])
+                !(finding.kind.is_about_profile() && finding.parameters == [name.clone()])
             });
-            let findings = about_parameter(&own, &judged);
+            let findings = about_parameter(self, k, &judged);
             self.findings.extend(findings);
         }
         if !missing.is_empty() {

@@ -76,6 +76,7 @@ impl Solution {
         };
         let about = (&statistics, &effects[..], &judged[..]);
         solution.findings = super::notes::findings(&solution, run, about, &simulated);
+        solution.put_ranges_first();
         if is_at_limit {
             solution.drop_intervals();
         }
@@ -139,7 +140,9 @@ impl Solution {
 
     /// Adds how the run ended, and all simulations beside the search.
     fn add_ending(&mut self, run: &Run, best: &Best, statistics: &Statistics) {
-        self.outcome.ending = Ending::of(run, &best.values);
+        let ending = Ending::of(run, &best.values);
+        let is_at_end = self.parameters.iter().any(|own| own.at_bound);
+        self.outcome.ending = if is_at_end { ending.within_ranges() } else { ending };
         self.outcome.descents = ending::descents(run);
         if self.outcome.ending.kind == EndingKind::Minimum {
             let limit = statistics.limit_of_squares();

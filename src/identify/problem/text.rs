@@ -16,6 +16,11 @@ const HEADING: [&str; 7] =
 impl Solution {
     /// The report that ends a run.
     pub fn text(&self) -> String {
+        self.text_after(&[])
+    }
+
+    /// The same on a screen that shows these sentences already.
+    pub fn text_after(&self, said: &[String]) -> String {
         let mut text = format!("\n{}\n\n{}\n", self.subject.title, self.parameter_table());
         if self.profiles.is_some() {
             let row = |own: &SolvedParameter| {
@@ -31,11 +36,10 @@ impl Solution {
             // Writing into a String cannot fail.
             _ = writeln!(text, "  {label:<12} {value}");
         }
-        if !self.findings.is_empty() {
-            text.push('\n');
-        }
-        for finding in &self.findings {
-            _ = writeln!(text, "  {}", finding.sentence);
+        let new = self.findings.iter().filter(|finding| !said.contains(&finding.sentence));
+        for (k, finding) in new.enumerate() {
+            let gap = if k == 0 { "\n" } else { "" };
+            _ = writeln!(text, "{gap}  {}", finding.sentence);
         }
         text += &self.inferred.text();
         text

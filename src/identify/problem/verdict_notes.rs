@@ -1,5 +1,6 @@
 //! Sentences about single parameters. They say what the verdict says, and where it comes from.
 
+use super::range_notes::{is_upper, remedy};
 use super::verdicts::{ByProfile, Judged};
 use super::{Finding, FindingKind, Profiles, Severity, Solution, SolvedParameter, Verdict};
 use crate::table::{ends, significant};
@@ -8,8 +9,9 @@ use crate::table::{ends, significant};
 /// one of rounding (5.6e6 in data in kW for a range that was meant in W).
 const MANY: f64 = 1e3;
 
-/// What must be known about a parameter.
-pub(crate) fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> Vec<Finding> {
+/// What must be known about parameter `k`.
+pub(super) fn about_parameter(solution: &Solution, k: usize, judged: &Judged) -> Vec<Finding> {
+    let parameter = &solution.parameters[k];
     let name = &parameter.name;
     let missing = |sentence: String| {
         let finding = Finding::new(FindingKind::Missing, sentence);
@@ -21,7 +23,7 @@ pub(crate) fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> V
             Some(Verdict::PracticallyNonIdentifiable) => vec![undetermined(parameter, false)],
             _ => Vec::new(),
         },
-        Judged::Profile(found) => by_profile(parameter, found),
+        Judged::Profile(found) => by_profile(parameter, found, solution.parameters.len() == 1),
         Judged::Budget(budget) => missing(format!(
             "What these data say of {name} was not computed: its profile likelihood takes more \
              than {budget} simulations. `--profile` allows more."
@@ -38,10 +40,10 @@ pub(crate) fn about_parameter(parameter: &SolvedParameter, judged: &Judged) -> V
     }
 }
 
-/// The same, where a profile has replaced what was said before.
-fn by_profile(parameter: &SolvedParameter, found: &ByProfile) -> Vec<Finding> {
+/// The same, where a profile has replaced what was said before. `alone`: there is no other parameter.
+fn by_profile(parameter: &SolvedParameter, found: &ByProfile, alone: bool) -> Vec<Finding> {
     if let Some(pull) = found.pull {
-        return vec![beyond(parameter, pull)];
+        return vec![beyond(parameter, pull, alone)];
     }
     let mut findings = Vec::new();
     if parameter.verdict == Some(Verdict::PracticallyNonIdentifiable) {
@@ -70,14 +72,14 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
     let name = &parameter.name;
     let [min, max] = parameter.range.map(|end| significant(end, 4));
     let [low, high] = parameter.interval.unwrap_or(parameter.range).map(|end| significant(end, 4));
-    let is_upper = parameter.value - parameter.range[0] > parameter.range[1] - parameter.value;
-    let (side, end) = if is_upper { ("upper", &max) } else { ("lower", &min) };
+    let (side, end) = if is_upper(parameter) { ("upper", &max) } else { ("lower", &min) };
     let stands = match (parameter.at_bound, falls) {
         (false, _) => String::new(),
         (true, false) => format!(" The best value is the {side} end of the range."),
         (true, true) => format!(
             " The best value is the {side} end {end} of the range, and the objective still falls \
-             there: widen the range, or question the model if the bound is physical."
+             there. {}",
+            remedy(parameter)
         ),
     };
     let what = match parameter.open {
@@ -102,21 +104,22 @@ fn undetermined(parameter: &SolvedParameter, falls: bool) -> Finding {
 }
 
 /// That the optimum lies beyond the end of the range, where the linear model is true of it.
-fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2]) -> Finding {
-    let [min, max] = parameter.range;
-    let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
-    let end = significant(if upper { max } else { min }, 5);
-    let side = if upper { "upper" } else { "lower" };
+fn beyond(parameter: &SolvedParameter, [pull, limit]: [f64; 2], alone: bool) -> Finding {
+    let [min, max] = parameter.range.map(|end| significant(end, 5));
+    let (side, end) = if is_upper(parameter) { ("upper", max) } else { ("lower", min) };
     let name = &parameter.name;
     let distance = match pull < MANY {
         true => significant(pull, 2),
         false => format!("more than {MANY}"),
     };
+    let others = match alone {
+        true => String::new(),
+        false => format!(", and the intervals of the others are valid for {name} = {end}"),
+    };
     let sentence = format!(
         "{name} lies at the {side} end {end} of its search range: the optimum lies beyond it, by \
-         {distance} standard errors for a linear model, so it has no interval, and the intervals of \
-         the others are valid for {name} = {end}. Widen the range, or question the model if the bound \
-         is physical."
+         {distance} standard errors for a linear model, so it has no interval{others}. {}",
+        remedy(parameter)
     );
     let finding = Finding::new(FindingKind::AtBound, sentence);
     finding.parameters([name.as_str()]).statistic(pull, limit)

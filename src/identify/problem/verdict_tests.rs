@@ -413,3 +413,40 @@ fn the_table_says_what_the_verdict_says() {
     assert_eq!(kinds, 1, "{}", sentences(&solution));
     assert_eq!(solution.findings[0].kind, FindingKind::PracticallyNonIdentifiable);
 }
+
+/// The model reaches the data only outside the range: whichever end that is, at whichever scale, the
+/// report begins with the range, and says nothing that a wider range would change.
+#[test]
+fn a_range_that_keeps_the_model_from_the_data_is_named_first() {
+    let slow: Formula = |p, x| 10.0 * (-p[0] * x).exp();
+    let late: Formula = |p, x| 10.0 * (-p[0] * (x + 1e3)).exp();
+    let growing: Formula = |p, x| (p[0] * x).exp();
+    let lagging: Formula = |p, x| 3.0 * (1.0 - (-x / p[0]).exp());
+    type Case = (Formula, [f64; 2], fn(f64) -> f64, &'static str);
+    let cases: [Case; 4] = [
+        (slow, [2.0, 200.0], |x| 10.0 * (-0.1 * x).exp(), "down to 0.02"),
+        (late, [0.1, 10.0], |x| 10.0 * (-1e-3 * (x + 1e3)).exp(), "may lie outside"),
+        (growing, [0.01, 0.1], |x| (2.0 * x).exp(), "up to 0.19"),
+        (lagging, [1e-3, 0.1], |x| 3.0 * (1.0 - (-x / 8.0).exp()), "up to 10"),
+    ];
+    for (formula, range, data, remedy) in cases {
+        let solution = solved(posed(formula, &[("k", range)], data));
+        let said = sentences(&solution);
+        assert_eq!(solution.findings[0].kind, FindingKind::AtBound, "{said}");
+        assert!(solution.findings[0].sentence.contains("Widen the range"), "{said}");
+        assert!(said.contains(remedy) && !said.contains("any value"), "{said}");
+        let k = parameter(&solution, "k");
+        assert_eq!((k.verdict, k.interval, k.open), (None, None, [false; 2]), "{said}");
+        let ending = &solution.outcome.ending;
+        assert_eq!(ending.words.contains("within the search ranges"), k.at_bound, "{ending:?}");
+    }
+}
+
+/// A bound that the data confirm is not blamed: the fit is as good as it can be.
+#[test]
+fn a_range_that_holds_the_best_value_is_not_blamed() {
+    let ranges = [("b", [-10.0, 10.0]), ("c", [0.0, 5.0])];
+    let solution = solved(posed(|p, x| p[0] + p[1] * x, &ranges, |x| 2.0 - 0.004 * x));
+    let said = sentences(&solution);
+    assert!(!said.contains("drawn around") && said.contains("it is at most"), "{said}");
+}
