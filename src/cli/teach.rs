@@ -19,6 +19,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often many runs say how far they are.
+const SHOWN_EVERY: Duration = Duration::from_secs(2);
 
 /// Arguments of `gapi teach`.
 #[derive(Debug, Args)]
@@ -155,15 +159,24 @@ fn compare_many(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
         let message = "a recorded run cannot be repeated; give the script instead";
         return Err(Trouble::Message(message.to_owned()));
     }
+    let all = (arguments.what_if.len() + 1) * arguments.runs;
+    let begun = Instant::now();
+    let mut said = begun;
     let changes = arguments.what_if.iter().map(|statement| Some(statement.as_str()));
-    let repeated = [None].into_iter().chain(changes).map(|statement| {
+    let repeated = [None].into_iter().chain(changes).enumerate().map(|(place, statement)| {
+        let name = statement.unwrap_or("original script").to_owned();
         let curves = (0..arguments.runs).map(|run| {
+            let number = place * arguments.runs + run + 1;
+            if said.elapsed() >= SHOWN_EVERY {
+                said = Instant::now();
+                let seconds = begun.elapsed().as_secs();
+                terminal::eprint(&format!("run {number} of {all}, {name}: {seconds} s\n"));
+            }
             let change = statement.map(|statement| (arguments.generation, statement));
             let again = Again { change, run: Some(run) };
             recorded(arguments, global, again).map(|trace| bands::curve(&trace))
         });
-        let name = statement.unwrap_or("original script").to_owned();
-        Ok(Repeated { name, curves: curves.collect::<Result<_, Trouble>>()? })
+        Ok(Repeated { curves: curves.collect::<Result<_, Trouble>>()?, name: name.clone() })
     });
     let repeated = repeated.collect::<Result<Vec<_>, Trouble>>()?;
     let figure = bands::figure(&repeated);

@@ -186,6 +186,10 @@ impl Screen for Terminal {
         });
     }
 
+    fn is_one_screen(&self) -> bool {
+        std::io::stdout().is_terminal() && std::io::stderr().is_terminal()
+    }
+
     fn progress(&mut self, progress: &Progress) {
         let is_hidden = self.quiet || self.aside || self.live.is_shown();
         if is_hidden || !std::io::stderr().is_terminal() {

@@ -401,6 +401,10 @@ impl Screen for SystemWorld {
         self.screen.eprint(text);
     }
 
+    fn is_one_screen(&self) -> bool {
+        self.screen.is_one_screen()
+    }
+
     fn progress(&mut self, progress: &Progress) {
         self.screen.progress(progress);
     }

@@ -150,9 +150,10 @@ impl Session {
         self.output.record(text);
     }
 
-    /// As [`Session::print`], for a report; `brief` is what a brief transcript has of it.
-    pub(crate) fn print_report(&mut self, whole: &str, brief: &str) {
-        self.world.print(whole);
+    /// As [`Session::print`], for a report of which the screen shows `shown`; `brief` is what a brief
+    /// transcript has of it.
+    pub(crate) fn print_report(&mut self, shown: &str, whole: &str, brief: &str) {
+        self.world.print(shown);
         self.output.record_report(whole, brief);
     }
 

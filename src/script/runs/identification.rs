@@ -495,11 +495,13 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
         session.compared(&measured, &study.model, (&study.y, is_relative));
     }
     let notes = std::mem::take(&mut session.extension::<Identification>().data_notes);
-    solution.findings.extend(notes.into_iter().map(about_data));
+    solution.findings.extend(notes.iter().cloned().map(about_data));
     let now = session.world.monotonic_seconds();
     let seconds = now - started.unwrap_or(now);
-    let text = format!("{}  {:<12} {seconds:.2} s\n", solution.text(), "time");
-    session.print_report(&text, &solution.brief());
+    let said = if session.world.is_one_screen() { notes } else { Vec::new() };
+    let timed = |text: String| format!("{text}  {:<12} {seconds:.2} s\n", "time");
+    let [shown, whole] = [solution.text_after(&said), solution.text()].map(timed);
+    session.print_report(&shown, &whole, &solution.brief());
     write_files(session, &solution, seconds)
 }
 

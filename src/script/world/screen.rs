@@ -13,6 +13,11 @@ pub trait Screen {
     }
     /// Text for standard error (diagnostics); no line end is added.
     fn eprint(&mut self, text: &str);
+    /// Whether standard output and standard error are shown on the same screen, so that what one of
+    /// them has said need not be said by the other.
+    fn is_one_screen(&self) -> bool {
+        false
+    }
     /// Shows how far a long piece of work is.
     fn progress(&mut self, progress: &Progress);
     /// Shows in a line what is being done, from any thread; an empty text takes it away. `None`

@@ -90,14 +90,27 @@ fn terminal(file: &str, title: &str) -> String {
     let width = CHARACTER[0] * columns as f64;
     let height = CHARACTER[1] * lines.len() as f64;
     let mut svg = Svg::new(width + 16.0, height + 16.0, title, Letters::Text);
+    let mut widths = Vec::new();
     for (k, line) in lines.iter().enumerate() {
-        let padded = format!("{line:columns$}").replace(' ', "\u{a0}");
-        let at = (8.0, 20.0 + CHARACTER[1] * k as f64);
-        svg.text(at, Anchor::Start, writing(13.0), &padded);
+        let mut column = 0;
+        for word in line.split(' ') {
+            let length = word.chars().count();
+            if length > 0 {
+                let at = (8.0 + CHARACTER[0] * column as f64, 20.0 + CHARACTER[1] * k as f64);
+                svg.text(at, Anchor::Start, writing(13.0), word);
+                widths.push(CHARACTER[0] * length as f64);
+            }
+            column += length + 1;
+        }
     }
-    // Every line has the same width, whatever face the viewer has for the patterns of dots.
-    let text = svg.finish().replace("<text ", &format!("<text textLength=\"{width}\" "));
-    text.replacen(
+    // Each word has its place and its width, whatever face the viewer has.
+    let drawn = svg.finish();
+    let (head, words) = drawn.split_once("<text ").expect("words");
+    let of_width = |(word, width): (&str, &f64)| {
+        format!("<text textLength=\"{width:.1}\" lengthAdjust=\"spacingAndGlyphs\" {word}")
+    };
+    let words: String = words.split("<text ").zip(&widths).map(of_width).collect();
+    format!("{head}{words}").replacen(
         "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif",
         "'DejaVu Sans Mono', 'Liberation Mono', monospace",
         1,

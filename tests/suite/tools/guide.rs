@@ -52,10 +52,12 @@ fn is_update() -> bool {
 /// Lines of a command that the guide shows in full; of longer output it shows parts, with `...`.
 const WHOLE: usize = 45;
 
-/// What a command prints, but for the time that it took.
+/// What a command prints, but for the time that it took, and for how far it was after a while.
 fn without_time(said: &str) -> String {
+    let progress = regex::Regex::new(r"(?m)^run \d+ of \d+, .*: \d+ s\n").unwrap();
     let time = regex::Regex::new(r"(?m)^(  time +)[0-9.]+ s$").unwrap();
-    time.replace_all(said, "${1}0.12 s").trim_end().to_owned()
+    let said = progress.replace_all(said, "");
+    time.replace_all(&said, "${1}0.12 s").trim_end().to_owned()
 }
 
 /// Whether these lines are the whole output: a line `...` stands for any number of lines.

@@ -268,6 +268,29 @@ fn a_report_has_all_its_words_on_a_terminal() {
     assert_eq!(words(&on_terminal), words(&kept));
 }
 
+/// What was said of the data is in the report, but not twice on the same screen.
+#[test]
+fn notes_on_data_stand_once_on_a_screen() {
+    const PROBLEM: &str = "model = \"Decay\"\nfiles = [\"Decay.mo\"]\n[parameters]\n\
+        k = { min = 0.1, max = 10 }\n[[experiment]]\ndata = \"d.csv\"\noutputs = { x = \"x\" }\n";
+    let here = folder(&[
+        (
+            "Decay.mo",
+            "model Decay parameter Real k = 1; Real x(start = 1, fixed = true); equation \
+             der(x) = -k*x; end Decay;\n",
+        ),
+        ("d.csv", "time [ms],x\n0,1.01\n500,0.59\n1000,0.37\n2000,0.14\n"),
+        ("p.toml", PROBLEM),
+    ]);
+    let arguments = &["identify", "p.toml", "--plain"];
+    let count = |text: &str| text.matches("converted from ms").count();
+    let screen = lines(&shown(&here, arguments)).join(" ");
+    assert_eq!(count(&screen), 1, "{screen}");
+    let output = command(here.path(), arguments).output().expect("it runs");
+    let [out, errors] = [output.stdout, output.stderr].map(|own| String::from_utf8(own).unwrap());
+    assert_eq!([count(&out), count(&errors)], [1, 1], "{out}{errors}");
+}
+
 /// What a script prints is text for a terminal, not commands; elsewhere it is kept as it is.
 #[test]
 fn printed_text_carries_no_commands_to_the_terminal() {

@@ -226,8 +226,10 @@ impl Source<'_> {
     ) -> Result<(), Vec<Diagnostic>> {
         let (file, places) = (self.file, &self.entry.places);
         let outputs = self.entry.outputs.keys().map(|name| (name.as_str(), places.column(name)));
-        let names: Vec<(&str, Span)> = [(x_name, places.x)].into_iter().chain(outputs).collect();
-        parameters::check_variables(&names, model).map_err(|error| vec![error])?;
+        let outputs: Vec<(&str, Span)> = outputs.collect();
+        parameters::check_variables(&[(x_name, places.x)], model)
+            .map_err(|error| vec![self.entry.about_x(error)])?;
+        parameters::check_variables(&outputs, model).map_err(|error| vec![error])?;
         parameters::check_free(session, file, &class.parameters, model)?;
         self.segment.check_initial_values(file, self.entry, model).map_err(|error| vec![error])?;
         parameters::check_taken(file, self.entry, model).map_err(|error| vec![error])?;

@@ -395,6 +395,19 @@ impl ExperimentEntry {
     }
 }
 
+impl ExperimentEntry {
+    /// An error about X, which is a column that no variable has the name of: most often of the times.
+    pub(super) fn about_x(&self, error: Diagnostic) -> Diagnostic {
+        match &self.x {
+            Some(Column::Name(column)) => error.help(format!(
+                "if `{column}` is the column of the times, write `x = {{ variable = \"time\", \
+                 column = \"{column}\" }}`"
+            )),
+            _ => error,
+        }
+    }
+}
+
 impl Column {
     /// With the variable's name for what is not said; of replicates the first one.
     pub(super) fn entry(&self) -> ColumnEntry {

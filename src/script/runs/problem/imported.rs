@@ -216,15 +216,19 @@ fn check_names(
     entry: &ExperimentEntry,
     x_name: &str,
 ) -> Result<(), Diagnostic> {
-    let outputs = entry.outputs.keys().map(|name| (name.as_str(), entry.places.column(name)));
-    for (name, place) in outputs.chain([(x_name, entry.places.x)]) {
-        if name != "time" && model.layout().find(name).is_none() {
-            let known = model.layout().scalars().iter().map(|scalar| scalar.name.as_str());
-            let fault = fault!(BAD_FMU, "`{}` has no variable `{name}`", model.name());
-            return Err(fault.help_if(suggest::did_you_mean(name, known)).at(place));
-        }
+    for name in entry.outputs.keys() {
+        check_name(model, name, entry.places.column(name))?;
     }
-    Ok(())
+    check_name(model, x_name, entry.places.x).map_err(|error| entry.about_x(error))
+}
+
+fn check_name(model: &ImportedModel, name: &str, place: Span) -> Result<(), Diagnostic> {
+    if name == "time" || model.layout().find(name).is_some() {
+        return Ok(());
+    }
+    let known = model.layout().scalars().iter().map(|scalar| scalar.name.as_str());
+    let fault = fault!(BAD_FMU, "`{}` has no variable `{name}`", model.name());
+    Err(fault.help_if(suggest::did_you_mean(name, known)).at(place))
 }
 
 /// Samples of the inputs of an experiment.

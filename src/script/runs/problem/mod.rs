@@ -283,8 +283,8 @@ fn solve_built(
     }
     let is_interrupted = ending.is_interrupted || session.world.interrupted();
     solution.calibrated = calibration.map(|calibration| calibration.model(&solution));
-    solution.findings.extend(notes.into_iter().map(Note::finding));
-    report(session, &folder, &solution, seconds)?;
+    print(session, &mut solution, notes);
+    write(session, &folder, &solution, seconds)?;
     if !is_interrupted {
         keep(session, &run)?;
         keep_finished(session, (&checkpoint, &folder), options, &solution);
@@ -341,15 +341,14 @@ fn finished(journal: &Path) -> PathBuf {
     journal.with_file_name(name.replacen("run", "finished", 1))
 }
 
-/// Prints a solution and writes its files.
-fn report(
-    session: &mut Session,
-    folder: &Path,
-    solution: &Solution,
-    seconds: f64,
-) -> Result<(), Fault> {
-    session.print(&solution.text());
-    write(session, folder, solution, seconds)
+/// Adds these notes, which were said at the beginning of the run, and prints the solution.
+fn print(session: &mut Session, solution: &mut Solution, notes: Vec<Note>) {
+    let said = match session.world.is_one_screen() {
+        true => notes.iter().map(|note| note.sentence.clone()).collect(),
+        false => Vec::new(),
+    };
+    solution.findings.extend(notes.into_iter().map(Note::finding));
+    session.print(&solution.text_after(&said));
 }
 
 /// Makes the solution of a run from its best point, and the statistics; where these are stopped, what was
@@ -638,7 +637,8 @@ pub(super) fn write(
         None => {
             let here = session.world.current_dir();
             let shown = folder.strip_prefix(&here).unwrap_or(folder).display().to_string();
-            session.print_report(&format!("\n  written to {shown}\n"), "");
+            let text = format!("\n  written to {shown}\n");
+            session.print_report(&text, &text, "");
         }
         Some(mut fault) => {
             let (missing, folder) = (missing.join(", "), folder.display());

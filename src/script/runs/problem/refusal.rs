@@ -284,7 +284,14 @@ impl<'t> Place<'t> {
         let (before, _) = self.line();
         let key = before.trim_end().trim_end_matches('=').trim_end();
         match key.rsplit([' ', '{', ',']).next().unwrap_or_default() {
-            "outputs" => Some("write `outputs = { T = \"column\" }`".to_owned()),
+            "outputs" => Some(format!(
+                "write `outputs = {{ {} }}`",
+                same_names(after).unwrap_or_else(|| "T = \"column\"".to_owned())
+            )),
+            name if message.contains("sequence, expected a range") => {
+                let [min, max] = pair(after)?;
+                Some(format!("write `{name} = {{ min = {min}, max = {max} }}`"))
+            }
             "inputs" => Some("write `inputs = { u = \"column\" }`".to_owned()),
             "start" => Some(
                 "`start` of an experiment gives states their initial values: `start = { T = 25 }`"
@@ -302,6 +309,28 @@ impl<'t> Place<'t> {
             _ => None,
         }
     }
+}
+
+/// Columns in a list of names, each for the variable of its name.
+fn same_names(after: &str) -> Option<String> {
+    let list = list(after)?;
+    let is_name = |own: &&str| own.len() > 2 && own.starts_with('"') && own.ends_with('"');
+    let named = |own: &str| format!("{} = {own}", own.trim_matches('"'));
+    list.iter()
+        .all(is_name)
+        .then(|| list.iter().map(|own| named(own)).collect::<Vec<_>>().join(", "))
+}
+
+/// The two numbers of a list.
+fn pair(after: &str) -> Option<[&str; 2]> {
+    let pair: [&str; 2] = list(after)?.try_into().ok()?;
+    pair.iter().all(|own| own.parse::<f64>().is_ok()).then_some(pair)
+}
+
+/// The entries of a list within one line.
+fn list(after: &str) -> Option<Vec<&str>> {
+    let (inner, _) = after.trim_start_matches([' ', '=']).strip_prefix('[')?.split_once(']')?;
+    Some(inner.split(',').map(str::trim).filter(|own| !own.is_empty()).collect())
 }
 
 /// The number of a line that is written with a decimal comma, with a point.
@@ -352,7 +381,7 @@ mod tests {
     #[test]
     fn parameters_are_answered_without_names_of_types() {
         let all = [
-            ("k = [0.001, 1]", ["array", "min = 0.1"]),
+            ("k = [0.001, 1]", ["array", "write `k = { min = 0.001, max = 1 }`"]),
             ("k = 2", ["integer `2`", "fixed = 2"]),
             ("k = { min = 0,1, max = 20 }", ["decimal point", "`0.1`"]),
             ("k = { min : 0.1, max = 20 }", ["`:`", "write `=`"]),
@@ -377,7 +406,7 @@ mod tests {
     fn experiments_are_answered_with_where_entries_belong() {
         let all = [
             ("interpolation = \"linear\"", ["belongs to an input", "inputs ="]),
-            ("outputs = [\"T\"]", ["array", "outputs = {"]),
+            ("outputs = [\"T\"]", ["array", "outputs = { T = \"T\" }"]),
             ("outputs = { T = \"T\", sigma = 0.2 }", ["`{ column", "0.2"]),
             ("outputs = { T = { column = \"T\", weight = \"w\" } }", ["`weight`", "sigma"]),
             ("start = 100", ["100", "start = { T = 25 }"]),

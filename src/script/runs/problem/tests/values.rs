@@ -239,6 +239,12 @@ fn what_cannot_be_estimated_is_refused_before_the_first_simulation() {
     let k = "k = { min = 0.1, max = 9 }";
     let other = with(&format!("{k}\ntwice = {{ min = 1, max = 9, initial = true }}"), outputs);
     says(&other, &["`twice` is not a state", "`T[1]`", "`T[2]`"]);
+    let dated = found(
+        &format!("model = \"Rods\"\n[parameters]\n{k}"),
+        "x = \"Zeit\"\noutputs = { y = \"y\" }",
+        &table("Zeit,y", |t| (-t).exp().to_string()),
+    );
+    says(&dated, &["`x = { variable = \"time\", column = \"Zeit\" }`"]);
     says(&with(k, "outputs = { yy = \"y\" }"), &["`Rods` has no variable `yy`", "`y`"]);
     says(&with(k, "outputs = { T = \"y\" }"), &["no variable `T`", "`\"T[1]\"`"]);
     says(
