@@ -10,10 +10,11 @@ use std::sync::Arc;
 
 impl Instance {
     /// ∂unknowns/∂knowns at the values at hand, by value references: rows of the unknowns, columns of
-    /// the knowns, which are continuous states and inputs, parameters, and the time.
+    /// the knowns, which are continuous states and inputs, parameters, and the time; during the
+    /// initialization parameters and start values alone (FMI 3.0.2 §2.2.11).
     fn jacobian(&mut self, unknowns: &[u32], knowns: &[u32]) -> Result<DMatrix<f64>, Wrong> {
-        let phases = [Phase::Event, Phase::Continuous, Phase::Step];
-        self.expect(&phases, "derivatives follow the initialization")?;
+        let phases = [Phase::Initialization, Phase::Event, Phase::Continuous, Phase::Step];
+        self.expect(&phases, "derivatives are known from the initialization on")?;
         let columns: Vec<Column> =
             knowns.iter().map(|known| self.column(*known)).collect::<Result<_, _>>()?;
         let mut variables: Vec<usize> = Vec::new();
@@ -22,6 +23,8 @@ impl Instance {
             rows.push(self.row(*unknown, &mut variables)?);
         }
         let n = self.state.x.len();
+        // The derivatives of the initial states come first.
+        let first = if self.state.phase == Phase::Initialization { n } else { 0 };
         let mut out = DMatrix::zeros(unknowns.len(), knowns.len());
         for (at, column) in columns.iter().enumerate() {
             let all = self.column_of(*column, &variables)?;
@@ -29,9 +32,10 @@ impl Instance {
                 out[(place, at)] = match (*row, *column) {
                     (Row::Time, Column::Time) => 1.0,
                     (Row::State(own), Column::State(state, sign)) if own == state => sign,
+                    (Row::State(own), Column::Initial(_)) => all[own],
                     (Row::Time | Row::State(_), _) => 0.0,
-                    (Row::Derivative(own), _) => all[own],
-                    (Row::Variable(own), _) => all[n + own],
+                    (Row::Derivative(own), _) => all[first + own],
+                    (Row::Variable(own), _) => all[first + n + own],
                 };
             }
         }
@@ -81,6 +85,10 @@ impl Instance {
             Column::Parameter(at) => {
                 let code = self.code_of(at, variables)?;
                 self.state.system.parameter_jacobian(&code, self.state.time, &self.state.x)
+            }
+            Column::Initial(at) => {
+                let code = self.code_of(at, variables)?;
+                self.state.system.initial_jacobian(&code, self.state.time)
             }
         };
         let found = found.map_err(|failure| self.explained(explained(failure)))?;
@@ -147,6 +155,16 @@ impl Instance {
 
     fn column(&self, reference: u32) -> Result<Column, Wrong> {
         let variable = self.model.content.variables.get(reference as usize);
+        if self.state.phase == Phase::Initialization {
+            let setter = variable.map(|variable| variable.setter);
+            let Some(Setter::Parameter(at) | Setter::Input { start: at, .. }) = setter else {
+                return Err(Wrong::Error(format!(
+                    "derivatives during the initialization are known by parameters, inputs and start \
+                     values; the variable with value reference {reference} is none"
+                )));
+            };
+            return Ok(Column::Initial(at));
+        }
         let found = variable.and_then(|variable| match (variable.place, variable.setter) {
             (_, Setter::Input { state, is_negated, .. }) => {
                 Some(Column::State(state, if is_negated { -1.0 } else { 1.0 }))
@@ -198,6 +216,8 @@ enum Column {
     Time,
     /// A parameter by its position.
     Parameter(usize),
+    /// A parameter or start value by its position, during the initialization.
+    Initial(usize),
 }
 
 /// What an unknown stands for.

@@ -236,6 +236,7 @@ impl<'a> CoSimulation<'a> {
 
     fn record(&mut self, t: f64, out: &mut Trajectory) -> Result<(), CallError> {
         self.readings.read(self.component, &mut self.row)?;
+        self.inputs.read(t, &mut self.row);
         out.push(t, &self.row);
         if let Some(reached) = &self.settings.reached {
             reached.store(t.to_bits(), Ordering::Relaxed);

@@ -5,6 +5,8 @@
 //! s' = ∂f/∂x s + ∂f/∂p,     s(0) = 0, or 1 for the initial value of a state
 //! ```
 //!
+//! Initial values that the unit calculates have their derivatives from the initialization mode.
+//!
 //! Nothing tells how the time of an event depends on a parameter: a unit has them as long as there are
 //! none.
 
@@ -20,6 +22,8 @@ pub struct Directions {
     pub states: Vec<u32>,
     /// Their derivatives.
     pub derivatives: Vec<u32>,
+    /// The numbers of the states whose initial values the unit calculates.
+    pub calculated: Vec<usize>,
     /// What is recorded.
     pub observed: Vec<u32>,
     /// What varies.
@@ -64,13 +68,7 @@ impl Directions {
         if !derivatives.iter().chain(&states).all(|at| variables[*at].dimensions.is_empty()) {
             return Err("its states are arrays".to_owned());
         }
-        let initial = |at: &usize| variables[*at].initial == Some(Initial::Exact);
-        if let Some(at) = states.iter().find(|at| !initial(at)) {
-            return Err(format!(
-                "the FMU calculates the initial value of `{}`",
-                variables[*at].name
-            ));
-        }
+        let is_calculated = |at: &usize| variables[states[*at]].initial != Some(Initial::Exact);
         let float = |place: &Place| {
             let own = &variables[place.variable];
             match own.kind.is_float() && own.dimensions.is_empty() {
@@ -92,9 +90,20 @@ impl Directions {
         Ok(Directions {
             states: references(&states),
             derivatives: references(&derivatives),
+            calculated: (0..states.len()).filter(is_calculated).collect(),
             observed: plan.observed.iter().map(float).collect::<Result<_, _>>()?,
             varied: plan.varied.iter().map(direction).collect::<Result<_, String>>()?,
         })
+    }
+
+    /// The states whose initial values the unit calculates, and what a direction varies.
+    #[cfg(feature = "host")]
+    pub(super) fn at_start(&self, direction: usize) -> (Vec<u32>, u32) {
+        let calculated = self.calculated.iter().map(|state| self.states[*state]).collect();
+        match self.varied[direction] {
+            Direction::Parameter(reference) => (calculated, reference),
+            Direction::Start(state) => (calculated, self.states[state]),
+        }
     }
 
     /// What is known along a direction, with the derivatives of the states along it.

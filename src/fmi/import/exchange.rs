@@ -185,9 +185,39 @@ impl<'a> ExchangeSystem<'a> {
         self.component.enter_initialization(Some(self.settings.tolerance), span)?;
         self.inputs.seek(t);
         self.inputs.set(self.component, t, true)?;
+        let n = self.n_differential();
+        let (y, sensitivities) = y.split_at_mut(n);
+        self.begin_sensitivities(sensitivities)?;
         self.component.exit_initialization()?;
         self.update(y)?;
         self.completed = t;
+        Ok(())
+    }
+
+    /// Derivatives of the initial values by what varies, one column after the other.
+    fn begin_sensitivities(&mut self, out: &mut [f64]) -> Result<(), CallError> {
+        out.fill(0.0);
+        let Some((own, _)) = &self.directions else { return Ok(()) };
+        let n = own.states.len();
+        let mut found = vec![0.0; own.calculated.len()];
+        for (at, direction) in own.varied.iter().enumerate() {
+            if let Direction::Start(state) = direction {
+                out[n * at + state] = 1.0;
+            }
+            if found.is_empty() {
+                continue;
+            }
+            let (unknowns, known) = own.at_start(at);
+            let computed =
+                self.component.directional_derivative([&unknowns, &[known]], &[1.0], &mut found);
+            if computed.is_err() {
+                self.refusal = Some("the FMU calculates initial values, without derivatives");
+            }
+            computed?;
+            for (state, value) in own.calculated.iter().zip(&found) {
+                out[n * at + state] = *value;
+            }
+        }
         Ok(())
     }
 
@@ -277,15 +307,7 @@ impl Residual for ExchangeSystem<'_> {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let begun = self.begin_simulation(t, y);
-        self.done(begun)?;
-        let n = self.n_differential();
-        y[n..].fill(0.0);
-        for (at, direction) in self.varied().iter().enumerate() {
-            if let Direction::Start(state) = direction {
-                y[n * (1 + at) + state] = 1.0;
-            }
-        }
-        Ok(())
+        self.done(begun)
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

@@ -3,7 +3,7 @@
 
 use super::binary::Component;
 use super::calls::CallError;
-use super::layout::{Layout, starts};
+use super::layout::{Layout, Place, starts};
 use super::plan::Samples;
 use crate::Description;
 use crate::description::{Kind, Variability};
@@ -23,6 +23,8 @@ struct Followed<'a> {
     piece: Option<usize>,
     /// Its variable among those of the inputs.
     variable: usize,
+    /// Which of the readings it is, where these are of its own value.
+    reading: Option<usize>,
 }
 
 struct InputVariable {
@@ -39,7 +41,7 @@ impl<'a> Inputs<'a> {
         description: &Description,
         layout: &Layout,
         all: &'a [Samples],
-        numbers: &[(super::Place, f64)],
+        numbers: &[(Place, f64)],
     ) -> Inputs<'a> {
         let mut known: BTreeMap<usize, usize> = BTreeMap::new();
         let mut inputs = Inputs { followed: Vec::new(), variables: Vec::new() };
@@ -64,9 +66,27 @@ impl<'a> Inputs<'a> {
                 });
                 inputs.variables.len() - 1
             });
-            inputs.followed.push(Followed { samples, piece: None, variable });
+            inputs.followed.push(Followed { samples, piece: None, variable, reading: None });
         }
         inputs
+    }
+
+    /// The same inputs; among readings of these scalars are their own.
+    pub fn read_among(mut self, observed: &[Place]) -> Inputs<'a> {
+        for input in &mut self.followed {
+            input.reading = observed.iter().position(|place| *place == input.samples.place);
+        }
+        self
+    }
+
+    /// Writes the values at `t` to the readings of inputs: within a step of co-simulation the instance
+    /// has those of its beginning.
+    pub fn read(&self, t: f64, readings: &mut [f64]) {
+        for input in &self.followed {
+            if let Some(reading) = input.reading {
+                readings[reading] = input.value(t);
+            }
+        }
     }
 
     /// Chooses the pieces that hold from `t` on.
@@ -131,11 +151,10 @@ impl Followed<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::Place;
 
     fn value(samples: &Samples, seek: f64, t: f64) -> f64 {
         let mut inputs = Inputs {
-            followed: vec![Followed { samples, piece: None, variable: 0 }],
+            followed: vec![Followed { samples, piece: None, variable: 0, reading: None }],
             variables: Vec::new(),
         };
         inputs.seek(seek);

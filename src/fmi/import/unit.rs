@@ -163,6 +163,8 @@ impl Run<'_> {
         let statistics = match plan.kind {
             InterfaceKind::CoSimulation => {
                 let how = (*settings, *has_event_mode);
+                let (inputs, readings) = parts;
+                let parts = (inputs.read_among(&plan.observed), readings);
                 let mut simulation = CoSimulation::new(component, description, parts, how);
                 simulation.run(out).map_err(of_stopped)?
             }

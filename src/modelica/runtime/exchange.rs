@@ -158,21 +158,60 @@ impl System {
         t: f64,
         x: &[f64],
     ) -> Result<DMatrix<f64>, Failure> {
-        let mut own = self.clone();
-        own.differentiate(Some(code));
+        let mut own = self.differentiated(code);
         for register in &code.cleared {
             own.registers[*register as usize] = 0.0;
         }
         run(&code.constants, &mut own.registers)?;
-        own.solve_loops(true);
-        let (n, m) = (x.len(), code.n_columns());
+        let mut y = vec![0.0; x.len() * (1 + code.n_columns())];
+        y[..x.len()].copy_from_slice(x);
+        own.total_derivatives(code, t, &y)
+    }
+
+    /// The derivatives of the initial states by the parameters of a code, and below them those that
+    /// [`System::parameter_jacobian`] has, total ones: the initial states move with the parameters.
+    ///
+    /// # Errors
+    /// The initial system has no solution, or something has no value there.
+    pub fn initial_jacobian(
+        &self,
+        code: &Arc<SensitivityCode>,
+        t: f64,
+    ) -> Result<DMatrix<f64>, Failure> {
+        let mut own = self.differentiated(code);
+        let (n, m) = (own.n_differential(), code.n_columns());
         let mut y = vec![0.0; n * (1 + m)];
-        y[..n].copy_from_slice(x);
-        let mut observed = vec![0.0; own.n_observed()];
+        own.initialize(t, &mut y)?;
+        let below = own.total_derivatives(code, t, &y)?;
+        let mut all = below.insert_rows(0, n, 0.0);
+        for column in 0..m {
+            all.view_mut((0, column), (n, 1)).copy_from_slice(&y[n * (1 + column)..][..n]);
+        }
+        Ok(all)
+    }
+
+    /// A copy that carries the derivatives of a code, with its loops solved inside.
+    fn differentiated(&self, code: &Arc<SensitivityCode>) -> System {
+        let mut own = self.clone();
+        own.differentiate(Some(code));
+        own.solve_loops(true);
+        own
+    }
+
+    /// The derivatives of the right sides, in the first rows, and of the observed variables along
+    /// those of the states in y.
+    fn total_derivatives(
+        &mut self,
+        code: &SensitivityCode,
+        t: f64,
+        y: &[f64],
+    ) -> Result<DMatrix<f64>, Failure> {
+        let (n, m) = (self.n_differential(), code.n_columns());
+        let mut observed = vec![0.0; self.n_observed()];
         // This solves the loops, and finds the derivatives of their unknowns.
-        own.observe(t, &y, &mut observed)?;
+        self.observe(t, y, &mut observed)?;
         let mut right_sides = vec![0.0; code.rhs.outputs.len()];
-        read(&code.rhs, &mut own.registers, &mut right_sides)?;
+        read(&code.rhs, &mut self.registers, &mut right_sides)?;
         let (p, stride) = (observed.len() / (1 + m), right_sides.len() / m.max(1));
         Ok(DMatrix::from_fn(n + p, m, |row, column| match row.checked_sub(n) {
             None => right_sides[column * stride + row],

@@ -464,7 +464,6 @@ fn scripts_write_and_simulate_units() {
     near(number_after(&text, 0), 12.0 * (-2.0f64).exp(), 1e-5);
 }
 
-/// The number that stands alone in a line, the one of this number.
 /// Assertions of a model hold in its unit, too: importers announce completed steps where it has any.
 #[test]
 fn assertions_between_events_hold_in_units() {
@@ -483,7 +482,7 @@ fn assertions_between_events_hold_in_units() {
     }
 }
 
-/// In co-simulation inputs stand still during a step, which is said.
+/// In co-simulation inputs stand still during a step, which is said; their column has their own values.
 #[test]
 fn inputs_held_between_communication_points_are_noted() {
     let text =
@@ -494,8 +493,13 @@ fn inputs_held_between_communication_points_are_noted() {
     assert_eq!(code, 0, "{out}{errors}");
     let unit = ["simulate", "unit.fmu", "--allow-external", "--input", "u.csv", "--method"];
     for (method, is_noted) in [("co-simulation", true), ("dassl", false)] {
-        let (code, _, errors) = gapi(&here, &[&unit[..], &[method]].concat());
+        let (code, _, errors) =
+            gapi(&here, &[&unit[..], &[method, "--output", "o.csv", "--stop-time", "2"]].concat());
         assert_eq!(code, 0, "{errors}");
+        let all = columns(&here.path().join("o.csv"));
+        for (t, u) in column(&all, "time").iter().zip(column(&all, "u")) {
+            near(*u, 1.0 - (t - 1.0).abs(), 1e-9);
+        }
         let note = "during a step the inputs `u` have their values at its beginning";
         assert_eq!(errors.contains(note), is_noted, "{errors}");
     }
@@ -526,6 +530,7 @@ fn values_outside_the_range_of_a_unit_are_refused() {
     }
 }
 
+/// The number that stands alone in a line, the one of this number.
 fn number_after(text: &str, which: usize) -> f64 {
     let mut numbers = text.lines().filter_map(|line| line.trim().parse::<f64>().ok());
     numbers.nth(which).unwrap_or_else(|| panic!("no number in {text}"))
@@ -630,6 +635,19 @@ fn the_estimates_of_a_fit_are_given_away() {
     assert!(code == 1 && errors.contains(said), "{out}{errors}");
 }
 
+/// Compares the estimates of two fits, and their standard errors.
+fn agree(unit: &serde_json::Value, own: &serde_json::Value) {
+    for at in 0..2 {
+        for what in ["value", "deviation"] {
+            let of = |result: &serde_json::Value| {
+                let found = result["parameters"][at][what].as_f64();
+                found.unwrap_or_else(|| panic!("{what}: {result}"))
+            };
+            near(of(unit), of(own), 1e-5 * of(own).abs());
+        }
+    }
+}
+
 /// Derivatives by parameters and initial values are those that a unit of FMI 3.0 offers; they lead to the
 /// estimates and standard errors of the model. FMI 2.0 has none, and after an event nobody knows them.
 #[test]
@@ -638,14 +656,16 @@ fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
         return;
     }
     let jumping = DECAY.replace("end Decay;", "end Decay; model Jump extends Decay; equation \
-                                 when sample(0.5, 10) then reinit(x, 0.5*pre(x)); end when; end Jump;");
+                                 when sample(0.5, 10) then reinit(x, 0.5*pre(x)); end when; end Jump; \
+                                 model Begun parameter Real x0 = 1; extends Decay(x(start = 2*x0)); \
+                                 end Begun;");
     let row = |t: f64| format!("{t},{}\n", 4.0 * (-2.0 * t).exp() + 1e-2 * (37.0 * t).sin());
     let data: String = (0..=20).map(|n| row(f64::from(n) / 20.0)).collect();
     let here = folder(&[("P.mo", &jumping), ("d.csv", &format!("time,y\n{data}"))]);
-    let fitted = |model: &str| {
+    let fitting = |model: &str, second: &str| {
         let problem = format!(
             "model = \"{model}\"\nfiles = [\"P.mo\"]\n[parameters]\n\
-             k = {{ min = 0.1, max = 10 }}\nx = {{ min = 0.1, max = 10, initial = true }}\n\
+             k = {{ min = 0.1, max = 10 }}\n{second} }}\n\
              [[experiment]]\ndata = \"d.csv\"\ntolerance = 1e-9\noutputs = {{ y = \"y\" }}\n"
         );
         fs::write(here.path().join("p.toml"), problem).expect("written");
@@ -655,6 +675,8 @@ fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
         let text = fs::read_to_string(here.path().join("o/result.json")).expect("a result");
         serde_json::from_str::<serde_json::Value>(&text).expect("JSON")
     };
+    let fitted = |model| fitting(model, "x = { min = 0.1, max = 10, initial = true");
+    let begun = |model| fitting(model, "x0 = { min = 0.1, max = 10");
     let export = |model: &str, version: &str| {
         let base = ["export-fmu", "P.mo", "--model", model, "--kind", "me", "-o", "unit.fmu"];
         let (code, out, errors) = exporting(&here, &[&base[..], &["--fmi", version]].concat());
@@ -665,16 +687,12 @@ fn derivatives_of_a_unit_are_exact_where_it_offers_them() {
     export("P.Decay", "3");
     let unit = fitted("unit.fmu");
     assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
-    for at in 0..2 {
-        for what in ["value", "deviation"] {
-            let of = |result: &serde_json::Value| {
-                result["parameters"][at][what]
-                    .as_f64()
-                    .unwrap_or_else(|| panic!("{what}: {result}"))
-            };
-            near(of(&unit), of(&own), 1e-5 * of(&own).abs());
-        }
-    }
+    agree(&unit, &own);
+    // Initial values that follow from a parameter.
+    export("P.Begun", "3");
+    let unit = begun("unit.fmu");
+    assert!(says(&unit, "exact, by sensitivity equations"), "{unit}");
+    agree(&unit, &begun("P.Begun"));
     export("P.Decay", "2");
     assert!(says(&fitted("unit.fmu"), "because FMUs of FMI 2.0 have no derivatives by parameters"));
     export("P.Jump", "3");

@@ -96,6 +96,38 @@ fn derivatives_through_a_loop_are_exact() {
     close(exchange.derivative("der(x)", "x", false), -expected, 1e-9);
 }
 
+/// During the initialization values move with the parameters, initial ones as well.
+#[test]
+fn derivatives_of_initial_values_are_exact() {
+    let unit = export("Begun", Version::V3).unwrap();
+    let own = Instance::new(&unit, false);
+    own.set("Float64", "a", 1.5);
+    own.begin();
+    let (a, x0) = (1.5, 3.0);
+    let w: f64 = own.get("Float64", "w");
+    close(w.powi(3) + w, a, 1e-9);
+    let cases = [
+        ("x", "a", x0),
+        ("x", "x0", a),
+        ("w", "a", 1.0 / (3.0 * w * w + 1.0)),
+        ("w", "z", 0.0),
+        ("z", "z", 1.0),
+        ("y", "a", 2.0 * a * x0),
+        ("der(x)", "x0", -a * a),
+        ("der(z)", "a", x0),
+    ];
+    for (of, by, expected) in cases {
+        for is_adjoint in [false, true] {
+            let found = own.derivative(of, by, is_adjoint);
+            assert!((found - expected).abs() <= 1e-9, "∂{of}/∂{by} = {found}, not {expected}");
+        }
+    }
+    own.plain("fmi3ExitInitializationMode");
+    own.update();
+    own.plain("fmi3EnterContinuousTimeMode");
+    close(own.derivative("y", "a", false), a * x0, 1e-9);
+}
+
 /// FMI 3.0 counts parameters and the time among what an unknown may depend on.
 #[test]
 fn derivatives_by_parameters_and_the_time_are_exact() {

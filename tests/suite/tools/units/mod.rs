@@ -92,6 +92,20 @@ equation
   der(x) = -d*x;
   der(z) = e;
 end Bound;
+model Begun
+  parameter Real a = 2;
+  parameter Real x0 = 3;
+  Real x(start = x0*a, fixed = true);
+  Real z(start = 1, fixed = true);
+  Real w;
+  output Real y = a*x;
+initial equation
+  w^3 + w = a;
+equation
+  der(x) = -a*x;
+  der(z) = x;
+  der(w) = -w;
+end Begun;
 model Clocked
   output Real y = hold(n);
   discrete Real n(start = 0);
