@@ -5,8 +5,6 @@ use super::super::equations::is_graph_statement;
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::connections::end::End;
-use crate::flatten::connections::end::Ends;
 use crate::flatten::connections::sets::Connections;
 use crate::flatten::expressions::local::Local;
 use crate::flatten::ids::NodeId;
@@ -60,19 +58,27 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Option<NodeId>, Diagnostic> {
-        let Some(argument) = arguments.positional.get(at) else { return Ok(None) };
+        let nodes = self.overdetermined_arguments(arguments, at, context, local)?;
+        Ok(nodes.first().copied().filter(|_| nodes.len() == 1))
+    }
+
+    /// The records that such an argument names, element by element.
+    pub(crate) fn overdetermined_arguments(
+        &mut self,
+        arguments: &Arguments,
+        at: usize,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<NodeId>, Diagnostic> {
+        let Some(argument) = arguments.positional.get(at) else { return Ok(Vec::new()) };
         let ExpressionKind::Reference(reference) = &argument.kind else {
             return Err(fault!(INVALID_CONNECTION, "expected the name of a record in a connector")
                 .at(argument.span));
         };
-        match self.ends(reference, context, local)? {
-            Some(Ends { ends, .. }) => match ends.as_slice() {
-                [End::Composite(node)] => Ok(Some(*node)),
-                [End::Scalar(node, _), ..] => Ok(Some(*node)),
-                _ => Ok(None),
-            },
-            None => Ok(None),
-        }
+        let ends = self.ends(reference, context, local)?.map_or(Vec::new(), |ends| ends.ends);
+        let mut nodes: Vec<NodeId> = ends.iter().map(|end| end.node()).collect();
+        nodes.dedup();
+        Ok(nodes)
     }
 }
 
@@ -216,6 +222,9 @@ impl Collector<'_, '_> {
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
         let name = Name::new(function.name().parts).to_string();
+        if name == "Connections.uniqueRoot" {
+            return self.unique_roots(arguments, call.span, context, local);
+        }
         let Some(first) =
             self.instantiation.overdetermined_argument(arguments, 0, context, local)?
         else {
@@ -235,6 +244,22 @@ impl Collector<'_, '_> {
                 self.connections.graph.potential_root(first, priority);
             }
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// `Connections.uniqueRoot(roots, message)` of other tools: no two of them may be connected.
+    fn unique_roots(
+        &mut self,
+        arguments: &Arguments,
+        span: Span,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<(), Diagnostic> {
+        let message = self.instantiation.message_of_roots((arguments, 1), span, context)?;
+        let roots = self.instantiation.overdetermined_arguments(arguments, 0, context, local)?;
+        for root in roots {
+            self.connections.graph.unique_root(root, &message, span);
         }
         Ok(())
     }

@@ -11,6 +11,15 @@ pub enum End {
     Scalar(NodeId, usize),
 }
 
+impl End {
+    /// The connector, or the variable that the scalar is of.
+    pub fn node(self) -> NodeId {
+        match self {
+            End::Composite(node) | End::Scalar(node, _) => node,
+        }
+    }
+}
+
 /// The connectors that a reference names.
 #[derive(Debug, Clone)]
 pub struct Ends {

@@ -15,6 +15,14 @@ pub(crate) struct Edge {
     pub span: Span,
 }
 
+/// A root whose graph may have no other one.
+#[derive(Debug)]
+struct UniqueRoot {
+    /// What is said of a second one.
+    message: String,
+    span: Span,
+}
+
 /// The virtual connection graph.
 #[derive(Debug, Default)]
 pub(crate) struct Graph {
@@ -23,6 +31,9 @@ pub(crate) struct Graph {
     edges: Vec<Edge>,
     definite: Vec<NodeId>,
     potential: IndexMap<NodeId, i64>,
+    unique: IndexMap<NodeId, UniqueRoot>,
+    /// The number of the graph that each node is in, connections that the tree does not hold included.
+    parts: FxHashMap<NodeId, usize>,
     /// Chosen roots.
     roots: IndexSet<NodeId>,
     /// Number of edges to the root of each node.
@@ -50,6 +61,42 @@ impl Graph {
     pub(crate) fn potential_root(&mut self, node: NodeId, priority: i64) {
         self.nodes.insert(node);
         self.potential.entry(node).or_insert(priority);
+    }
+
+    /// A root whose graph may have no other one, with what is said of a second one.
+    pub fn unique_root(&mut self, node: NodeId, message: &str, span: Span) {
+        self.root(node);
+        self.unique.entry(node).or_insert(UniqueRoot { message: message.to_owned(), span });
+    }
+
+    /// Two unique roots of one graph, with the message and the place of the second.
+    pub fn ambiguous_roots(&self) -> Option<([NodeId; 2], &str, Span)> {
+        let mut first: FxHashMap<usize, NodeId> = FxHashMap::default();
+        self.unique.iter().find_map(|(node, root)| {
+            let before = first.insert(*self.parts.get(node)?, *node)?;
+            Some(([before, *node], root.message.as_str(), root.span))
+        })
+    }
+
+    /// The numbers of the roots, from 0, that are in the graphs of these nodes, then those of the others.
+    ///
+    /// # Errors
+    /// The first node that none of the roots left over is connected with.
+    pub fn indices_of_roots(
+        &self,
+        roots: &[NodeId],
+        nodes: &[NodeId],
+    ) -> Result<Vec<usize>, NodeId> {
+        let part = |node: &NodeId| self.parts.get(node);
+        let mut left: Vec<usize> = (0..roots.len()).collect();
+        let mut indices = Vec::with_capacity(roots.len());
+        for node in nodes {
+            let own = part(node).ok_or(*node)?;
+            let found = left.iter().position(|root| part(&roots[*root]) == Some(own));
+            indices.push(left.remove(found.ok_or(*node)?));
+        }
+        indices.append(&mut left);
+        Ok(indices)
     }
 
     pub fn connect(&mut self, one: NodeId, other: NodeId, outside: (bool, bool), span: Span) {
@@ -117,6 +164,12 @@ impl Graph {
             }
         }
         self.measure(&kept);
+        let edges = self.broken.iter().chain(&kept);
+        for Edge { nodes: (one, other), .. } in edges {
+            sets.join(at(&self.nodes, *one), at(&self.nodes, *other));
+        }
+        let numbered = self.nodes.iter().enumerate();
+        self.parts = numbered.map(|(number, node)| (*node, sets.find(number))).collect();
         kept
     }
 

@@ -30,6 +30,13 @@ impl Classes<'_> {
     /// Chooses the spanning tree and joins the records that it connects.
     pub(crate) fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
         let kept = connections.graph.span();
+        if let Some(([one, other], message, span)) = connections.graph.ambiguous_roots() {
+            let [one, other] = [one, other].map(|node| self.tree.nodes[node.0].path.to_string());
+            return Err(fault!(INVALID_CONNECTION,
+                "`{one}` and `{other}` are unique roots of connection graphs, but connected{}",
+                said(message))
+            .at(span));
+        }
         for edge in kept {
             let (one, other) = edge.nodes;
             match self.tree.scalars_of(one).zip(self.tree.scalars_of(other)) {
@@ -84,6 +91,11 @@ impl Classes<'_> {
             _ => None,
         })
     }
+}
+
+/// What a model says, after our own message.
+pub(super) fn said(message: &str) -> String {
+    if message.is_empty() { String::new() } else { format!(": {message}") }
 }
 
 impl Tree {
