@@ -113,9 +113,33 @@ pub(crate) struct State {
     pub(crate) inputs_changed: bool,
     /// How long the next step of its own integrator is meant to be, s.
     pub(crate) next_step: Option<f64>,
-    /// Observed variables at (time, x).
-    observed: Vec<f64>,
-    is_observed: bool,
+    /// Observed variables.
+    observed: Evaluated,
+    /// Derivatives of all states.
+    derivatives: Evaluated,
+    indicators: Evaluated,
+}
+
+/// Values at the time and the states at hand: importers ask for one after the other.
+#[derive(Clone)]
+struct Evaluated {
+    values: Vec<f64>,
+    is_known: bool,
+}
+
+impl Evaluated {
+    fn new(count: usize) -> Evaluated {
+        Evaluated { values: vec![0.0; count], is_known: false }
+    }
+
+    /// The values, computed unless they are known.
+    fn get<E>(&mut self, compute: impl FnOnce(&mut [f64]) -> Result<(), E>) -> Result<&[f64], E> {
+        if !self.is_known {
+            compute(&mut self.values)?;
+            self.is_known = true;
+        }
+        Ok(&self.values)
+    }
 }
 
 /// An instance.
@@ -145,7 +169,9 @@ impl State {
         }
         State {
             x: vec![0.0; model.program.n_states()],
-            observed: vec![0.0; system.n_observed()],
+            observed: Evaluated::new(system.n_observed()),
+            derivatives: Evaluated::new(model.program.n_states()),
+            indicators: Evaluated::new(model.program.n_indicators()),
             system,
             phase: Phase::Instantiated,
             experiment: Experiment {
@@ -159,7 +185,6 @@ impl State {
             is_at_start: false,
             inputs_changed: false,
             next_step: None,
-            is_observed: false,
         }
     }
 }
@@ -308,7 +333,10 @@ impl Instance {
     }
 
     pub(crate) fn forget_values(&mut self) {
-        self.state.is_observed = false;
+        let State { observed, derivatives, indicators, .. } = &mut self.state;
+        for evaluated in [observed, derivatives, indicators] {
+            evaluated.is_known = false;
+        }
         self.derivatives.forget();
     }
 
@@ -373,8 +401,7 @@ impl Instance {
             Place::State(state) => return Ok(self.state.x[state]),
             Place::Derivative(state) => return Ok(self.all_derivatives()?[state]),
             Place::Indicator(at) => {
-                let mut all = vec![0.0; self.model.program.n_indicators()];
-                self.event_indicators(&mut all)?;
+                let all = self.all_indicators()?;
                 return all.get(at).copied().ok_or_else(|| "there is no such indicator".into());
             }
             Place::Variable(at) => at,
@@ -388,8 +415,7 @@ impl Instance {
                 Wrong::Error(format!("the parameter `{}` has no value", variable.name))
             }),
             Access::Observed { column, negated } => {
-                self.observe()?;
-                let value = self.state.observed[column];
+                let value = self.observe()?[column];
                 Ok(if negated { -value } else { value })
             }
         }
@@ -422,15 +448,14 @@ impl Instance {
         }
     }
 
-    /// Computes the observed variables, unless they are known.
-    fn observe(&mut self) -> Result<(), Wrong> {
-        let state = &mut self.state;
-        if !state.is_observed {
-            let done = state.system.observe(state.time, &state.x, &mut state.observed);
-            done.map_err(|failure| self.discarded(failure))?;
-            self.state.is_observed = true;
+    /// The observed variables.
+    fn observe(&mut self) -> Result<&[f64], Wrong> {
+        let State { system, time, x, observed, .. } = &mut self.state;
+        let done = observed.get(|out| system.observe(*time, x, out)).err();
+        match done {
+            Some(failure) => Err(self.discarded(failure)),
+            None => Ok(&self.state.observed.values),
         }
-        Ok(())
     }
 
     /// Sets a variable.
@@ -520,16 +545,16 @@ impl Instance {
         }
     }
 
-    fn all_derivatives(&mut self) -> Result<Vec<f64>, Wrong> {
+    fn all_derivatives(&mut self) -> Result<&[f64], Wrong> {
         if self.state.phase == Phase::Initialization {
             self.initialize()?;
         }
-        let state = &mut self.state;
-        let mut all = vec![0.0; state.x.len()];
-        let done = state.system.rhs(state.time, &state.x, &mut all);
-        done.map_err(|failure| self.discarded(failure))?;
-        match all.iter().all(|value| value.is_finite()) {
-            true => Ok(all),
+        let State { system, time, x, derivatives, .. } = &mut self.state;
+        if let Some(failure) = derivatives.get(|out| system.rhs(*time, x, out)).err() {
+            return Err(self.discarded(failure));
+        }
+        match self.state.derivatives.values.iter().all(|value| value.is_finite()) {
+            true => Ok(&self.state.derivatives.values),
             false => Err(self.not_finite()),
         }
     }
@@ -544,8 +569,9 @@ impl Instance {
     /// The derivatives of the continuous states.
     pub(crate) fn derivatives(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
         self.check_number(out.len())?;
+        let model = self.model.clone();
         let all = self.all_derivatives()?;
-        for (out, state) in out.iter_mut().zip(&self.model.content.states) {
+        for (out, state) in out.iter_mut().zip(&model.content.states) {
             *out = all[*state];
         }
         Ok(())
@@ -562,17 +588,24 @@ impl Instance {
     }
 
     pub(crate) fn event_indicators(&mut self, out: &mut [f64]) -> Result<(), Wrong> {
+        let all = self.all_indicators()?;
+        let (expected, n) = (all.len(), out.len());
+        if n != expected {
+            return Err(Wrong::Error(format!("there are {expected} event indicators, not {n}")));
+        }
+        out.copy_from_slice(all);
+        Ok(())
+    }
+
+    fn all_indicators(&mut self) -> Result<&[f64], Wrong> {
         if self.state.phase == Phase::Initialization {
             self.initialize()?;
         }
-        let expected = self.model.program.n_indicators();
-        if out.len() != expected {
-            let n = out.len();
-            return Err(Wrong::Error(format!("there are {expected} event indicators, not {n}")));
+        let State { system, time, x, indicators, .. } = &mut self.state;
+        match indicators.get(|out| system.event_indicators(*time, x, out)).err() {
+            Some(failure) => Err(self.discarded(failure)),
+            None => Ok(&self.state.indicators.values),
         }
-        let state = &mut self.state;
-        let done = state.system.event_indicators(state.time, &state.x, out);
-        done.map_err(|failure| self.discarded(failure))
     }
 
     pub(crate) fn enter_event_mode(&mut self) -> Result<(), Wrong> {
