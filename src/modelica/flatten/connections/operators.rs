@@ -72,8 +72,11 @@ impl Instantiation<'_> {
         let connections = self.known_connections(span)?;
         let indices = connections.graph.indices_of_roots(&roots, &nodes).map_err(|node| {
             let node = &self.classes.tree.nodes[node.0].path;
-            fault!(INVALID_CONNECTION,
-                "`{node}` is connected with none of the roots that are left for it{}", said(&message))
+            fault!(
+                INVALID_CONNECTION,
+                "`{node}` is connected with none of the roots that are left for it{}",
+                said(&message)
+            )
             .at(span)
         })?;
         let number = |root: usize| Expression::new(ExpressionKind::Integer(root as i64 + 1), span);
@@ -89,8 +92,11 @@ impl Instantiation<'_> {
         span: Span,
         context: ScopeId,
     ) -> Result<String, Diagnostic> {
-        let foreign = fault!(INVALID_CONNECTION, "unique roots of connection graphs are not part of \
-            Modelica: they are checked as the users' guide of Modelica_StateGraph2 has it")
+        let foreign = fault!(
+            INVALID_CONNECTION,
+            "unique roots of connection graphs are not part of \
+            Modelica: they are checked as the users' guide of Modelica_StateGraph2 has it"
+        )
         .at(span);
         match self.classes.library.is_strict() {
             true => return Err(foreign),
@@ -101,9 +107,10 @@ impl Instantiation<'_> {
         let Some(given) = given else { return Ok(String::new()) };
         match self.structural_value(given, context)? {
             Value::String(message) => Ok(message.to_string()),
-            other => Err(fault!(INVALID_CONNECTION,
-                "a message is a String, not {}", other.type_name())
-            .at(given.span)),
+            other => {
+                Err(fault!(INVALID_CONNECTION, "a message is a String, not {}", other.type_name())
+                    .at(given.span))
+            }
         }
     }
 

@@ -32,9 +32,11 @@ impl Classes<'_> {
         let kept = connections.graph.span();
         if let Some(([one, other], message, span)) = connections.graph.ambiguous_roots() {
             let [one, other] = [one, other].map(|node| self.tree.nodes[node.0].path.to_string());
-            return Err(fault!(INVALID_CONNECTION,
+            return Err(fault!(
+                INVALID_CONNECTION,
                 "`{one}` and `{other}` are unique roots of connection graphs, but connected{}",
-                said(message))
+                said(message)
+            )
             .at(span));
         }
         for edge in kept {
