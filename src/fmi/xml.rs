@@ -15,6 +15,14 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// The number in a text that XML takes for one: infinite ones are `INF`.
+pub(crate) fn real(text: &str) -> Option<f64> {
+    let digits = text.trim_start_matches(['+', '-']);
+    let is_written = digits.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let is_word = ["INF", "NaN"].contains(&digits);
+    text.parse().ok().filter(|_| is_written || is_word)
+}
+
 /// A text in XML while it is written.
 pub(crate) struct Xml {
     pub(crate) text: String,
@@ -99,9 +107,13 @@ impl<'a, 'i> Element<'a, 'i> {
         self.0.tag_name().name()
     }
 
+    /// The line in which it begins, from 1.
+    pub(crate) fn line(&self) -> u32 {
+        self.0.document().text_pos_at(self.0.range().start).row
+    }
+
     pub(crate) fn error(&self, message: String) -> FmuError {
-        let line = self.0.document().text_pos_at(self.0.range().start).row;
-        FmuError::Description { line, message }
+        FmuError::Description { line: self.line(), message }
     }
 
     pub(crate) fn children(&self) -> Vec<Element<'a, 'i>> {

@@ -1,6 +1,9 @@
 //! What `modelDescription.xml` says, in FMI 2.0 and 3.0.
 
 mod read;
+mod rules;
+mod schema;
+mod sizes;
 mod words;
 mod write;
 
@@ -320,8 +323,8 @@ pub struct Structure {
     pub outputs: Vec<Unknown>,
     /// Derivatives of the continuous states, in the order of these.
     pub derivatives: Vec<Unknown>,
-    /// Discrete states (FMI 2.0), clocked states (FMI 3.0).
-    pub discrete_states: Vec<Unknown>,
+    /// Clocked states (FMI 3.0).
+    pub clocked_states: Vec<Unknown>,
     /// What initialization determines.
     pub initial_unknowns: Vec<Unknown>,
     /// Event indicators (FMI 3.0).

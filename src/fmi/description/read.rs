@@ -1,8 +1,8 @@
-//! Reads descriptions.
-//!
-//! What the standard requires must be there; attributes and elements beside it are passed over, as
-//! annotations are.
+//! Reads descriptions, which have first to agree with the schema and then with the rules of the standard.
+//! Annotations are passed over.
 
+use super::rules;
+use super::schema::Schema;
 use super::{
     About, Attributes, BASE_UNITS, BaseUnit, Causality, ClockInterval, DefaultExperiment,
     DependencyKind, Description, Dimension, DisplayUnit, Initial, Interface, Item, Kind,
@@ -17,8 +17,8 @@ use std::collections::HashMap;
 /// The description in a text.
 ///
 /// # Errors
-/// It is not well-formed, is of another version than FMI 2.0 or 3.0, lacks what the standard
-/// requires, or has an attribute whose value is none.
+/// It is not well-formed, is of another version than FMI 2.0 or 3.0, or contradicts the standard: with the
+/// line.
 pub fn read(text: &str) -> Result<Description, FmuError> {
     let document = Document::parse(text).map_err(|error| FmuError::Xml(error.to_string()))?;
     let root = Element(document.root_element());
@@ -35,6 +35,7 @@ pub fn read(text: &str) -> Result<Description, FmuError> {
             );
         }
     };
+    Schema::of(version, written).check(&root)?;
     let mut description = head(&root, version)?;
     let variables = root.child("ModelVariables").map_or(Vec::new(), |all| all.children());
     for element in &variables {
@@ -50,6 +51,7 @@ pub fn read(text: &str) -> Result<Description, FmuError> {
     if let Some(element) = root.child("ModelStructure") {
         description.structure = structure(&element, version, &places)?;
     }
+    rules::check(&description, &root, &variables)?;
     Ok(description)
 }
 
@@ -57,7 +59,7 @@ pub fn read(text: &str) -> Result<Description, FmuError> {
 fn head(root: &Element, version: Version) -> Result<Description, FmuError> {
     let text = |name: &str| root.text(name);
     let token = if version == Version::V2 { "guid" } else { "instantiationToken" };
-    let interface = |name: &str| root.child(name).map(|one| interface(&one)).transpose();
+    let interface = |name: &str| root.child(name).map(|one| interface(&one, version)).transpose();
     let unit_definitions = root.elements("UnitDefinitions", "Unit");
     let types = match version {
         Version::V2 => root.elements("TypeDefinitions", "SimpleType"),
@@ -112,15 +114,16 @@ fn experiment(element: &Element) -> Result<DefaultExperiment, FmuError> {
 }
 
 /// What a unit is able to. The attributes of both versions differ in name only.
-fn interface(element: &Element) -> Result<Interface, FmuError> {
+fn interface(element: &Element, version: Version) -> Result<Interface, FmuError> {
     let any = |names: &[&str]| {
         names.iter().try_fold(false, |found, name| Ok(found | element.is_true(name)?))
     };
     let files = element.elements("SourceFiles", "File");
-    let needs_completed_step = match element.get("completedIntegratorStepNotNeeded") {
-        Some(_) => !element.is_true("completedIntegratorStepNotNeeded")?,
-        None => element.truth("needsCompletedIntegratorStep")?.unwrap_or(true),
-    };
+    let needs_completed_step = element.name() == "ModelExchange"
+        && match version {
+            Version::V2 => !element.is_true("completedIntegratorStepNotNeeded")?,
+            Version::V3 => element.is_true("needsCompletedIntegratorStep")?,
+        };
     Ok(Interface {
         model_identifier: element.required("modelIdentifier")?.to_owned(),
         needs_execution_tool: element.is_true("needsExecutionTool")?,
@@ -294,11 +297,13 @@ fn default_initial(causality: Causality, variability: Variability) -> Option<Ini
 }
 
 fn dimension(element: &Element) -> Result<Dimension, FmuError> {
-    let (start, reference) = (element.parsed("start")?, element.parsed("valueReference")?);
-    start
-        .map(Dimension::Fixed)
-        .or(reference.map(Dimension::Variable))
-        .ok_or_else(|| element.error("`Dimension` has neither `start` nor `valueReference`".into()))
+    match (element.parsed("start")?, element.parsed("valueReference")?) {
+        (Some(size), None) => Ok(Dimension::Fixed(size)),
+        (None, Some(reference)) => Ok(Dimension::Variable(reference)),
+        _ => Err(element.error(
+            "`Dimension` must have one of the attributes `start` and `valueReference`".into(),
+        )),
+    }
 }
 
 /// Start values as they are written; those of Strings in FMI 3.0 are elements.
@@ -331,27 +336,37 @@ fn clock(element: &Element) -> Result<ClockInterval, FmuError> {
 
 fn structure(element: &Element, version: Version, places: &Places) -> Result<Structure, FmuError> {
     let all = |group: &str, name: &str| {
-        let found: Vec<Element> = match version {
-            Version::V2 => element.elements(group, "Unknown"),
-            Version::V3 => {
-                element.children().into_iter().filter(|one| one.name() == name).collect()
-            }
-        };
+        let found = unknowns_of(element, version, (group, name));
         found.iter().map(|one| unknown(one, version, places)).collect::<Result<Vec<_>, _>>()
     };
     Ok(Structure {
         outputs: all("Outputs", "Output")?,
         derivatives: all("Derivatives", "ContinuousStateDerivative")?,
-        discrete_states: all("DiscreteStates", "ClockedState")?,
+        clocked_states: all("", "ClockedState")?,
         initial_unknowns: all("InitialUnknowns", "InitialUnknown")?,
         event_indicators: all("", "EventIndicator")?,
     })
+}
+
+/// The elements of a list: in FMI 2.0 they are in a group, in FMI 3.0 they have a name of their own.
+pub(super) fn unknowns_of<'a, 'i>(
+    structure: &Element<'a, 'i>,
+    version: Version,
+    (group, name): (&str, &str),
+) -> Vec<Element<'a, 'i>> {
+    match version {
+        Version::V2 => structure.elements(group, "Unknown"),
+        Version::V3 => structure.children().into_iter().filter(|one| one.name() == name).collect(),
+    }
 }
 
 fn unknown(element: &Element, version: Version, places: &Places) -> Result<Unknown, FmuError> {
     let own = if version == Version::V2 { "index" } else { "valueReference" };
     let variable = places.get(element, element.needed(own)?)?;
     let Some(on) = element.list::<u32>("dependencies")? else {
+        if element.get("dependenciesKind").is_some() {
+            return Err(element.error("`dependenciesKind` needs `dependencies` beside it".into()));
+        }
         return Ok(Unknown { variable, dependencies: None });
     };
     let kinds = element.get("dependenciesKind").map(|kinds| {

@@ -91,11 +91,7 @@ fn with_variables(version: Version) -> Description {
         token: "{1}".to_owned(),
         has_structured_names: true,
         model_exchange: Some(interface.clone()),
-        co_simulation: Some(Interface {
-            can_handle_variable_steps: true,
-            needs_completed_step: true,
-            ..interface
-        }),
+        co_simulation: Some(Interface { can_handle_variable_steps: true, ..interface }),
         units: vec![Unit {
             name: "m".to_owned(),
             base: Some(BaseUnit { exponents: [0, 1, 0, 0, 0, 0, 0, 0], factor: 1.0, offset: 0.0 }),
@@ -144,22 +140,23 @@ fn attributes_of_a_variable_go_before_those_of_its_type() {
 }
 
 #[test]
-fn what_is_not_said_has_its_default_and_what_is_unknown_is_passed_over() {
+fn what_is_not_said_has_its_default_and_annotations_are_passed_over() {
     let text = r#"<!-- made by hand --><fmiModelDescription fmiVersion="3.0.2" modelName="m"
-        instantiationToken="t" newAttribute="1">
+        instantiationToken="t">
       <ModelExchange modelIdentifier="m"><Annotations><Annotation type="x"><y z="1">t</y>
       </Annotation></Annotations></ModelExchange>
       <ModelVariables>
-        <Float64 name="a" valueReference="1" max="INF" start="1 2"><Dimension start="2"/>
+        <Float64 name="time" valueReference="0" causality="independent"/>
+        <Float64 name="a" valueReference="1" max="INF" initial="exact" start="1 2"><Dimension start="2"/>
           <Alias name="b"/></Float64>
         <Int64 name="n" valueReference="2" causality="parameter" start="9007199254740993"/>
-        <Boolean name="u" valueReference="3" causality="input"/>
-        <String name="s" valueReference="4"><Start value="one"/><Start value=" two "/></String>
+        <Boolean name="u" valueReference="3" causality="input" start="1"/>
+        <String name="s" valueReference="4" initial="exact"><Dimension start="2"/><Start value="one"/><Start value=" two "/></String>
       </ModelVariables>
       <ModelStructure/></fmiModelDescription>"#;
     let description = read(text).unwrap();
-    let [a, n, u, s] = &description.variables[..] else { panic!("{description:?}") };
-    assert_eq!((a.variability, a.initial), (Variability::Continuous, Some(Initial::Calculated)));
+    let [_, a, n, u, s] = &description.variables[..] else { panic!("{description:?}") };
+    assert_eq!(a.variability, Variability::Continuous);
     assert_eq!(
         (a.attributes.max, &a.dimensions[..]),
         (Some(f64::INFINITY), &[Dimension::Fixed(2)][..])
@@ -169,7 +166,144 @@ fn what_is_not_said_has_its_default_and_what_is_unknown_is_passed_over() {
     assert_eq!(n.start, ["9007199254740993"]);
     assert_eq!((u.variability, u.initial), (Variability::Discrete, None));
     assert_eq!(s.start, ["one", " two "]);
-    assert!(description.model_exchange.unwrap().needs_completed_step);
+    assert!(!description.model_exchange.unwrap().needs_completed_step);
+}
+
+#[test]
+fn later_versions_may_have_more() {
+    let text =
+        write(&with_variables(Version::V3)).replace("modelName=", "newAttribute=\"1\" modelName=");
+    let error = read(&text).unwrap_err().to_string();
+    assert!(
+        error.contains("line 2: `fmiModelDescription` has no attribute `newAttribute`"),
+        "{error}"
+    );
+    read(&text.replace("fmiVersion=\"3.0\"", "fmiVersion=\"3.1\"")).unwrap();
+}
+
+/// Attributes that hold free text.
+const FREE: &[&str] = &[
+    "author",
+    "copyright",
+    "description",
+    "generationTool",
+    "generationDateAndTime",
+    "guid",
+    "instantiationToken",
+    "license",
+    "modelIdentifier",
+    "modelName",
+    "quantity",
+    "version",
+];
+
+/// A text with a range in it replaced.
+fn replaced(text: &str, range: std::ops::Range<usize>, by: &str) -> String {
+    format!("{}{by}{}", &text[..range.start], &text[range.end..])
+}
+
+/// Values that an attribute cannot have.
+fn wrong_values(element: roxmltree::Node, attribute: &str) -> &'static [&'static str] {
+    let tag = element.tag_name().name();
+    let is_text = ["String", "Start"].contains(&tag) && ["start", "value"].contains(&attribute);
+    let is_named = ["Unit", "SimpleType", "Float64Type", "EnumerationType"].contains(&tag);
+    let is_structure = element.ancestors().any(|one| one.has_tag_name("ModelStructure"));
+    match attribute {
+        _ if FREE.contains(&attribute) || is_text => &[],
+        // What refers to it finds it no more.
+        "name" if is_named => &["other"],
+        "name" => &[],
+        "unit" | "displayUnit" | "declaredType" => &["other"],
+        "index" | "derivative" | "dependencies" => &["one", "4294967295"],
+        "valueReference" if is_structure => &["one", "4294967295"],
+        "start" if tag == "Enumeration" => &["one", "3"],
+        _ => &["one"],
+    }
+}
+
+/// Whatever attribute is misspelt, has a value of another type, or refers to nothing: the line is named.
+#[test]
+fn one_damaged_attribute_is_found() {
+    for version in [Version::V2, Version::V3] {
+        let text = write(&with_variables(version));
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let mut damages = 0;
+        for element in document.descendants().filter(roxmltree::Node::is_element) {
+            let line = document.text_pos_at(element.range().start).row;
+            let mut refuses = |damaged: &str, attribute: &str| {
+                let error = read(damaged).expect_err(damaged).to_string();
+                // In FMI 2.0 types are elements in those of variables.
+                let is_there =
+                    [line, line - 1].iter().any(|at| error.contains(&format!("line {at}:")));
+                assert!(is_there || attribute == "name", "{attribute} in line {line}: {error}");
+                damages += 1;
+            };
+            for attribute in element.attributes() {
+                let name = attribute.name();
+                refuses(&replaced(&text, attribute.range_qname(), &format!("{name}_")), name);
+                for value in wrong_values(element, name) {
+                    refuses(&replaced(&text, attribute.range_value(), value), name);
+                }
+            }
+        }
+        assert!(damages > 100, "{damages}");
+    }
+}
+
+/// Rules of the text of the standard, one broken each time.
+#[test]
+fn broken_rules_are_said() {
+    let of_3 = |from: &str, to: &str| {
+        let text = write(&with_variables(Version::V3));
+        assert!(text.contains(from), "{from}: {text}");
+        read(&text.replacen(from, to, 1)).expect_err(to).to_string()
+    };
+    for (from, to, said) in [
+        ("name=\"der(x)\"", "name=\"x\"", "the variable name `x` is in line"),
+        ("valueReference=\"11\"", "valueReference=\"9\"", "the value reference `9` is in line"),
+        (
+            "declaredType=\"Length\"",
+            "declaredType=\"Gear\"",
+            "is Float64, but its type `Gear` is Enumeration",
+        ),
+        ("start=\"2\"", "start=\"3\"", "starts with 3, but its values are 1 (low), 2 (high)"),
+        ("start=\"2\"", "", "`gear` has no start value"),
+        ("start=\"1e-3\"", "start=\"0.001 2\"", "has 2 start values, but 1 elements"),
+        ("unit=\"m\"", "unit=\"ft\"", "the type has the unit `ft`"),
+        ("variability=\"fixed\"", "variability=\"continuous\"", "String and cannot be continuous"),
+        ("variability=\"fixed\"", "variability=\"discrete\"", "cannot be parameter and discrete"),
+        ("initial=\"calculated\"", "initial=\"calculated\" start=\"1\"", "has a start value"),
+        ("value=\"2\"", "value=\"1\"", "the value of an item `1` is in line"),
+        ("<Output valueReference=\"7\"", "<Output valueReference=\"3\"", "is not an output"),
+        ("nominal=\"1000000\"", "nominal=\"0\"", "has the nominal value 0"),
+        ("causality=\"independent\"", "causality=\"local\"", "no independent variable"),
+        ("derivative=\"7\"", "derivative=\"3\"", "cannot be the derivative of `der(x)`"),
+        (" dependencies=\"7 9\"", "", "`dependenciesKind` needs `dependencies`"),
+        ("<ModelStructure>", "<ModelStructure/><ModelStructure>", "has 2 times `ModelStructure`"),
+        (
+            "<Float64 name=\"time\"",
+            "<Float46 name=\"x\"/><Float64 name=\"time\"",
+            "`ModelVariables` has no element `Float46` in FMI 3.0; did you mean `Float64`?",
+        ),
+    ] {
+        let text = of_3(from, to);
+        assert!(text.contains(said), "{to}: {text}");
+    }
+    let alias = |start: &str, unit: &str| {
+        let own = "<ScalarVariable name=\"y\" valueReference=\"7\" causality=\"output\"";
+        let text = write(&with_variables(Version::V2)).replace(
+            "</ModelVariables>",
+            &format!(
+                "{own} initial=\"exact\"><Real{start}{unit}/></ScalarVariable></ModelVariables>"
+            ),
+        );
+        read(&text).map_err(|error| error.to_string())
+    };
+    alias(" start=\"1e-3\"", " unit=\"m\"").unwrap();
+    let error = alias(" start=\"2\"", " unit=\"m\"").unwrap_err();
+    assert!(error.contains("reference 7 of `x`, but they have different start values"), "{error}");
+    let error = alias(" start=\"1e-3\"", "").unwrap_err();
+    assert!(error.contains("but they have different units"), "{error}");
 }
 
 #[test]
@@ -182,18 +316,19 @@ fn what_is_wrong_is_said_with_its_line() {
         ("<fmiModelDescription fmiVersion=\"1.0\" modelName=\"m\" guid=\"\"/>", "it is of FMI 1.0"),
         (
             "@<ModelVariables>\n<ScalarVariable name=\"x\" valueReference=\"-1\"><Real/>\
-             </ScalarVariable></ModelVariables></fmiModelDescription>",
+             </ScalarVariable></ModelVariables><ModelStructure/></fmiModelDescription>",
             "line 3: `-1` is not a value of the attribute `valueReference`",
         ),
         (
             "@<ModelVariables>\n<ScalarVariable name=\"x\" valueReference=\"1\"/></ModelVariables>\
              </fmiModelDescription>",
-            "line 3: `ScalarVariable` has no type",
+            "line 3: `ScalarVariable` has no `Real`, `Integer`, `Boolean`, `String`, `Enumeration` in it",
         ),
         (
-            "@<ModelStructure><Outputs>\n<Unknown index=\"1\"/></Outputs></ModelStructure>\
-             </fmiModelDescription>",
-            "line 3: there is no variable 1",
+            "@<ModelVariables><ScalarVariable name=\"x\" valueReference=\"1\"><Real/></ScalarVariable>\
+             </ModelVariables><ModelStructure><Outputs>\n<Unknown index=\"2\"/></Outputs>\
+             </ModelStructure></fmiModelDescription>",
+            "line 3: there is no variable 2",
         ),
     ];
     for (text, expected) in cases {

@@ -1,5 +1,7 @@
 //! Words of the standard: causality, variability, types.
 
+use crate::xml::real;
+
 /// Makes an enumeration with its words in the standard.
 macro_rules! words {
     ($(#[$doc:meta])* $name:ident { $($(#[$of:meta])* $variant:ident = $word:literal,)* }) => {
@@ -46,8 +48,6 @@ words! {
         Local = "local",
         /// Time.
         Independent = "independent",
-        /// A dependent parameter of a clock or partition (FMI 3.0).
-        Dependent = "dependent",
     }
 }
 
@@ -139,6 +139,44 @@ impl Kind {
     /// Whether its values are real numbers.
     pub fn is_float(self) -> bool {
         matches!(self, Kind::Float32 | Kind::Float64)
+    }
+
+    /// Whether a text is a value of this type, as schemas write values.
+    pub fn holds(self, text: &str) -> bool {
+        match self {
+            Kind::Float32 | Kind::Float64 => real(text).is_some(),
+            Kind::Int8 => text.parse::<i8>().is_ok(),
+            Kind::UInt8 => text.parse::<u8>().is_ok(),
+            Kind::Int16 => text.parse::<i16>().is_ok(),
+            Kind::UInt16 => text.parse::<u16>().is_ok(),
+            Kind::Int32 => text.parse::<i32>().is_ok(),
+            Kind::UInt32 => text.parse::<u32>().is_ok(),
+            Kind::Int64 | Kind::Enumeration => text.parse::<i64>().is_ok(),
+            Kind::UInt64 => text.parse::<u64>().is_ok(),
+            Kind::Boolean => matches!(text, "true" | "false" | "1" | "0"),
+            Kind::String => true,
+            Kind::Binary => text.len() % 2 == 0 && text.bytes().all(|c| c.is_ascii_hexdigit()),
+            Kind::Clock => false,
+        }
+    }
+
+    /// What its values are.
+    pub(super) fn in_words(self) -> &'static str {
+        match self {
+            Kind::Float32 | Kind::Float64 => "a real number",
+            Kind::Int8 => "a whole number of 8 bits with sign",
+            Kind::UInt8 => "a whole number of 8 bits without sign",
+            Kind::Int16 => "a whole number of 16 bits with sign",
+            Kind::UInt16 => "a whole number of 16 bits without sign",
+            Kind::Int32 => "a whole number of 32 bits with sign",
+            Kind::UInt32 => "a whole number of 32 bits without sign",
+            Kind::Int64 | Kind::Enumeration => "a whole number of 64 bits with sign",
+            Kind::UInt64 => "a whole number of 64 bits without sign",
+            Kind::Boolean => "`true` or `false`",
+            Kind::String => "a text",
+            Kind::Binary => "an even number of hexadecimal digits",
+            Kind::Clock => "left out: clocks have no values",
+        }
     }
 
     /// The type of this name in FMI 2.0.

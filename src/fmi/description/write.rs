@@ -304,7 +304,7 @@ fn structure(xml: &mut Xml, own: &Structure, description: &Description) {
     let groups = [
         ("Outputs", "Output", &own.outputs),
         ("Derivatives", "ContinuousStateDerivative", &own.derivatives),
-        ("DiscreteStates", "ClockedState", &own.discrete_states),
+        ("", "ClockedState", &own.clocked_states),
         ("InitialUnknowns", "InitialUnknown", &own.initial_unknowns),
         ("", "EventIndicator", &own.event_indicators),
     ];

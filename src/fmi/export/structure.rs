@@ -42,7 +42,7 @@ pub(super) fn structure(program: &Program, table: &Table, version: Version) -> S
     Structure {
         outputs,
         derivatives,
-        discrete_states: Vec::new(),
+        clocked_states: Vec::new(),
         initial_unknowns: initial.into_iter().map(open).collect(),
         event_indicators: match version {
             Version::V2 => Vec::new(),

@@ -3,12 +3,9 @@
 //! values that are given in their place.
 
 use crate::Description;
-use crate::description::{Causality, Dimension, Kind, Variable};
+use crate::description::{Causality, Kind, Variable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// More elements than this are a mistake of the description.
-const MOST_ELEMENTS: u64 = 10_000_000;
 
 /// A scalar, by the place of its variable in the description and its number within it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -43,9 +40,13 @@ impl Layout {
     /// # Errors
     /// A size that is not known, or too large, in one sentence.
     pub fn of(description: &Description, given: &[(Place, f64)]) -> Result<Layout, String> {
+        let value = |at: usize| {
+            let own = given.iter().find(|(place, _)| place.variable == at);
+            own.map(|(_, value)| *value)
+        };
         let mut layout = Layout::default();
         for variable in &description.variables {
-            layout.sizes.push(sizes(description, variable, given)?);
+            layout.sizes.push(description.sizes(variable, value)?);
         }
         for (at, variable) in description.variables.iter().enumerate() {
             if !is_number(variable) {
@@ -99,37 +100,6 @@ pub fn is_triggered(variable: &Variable) -> bool {
     variable.causality == Causality::Input && by_others
 }
 
-fn sizes(
-    description: &Description,
-    variable: &Variable,
-    given: &[(Place, f64)],
-) -> Result<Vec<usize>, String> {
-    let mut sizes = Vec::new();
-    let mut elements: u64 = 1;
-    for dimension in &variable.dimensions {
-        let size = match dimension {
-            Dimension::Fixed(size) => *size,
-            Dimension::Variable(reference) => size_of(description, *reference, given)
-                .ok_or_else(|| format!("a size of the array `{}` is not known", variable.name))?,
-        };
-        elements = elements.saturating_mul(size);
-        sizes.push(usize::try_from(size).unwrap_or(usize::MAX));
-    }
-    match elements <= MOST_ELEMENTS {
-        true => Ok(sizes),
-        false => Err(format!("the array `{}` has {elements} elements", variable.name)),
-    }
-}
-
-/// The value of the structural parameter of this value reference.
-fn size_of(description: &Description, reference: u32, given: &[(Place, f64)]) -> Option<u64> {
-    let at = description.variables.iter().position(|one| one.reference == reference)?;
-    if let Some((_, value)) = given.iter().find(|(place, _)| place.variable == at) {
-        return Some(*value).filter(|v| *v >= 0.0 && v.fract() == 0.0).map(|value| value as u64);
-    }
-    description.variables[at].start.first()?.parse().ok()
-}
-
 /// The subscripts of an element, the last one varying fastest.
 fn subscripts(sizes: &[usize], mut element: usize) -> String {
     let mut all = Vec::new();
@@ -180,6 +150,7 @@ pub fn refusal(kind: Kind, value: f64) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::Dimension;
 
     #[test]
     fn elements_are_counted_with_the_last_subscript_first() {

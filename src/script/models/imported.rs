@@ -49,7 +49,12 @@ pub fn read(session: &Session, path: &Path) -> Result<UnitFile, Fault> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let wrong = |error: FmuError| {
         let fault = fault!(BAD_FMU, "`{name}` is not an FMU that can be used: {error}");
-        fault.help("ask the tool that has made it for an FMU of version 2.0 or 3.0")
+        fault.help(match error {
+            FmuError::Description { .. } => {
+                "correct it there, or ask the tool that has made it for an FMU that follows FMI 2.0.5 or 3.0.2"
+            }
+            _ => "ask the tool that has made it for an FMU of version 2.0 or 3.0",
+        })
     };
     let archive = Archive::read(Cursor::new(bytes)).map_err(wrong)?;
     let text = archive.file(DESCRIPTION).map_err(wrong)?;

@@ -859,8 +859,13 @@ fn files_that_are_not_usable_units_are_refused() {
         (changed("valueReference=\"6\"", "valueReference=\"six\""), "six"),
         (
             changed("<Dimension valueReference=\"11\"/>", "<Dimension valueReference=\"77\"/>"),
-            "size",
+            "`c` has in `Dimension` the value reference 77, which no variable has",
         ),
+        (
+            changed("start=\"-1e300\"", "start=\"low\""),
+            "line 18: `low` is not a value of the attribute `start`",
+        ),
+        (changed("unit=\"V\"", "unit=\"W\""), "`y` has the unit `W`"),
         (of(&without_kinds), "neither `ModelExchange` nor `CoSimulation`"),
         (of(&scheduled), "cannot be loaded"),
         (changed("</ModelVariables>", clock), "clock `tick`"),
