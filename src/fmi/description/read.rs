@@ -336,7 +336,7 @@ fn clock(element: &Element) -> Result<ClockInterval, FmuError> {
 
 fn structure(element: &Element, version: Version, places: &Places) -> Result<Structure, FmuError> {
     let all = |group: &str, name: &str| {
-        let found = unknowns_of(element, version, (group, name));
+        let found = rules::unknowns_of(element, version, (group, name));
         found.iter().map(|one| unknown(one, version, places)).collect::<Result<Vec<_>, _>>()
     };
     Ok(Structure {
@@ -346,18 +346,6 @@ fn structure(element: &Element, version: Version, places: &Places) -> Result<Str
         initial_unknowns: all("InitialUnknowns", "InitialUnknown")?,
         event_indicators: all("", "EventIndicator")?,
     })
-}
-
-/// The elements of a list: in FMI 2.0 they are in a group, in FMI 3.0 they have a name of their own.
-pub(super) fn unknowns_of<'a, 'i>(
-    structure: &Element<'a, 'i>,
-    version: Version,
-    (group, name): (&str, &str),
-) -> Vec<Element<'a, 'i>> {
-    match version {
-        Version::V2 => structure.elements(group, "Unknown"),
-        Version::V3 => structure.children().into_iter().filter(|one| one.name() == name).collect(),
-    }
 }
 
 fn unknown(element: &Element, version: Version, places: &Places) -> Result<Unknown, FmuError> {

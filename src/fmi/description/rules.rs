@@ -1,7 +1,6 @@
 //! What the text of the standard requires beyond its schemas: names that are unique, references that lead
 //! somewhere, attributes that go together (FMI 2.0.5 §2.2, FMI 3.0.2 §2.4).
 
-use super::read::unknowns_of;
 use super::{
     Attributes, Causality, Description, Dimension, Initial, Kind, TypeDefinition, Unit, Unknown,
     Variability, Variable, Version,
@@ -51,6 +50,18 @@ pub(super) fn check(
     }?;
     checked.independent(root)?;
     checked.structure(root)
+}
+
+/// The elements of a list: in FMI 2.0 they are in a group, in FMI 3.0 they have a name of their own.
+pub(super) fn unknowns_of<'a, 'i>(
+    structure: &Element<'a, 'i>,
+    version: Version,
+    (group, name): (&str, &str),
+) -> Vec<Element<'a, 'i>> {
+    match version {
+        Version::V2 => structure.elements(group, "Unknown"),
+        Version::V3 => structure.children().into_iter().filter(|one| one.name() == name).collect(),
+    }
 }
 
 /// Refuses what two elements have though it must differ.

@@ -863,7 +863,7 @@ fn files_that_are_not_usable_units_are_refused() {
         ),
         (
             changed("start=\"-1e300\"", "start=\"low\""),
-            "line 18: `low` is not a value of the attribute `start`",
+            "line 16: `low` is not a value of the attribute `start`",
         ),
         (changed("unit=\"V\"", "unit=\"W\""), "`y` has the unit `W`"),
         (of(&without_kinds), "neither `ModelExchange` nor `CoSimulation`"),
