@@ -419,7 +419,7 @@ impl Checked<'_, '_, '_> {
             let elements = unknowns_of(&element, self.description.version, (group, name));
             let listed = elements.iter().zip(unknowns);
             let named = |own: &Unknown| &self.description.variables[own.variable];
-            for (element, own) in listed.clone().filter(|(_, own)| !is(named(own))) {
+            if let Some((element, own)) = listed.clone().find(|(_, own)| !is(named(own))) {
                 let name = &named(own).name;
                 return Err(element.error(format!("`{name}` is listed here, but is not {what}")));
             }

@@ -155,7 +155,9 @@ impl Kind {
             Kind::UInt64 => text.parse::<u64>().is_ok(),
             Kind::Boolean => matches!(text, "true" | "false" | "1" | "0"),
             Kind::String => true,
-            Kind::Binary => text.len() % 2 == 0 && text.bytes().all(|c| c.is_ascii_hexdigit()),
+            Kind::Binary => {
+                text.len().is_multiple_of(2) && text.bytes().all(|c| c.is_ascii_hexdigit())
+            }
             Kind::Clock => false,
         }
     }
