@@ -60,6 +60,7 @@ mod accumulation;
 mod before_event;
 mod chattering;
 mod continuation;
+mod curves;
 mod displacement;
 mod effort;
 mod error;

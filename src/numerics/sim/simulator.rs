@@ -403,6 +403,9 @@ impl Run<'_> {
     fn run(&mut self) -> Result<Ended, SimErrorKind> {
         let ends = |after: &After| matches!(after, After::Terminated | After::Stopped);
         let mut after = self.initialize()?;
+        if after == After::Restarted && self.is_curve() {
+            after = self.follow_curve()?;
+        }
         while !ends(&after) && self.t < self.problem.settings.stop {
             after = match self.step() {
                 Ok(time_event) => {
@@ -895,7 +898,7 @@ impl Run<'_> {
 
     /// Checks the end of a step that began at `begin`. An assertion that has failed within the step
     /// fails at the time when it began to.
-    fn check_step(&mut self, begin: f64) -> Result<(), SimErrorKind> {
+    pub(crate) fn check_step(&mut self, begin: f64) -> Result<(), SimErrorKind> {
         let Err(mut failed) = self.check() else { return Ok(()) };
         let is_assertion = |kind: &SimErrorKind| {
             matches!(kind, SimErrorKind::Evaluation(Failure::Assertion { .. }))
@@ -915,7 +918,12 @@ impl Run<'_> {
         Err(failed)
     }
 
-    fn advance_output(&mut self) {
+    /// The next output point.
+    pub(crate) fn next_output(&self) -> Option<f64> {
+        self.outputs.next_output
+    }
+
+    pub(crate) fn advance_output(&mut self) {
         let settings = self.problem.settings;
         self.outputs.output_number += 1;
         self.outputs.next_output =

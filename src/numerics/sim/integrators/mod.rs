@@ -158,7 +158,7 @@ impl Problem<'_> {
     }
 
     /// Asks before every attempt of a step whether to continue.
-    fn may_continue(&self) -> Result<(), SimErrorKind> {
+    pub(super) fn may_continue(&self) -> Result<(), SimErrorKind> {
         if self.statistics.attempts() >= self.budget.allowed {
             return Err(SimErrorKind::StepBudget);
         }
