@@ -217,6 +217,25 @@ pub(crate) fn set<T: Copy>(
     Ok(())
 }
 
+/// Reads Strings by their value references.
+pub(crate) fn get_strings(
+    handle: &Handle,
+    (references, values): (&[u32], &mut [*const c_char]),
+) -> Result<(), Wrong> {
+    for (value, reference) in values.iter_mut().zip(references) {
+        *value = handle.instance.string(*reference)?.as_ptr();
+    }
+    Ok(())
+}
+
+/// Refuses to set Strings.
+pub(crate) fn set_strings(n: usize) -> Result<(), Wrong> {
+    match n {
+        0 => Ok(()),
+        _ => Err("Strings of the unit are constants: export the model with other ones".into()),
+    }
+}
+
 /// Keeps the state of an instance: a new one, or in the place of one that was kept.
 pub(crate) fn keep_state(handle: &Handle, place: *mut *mut c_void) -> Result<(), Wrong> {
     put_state(handle.instance.state.clone(), place)

@@ -201,7 +201,7 @@ impl Instance {
                 variables.push(at);
                 Ok(Row::Variable(variables.len() - 1))
             }
-            Some(Place::Indicator(_)) | None => Err(Wrong::Error(format!(
+            Some(Place::Indicator(_) | Place::Text(_)) | None => Err(Wrong::Error(format!(
                 "the variable with value reference {reference} has no derivatives"
             ))),
         }

@@ -8,6 +8,7 @@ use crate::runtime::{Snapshot, System};
 use crate::sim::{EventOutcome, Events, Failure, Residual, SimError, SimErrorKind, Simulator};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ffi::{CStr, CString};
 use std::sync::Arc;
 
 /// Why a function failed.
@@ -387,6 +388,15 @@ impl Instance {
         })
     }
 
+    /// The value of a String.
+    pub(crate) fn string(&self, reference: u32) -> Result<&CStr, Wrong> {
+        let text = match self.variable(reference, &[ValueKind::String])?.place {
+            Place::Text(at) => self.model.strings.get(at),
+            _ => None,
+        };
+        text.map(CString::as_c_str).ok_or_else(|| "the String has no value".into())
+    }
+
     /// The value of a variable.
     pub(crate) fn value(&mut self, reference: u32, kinds: &[ValueKind]) -> Result<f64, Wrong> {
         let variable = self.variable(reference, kinds)?;
@@ -404,6 +414,7 @@ impl Instance {
                 let all = self.all_indicators()?;
                 return all.get(at).copied().ok_or_else(|| "there is no such indicator".into());
             }
+            Place::Text(_) => return Err("a String is not a number".into()),
             Place::Variable(at) => at,
         };
         use crate::codegen::Access;

@@ -2,6 +2,7 @@
 
 use crate::codegen::Program;
 use crate::fmi::export::{Content, FILE};
+use std::ffi::CString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -10,6 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 pub(crate) struct Loaded {
     pub(crate) content: Content,
     pub(crate) program: Arc<Program>,
+    /// The strings of the content as strings of C, which importers read as long as it is in use.
+    pub(crate) strings: Vec<CString>,
 }
 
 /// The models in use, by their files and tokens.
@@ -43,7 +46,9 @@ pub(crate) fn load(resources: &Path, token: &str) -> Result<Arc<Loaded>, String>
             content.token
         ));
     }
-    let model = Arc::new(Loaded { content, program });
+    let text = |own: &String| CString::new(own.replace('\0', " ")).unwrap_or_default();
+    let strings = content.strings.iter().map(text).collect();
+    let model = Arc::new(Loaded { content, program, strings });
     in_use.push((path, Arc::downgrade(&model)));
     Ok(model)
 }

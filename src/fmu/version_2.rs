@@ -4,9 +4,9 @@
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 
 use crate::boundary::{
-    DISCARD, Handle, Log, Logger, Logger2, call, folder, free_state, get, hand_over, keep_state,
-    read_state, restore_state, set, slice, slice_mut, state_size, strings, take_back, text, write,
-    write_state,
+    DISCARD, Handle, Log, Logger, Logger2, call, folder, free_state, get, get_strings, hand_over,
+    keep_state, read_state, restore_state, set, set_strings, slice, slice_mut, state_size, strings,
+    take_back, text, write, write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, InterfaceKind, Wrong};
@@ -178,16 +178,16 @@ fn integer(value: f64) -> Result<c_int, Wrong> {
     }
 }
 
-const NO_STRINGS: &str = "the unit has no variables of type String";
-
 #[unsafe(no_mangle)]
 extern "C" fn fmi2GetString(
     instance: *mut c_void,
-    _references: *const c_uint,
+    references: *const c_uint,
     n: usize,
-    _values: *mut *const c_char,
+    values: *mut *const c_char,
 ) -> c_int {
-    call(instance, "fmi2GetString", |_| if n == 0 { Ok(()) } else { Err(NO_STRINGS.into()) })
+    call(instance, "fmi2GetString", |handle| {
+        get_strings(handle, (slice(references, n)?, slice_mut(values, n)?))
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -197,7 +197,7 @@ extern "C" fn fmi2SetString(
     n: usize,
     _values: *const *const c_char,
 ) -> c_int {
-    call(instance, "fmi2SetString", |_| if n == 0 { Ok(()) } else { Err(NO_STRINGS.into()) })
+    call(instance, "fmi2SetString", |_| set_strings(n))
 }
 
 states!(

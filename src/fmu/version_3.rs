@@ -4,8 +4,9 @@
 #![allow(non_snake_case, reason = "the names are those of the standard")]
 
 use crate::boundary::{
-    Handle, Log, Logger, Logger3, call, folder, free_state, get, hand_over, keep_state, read_state,
-    restore_state, set, slice, slice_mut, state_size, strings, take_back, text, write, write_state,
+    Handle, Log, Logger, Logger3, call, folder, free_state, get, get_strings, hand_over,
+    keep_state, read_state, restore_state, set, set_strings, slice, slice_mut, state_size, strings,
+    take_back, text, write, write_state,
 };
 use crate::fmi::export::ValueKind;
 use crate::instance::{Instance, InterfaceKind, Wrong};
@@ -186,6 +187,31 @@ macro_rules! values {
     };
 }
 
+#[unsafe(no_mangle)]
+extern "C" fn fmi3GetString(
+    instance: *mut c_void,
+    references: *const u32,
+    n_references: usize,
+    values: *mut *const c_char,
+    n: usize,
+) -> c_int {
+    call(instance, "fmi3GetString", |handle| {
+        let references = slice(references, n_references)?;
+        get_strings(handle, (references, slice_mut(values, same(n, n_references)?)?))
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi3SetString(
+    instance: *mut c_void,
+    _references: *const u32,
+    n_references: usize,
+    _values: *const *const c_char,
+    _n: usize,
+) -> c_int {
+    call(instance, "fmi3SetString", |_| set_strings(n_references))
+}
+
 /// All variables are scalars.
 fn same(n: usize, n_references: usize) -> Result<usize, Wrong> {
     match n == n_references {
@@ -231,8 +257,6 @@ macro_rules! absent {
 }
 
 absent! {
-    fmi3GetString(_values: *mut *const c_char, _values_count: usize) = "variables of type String";
-    fmi3SetString(_values: *const *const c_char, _values_count: usize) = "variables of type String";
     fmi3GetBinary(_sizes: *mut usize, _values: *mut *const u8, _values_count: usize) = "binary variables";
     fmi3SetBinary(_sizes: *const usize, _values: *const *const u8, _values_count: usize) = "binary variables";
     fmi3GetClock(_values: *mut bool) = "clocks";

@@ -10,6 +10,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+use crate::flatten::Experiment;
 pub use read::read;
 pub use words::{Causality, DependencyKind, Initial, Kind, Variability};
 pub(crate) use write::base_unit;
@@ -228,6 +229,14 @@ pub struct DefaultExperiment {
     pub step: Option<f64>,
 }
 
+impl DefaultExperiment {
+    /// What the annotation `experiment` of a model with this experiment would say.
+    pub fn annotation(self) -> Experiment {
+        let DefaultExperiment { start, stop, tolerance, step } = self;
+        Experiment { start_time: start, stop_time: stop, interval: step, tolerance }
+    }
+}
+
 /// A variable.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Variable {
@@ -271,7 +280,13 @@ pub struct Variable {
     pub aliases: Vec<VariableAlias>,
     /// When a clock ticks (FMI 3.0).
     pub clock: Option<ClockInterval>,
+    /// Whether it is none of the model's and results need not have it (FMI 3.0): an annotation of this
+    /// program says so.
+    pub is_internal: bool,
 }
+
+/// The type of the annotation of internal variables.
+const INTERNAL: &str = "gapilib.internal";
 
 /// Another name of a variable.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -5,7 +5,7 @@ use super::rules;
 use super::schema::Schema;
 use super::{
     About, Attributes, BASE_UNITS, BaseUnit, Causality, ClockInterval, DefaultExperiment,
-    DependencyKind, Description, Dimension, DisplayUnit, Initial, Interface, Item, Kind,
+    DependencyKind, Description, Dimension, DisplayUnit, INTERNAL, Initial, Interface, Item, Kind,
     LogCategory, Structure, TypeDefinition, Unit, Unknown, Variability, Variable, VariableAlias,
     Version,
 };
@@ -273,6 +273,10 @@ fn variable(element: &Element, version: Version) -> Result<Variable, FmuError> {
         clocks: element.list("clocks")?.unwrap_or_default(),
         aliases: named("Alias").map(alias).collect::<Result<_, FmuError>>()?,
         clock: (kind == Kind::Clock).then(|| clock(element)).transpose()?,
+        is_internal: element
+            .elements("Annotations", "Annotation")
+            .iter()
+            .any(|own| own.get("type") == Some(INTERNAL)),
     })
 }
 

@@ -119,6 +119,9 @@ fn both_versions_are_read_as_they_are_written() {
         let text = write(&description);
         assert_eq!(read(&text).unwrap(), description, "{text}");
     }
+    let mut description = with_variables(Version::V3);
+    description.variables[2].is_internal = true;
+    assert_eq!(read(&write(&description)).unwrap(), description);
 }
 
 #[test]

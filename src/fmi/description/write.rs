@@ -1,8 +1,8 @@
 //! Writes descriptions, as the schemas of the standard order their elements.
 
 use super::{
-    Attributes, BASE_UNITS, BaseUnit, ClockInterval, Description, Dimension, Interface, Kind,
-    Structure, TypeDefinition, Unit, Unknown, Variable, Version,
+    Attributes, BASE_UNITS, BaseUnit, ClockInterval, Description, Dimension, INTERNAL, Interface,
+    Kind, Structure, TypeDefinition, Unit, Unknown, Variable, Version,
 };
 use crate::xml::{Xml, number};
 use std::fmt::{Display, Write};
@@ -269,6 +269,11 @@ fn inside(xml: &mut Xml, own: &Variable) {
     let is_text = matches!(own.kind, Kind::String | Kind::Binary);
     if !is_text && !own.start.is_empty() {
         xml.attribute("start", list(&own.start));
+    }
+    if own.is_internal {
+        xml.element("Annotations", |xml| {
+            xml.element("Annotation", |xml| xml.attribute("type", INTERNAL));
+        });
     }
     for dimension in &own.dimensions {
         xml.element("Dimension", |xml| match dimension {

@@ -21,6 +21,8 @@ pub struct Content {
     pub variables: Vec<Exported>,
     /// The numbers that the program gives to the continuous states, in their order.
     pub states: Vec<usize>,
+    /// Values of Strings, which are constants of a unit.
+    pub strings: Vec<String>,
     /// Parameters whose values are not those of the model, by their positions.
     pub set: Vec<(usize, f64)>,
     program: Vec<u8>,
@@ -52,6 +54,8 @@ pub enum ValueKind {
     Boolean,
     /// A literal by its number.
     Enumeration,
+    /// A text.
+    String,
 }
 
 /// Where the value of a variable is found.
@@ -67,6 +71,8 @@ pub enum Place {
     Derivative(usize),
     /// The event indicator of this number.
     Indicator(usize),
+    /// The text of this number in [`Content::strings`].
+    Text(usize),
 }
 
 /// How a variable is set.
@@ -109,6 +115,7 @@ impl Content {
             tolerance: program.experiment().tolerance.unwrap_or(1e-6),
             variables,
             states,
+            strings: model.strings.values().map(|own| own.value.clone()).collect(),
             set: model.values.iter().map(|(parameter, value)| (*parameter, *value)).collect(),
             program: program_bytes?,
             n_sources: sources.len(),
@@ -137,6 +144,7 @@ impl Content {
             let is_found = match own.place {
                 Place::Variable(at) => at < variables,
                 Place::State(at) | Place::Derivative(at) => at < n,
+                Place::Text(at) => at < self.strings.len(),
                 Place::Time | Place::Indicator(_) => true,
             };
             let is_set = match own.setter {

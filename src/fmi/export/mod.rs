@@ -42,6 +42,8 @@ pub struct Model<'p> {
     pub program: &'p Program,
     /// The class, with its modification.
     pub name: &'p str,
+    /// Its name in the unit.
+    pub unit_name: &'p str,
     /// Its description string.
     pub description: Option<&'p str>,
     /// Its inputs by their names: a continuous one is a state whose derivative is zero, with the
@@ -51,6 +53,8 @@ pub struct Model<'p> {
     pub starts: BTreeMap<String, String>,
     /// Parameters that are not the model's own.
     pub hidden: BTreeSet<String>,
+    /// Constants and parameters of type String: a model has to be translated again for another value.
+    pub strings: BTreeMap<String, Text>,
     /// What variables measure, by their names.
     pub quantities: BTreeMap<String, String>,
     /// Values of parameters that are not those of the model, by their positions.
@@ -73,11 +77,25 @@ impl Model<'_> {
     }
 }
 
+/// A constant of type String.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Text {
+    /// Its value.
+    pub value: String,
+    /// What it is, in few words.
+    pub description: Option<String>,
+}
+
 /// How an input is set.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Input {
-    /// As a state; its start value is that of this parameter.
-    State(String),
+    /// As a state.
+    State {
+        /// The parameter that holds its start value.
+        parameter: String,
+        /// This value.
+        start: f64,
+    },
     /// As a recorded input that begins with this value.
     Recorded(f64),
 }
@@ -201,7 +219,7 @@ fn describe(
 ) -> Description {
     let program = model.program;
     let interface = Interface {
-        model_identifier: identifier(model.name),
+        model_identifier: identifier(model.unit_name),
         can_get_and_set_state: true,
         can_serialize_state: program.has_snapshots(),
         provides_directional_derivatives: true,
@@ -223,7 +241,7 @@ fn describe(
     let start = experiment.start_time.unwrap_or(0.0);
     Description {
         version,
-        model_name: model.name.to_owned(),
+        model_name: model.unit_name.to_owned(),
         token: content.token.clone(),
         about: About {
             description: model.description.map(str::to_owned),

@@ -71,7 +71,7 @@ impl Table {
             Place::State(state) => Some(Needs { states: vec![state], ..Needs::default() }),
             Place::Derivative(state) => program.needs_of_derivative(state),
             Place::Variable(at) => program.needs_of(at),
-            Place::Time | Place::Indicator(_) => None,
+            Place::Time | Place::Indicator(_) | Place::Text(_) => None,
         };
         self.dependencies(needs, version)
     }

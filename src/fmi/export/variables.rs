@@ -46,6 +46,7 @@ impl Table {
             table.add_variable(model, &rows, version, at)?;
         }
         table.add_states(model, &rows);
+        table.add_strings(model);
         if kinds.model_exchange {
             table.add_indicators(program, version);
         }
@@ -107,7 +108,9 @@ impl Table {
         }
         let (state, derivative) = (rows.state(name), rows.derivative(name));
         let Some(kind) = value_kind(&info.base) else { return Ok(()) };
-        if info.protected && state.is_none() && derivative.is_none() {
+        // The derivatives of inputs are none of the model's.
+        let is_of_input = derivative.is_some_and(|state| rows.is_input[state]);
+        if is_of_input || info.protected && state.is_none() && derivative.is_none() {
             return Ok(());
         }
         let input = model.inputs.get(name).map(|input| rows.setter(model, name, input));
@@ -177,6 +180,22 @@ impl Table {
         }
     }
 
+    /// Strings, which are constants.
+    fn add_strings(&mut self, model: &Model) {
+        for (at, (name, text)) in model.strings.iter().enumerate() {
+            let variable = Variable {
+                name: name.clone(),
+                description: text.description.clone(),
+                kind: Kind::String,
+                variability: Variability::Constant,
+                initial: Some(Initial::Exact),
+                start: vec![text.value.clone()],
+                ..Variable::default()
+            };
+            self.add(variable, ValueKind::String, Place::Text(at), Setter::None);
+        }
+    }
+
     /// Event indicators; FMI 3.0 knows them as variables.
     fn add_indicators(&mut self, program: &Program, version: Version) {
         self.n_indicators = program.n_indicators();
@@ -186,6 +205,7 @@ impl Table {
         for at in 0..self.n_indicators {
             let variable = Variable {
                 name: format!("event_indicator[{}]", at + 1),
+                is_internal: true,
                 initial: Some(Initial::Calculated),
                 ..Variable::default()
             };
@@ -211,7 +231,7 @@ impl Rows {
         let by_name = names.iter().cloned().zip(0..).collect();
         let mut rows = Rows { is_input: vec![false; n], names, by_name };
         for (name, input) in &model.inputs {
-            if let Input::State(_) = input {
+            if let Input::State { .. } = input {
                 let (state, _) = rows.state_of_input(model, name)?;
                 rows.is_input[state] = true;
             }
@@ -260,11 +280,10 @@ impl Rows {
         let program = model.program;
         let lost = || fault!(NOT_SUPPORTED, "the input `{name}` is not part of the equations");
         match input {
-            Input::State(parameter) => {
+            Input::State { parameter, start: value } => {
                 let (state, is_negated) = self.state_of_input(model, name)?;
                 let start = program.find_parameter(parameter)?;
-                let value = model.value(start);
-                Ok((Setter::Input { state, is_negated, start }, value))
+                Ok((Setter::Input { state, is_negated, start }, *value))
             }
             Input::Recorded(start) => {
                 let input = program.recorded_input(name).ok_or_else(lost)?;
@@ -333,6 +352,7 @@ fn kind_of(kind: ValueKind, version: Version) -> Kind {
         ValueKind::Integer => Kind::Int64,
         ValueKind::Boolean => Kind::Boolean,
         ValueKind::Enumeration => Kind::Enumeration,
+        ValueKind::String => Kind::String,
     }
 }
 
@@ -342,6 +362,8 @@ fn written(value: f64, kind: ValueKind) -> String {
         ValueKind::Real => format!("{value:?}"),
         ValueKind::Integer | ValueKind::Enumeration => format!("{value:.0}"),
         ValueKind::Boolean => (value != 0.0).to_string(),
+        // Their strings are written as they are.
+        ValueKind::String => String::new(),
     }
 }
 
@@ -373,7 +395,7 @@ fn attributes(
         ValueKind::Integer => {
             Attributes { quantity, min: own.min, max: own.max, ..Attributes::default() }
         }
-        ValueKind::Boolean | ValueKind::Enumeration => Attributes::default(),
+        ValueKind::Boolean | ValueKind::Enumeration | ValueKind::String => Attributes::default(),
     }
 }
 

@@ -43,9 +43,9 @@ impl System {
     }
 
     /// The log messages of the last simulation, and how many more there were.
-    pub fn log_messages(&self) -> (Vec<LogMessage>, u64) {
-        let Some(log) = &self.messages.log else { return (Vec::new(), 0) };
-        (log.recorded.clone(), log.omitted)
+    pub fn log_messages(&self) -> (&[LogMessage], u64) {
+        let log = self.messages.log.as_ref();
+        log.map_or((&[][..], 0), |log| (&log.recorded, log.omitted))
     }
 
     pub(super) fn forget_notices(&mut self) {

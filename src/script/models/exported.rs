@@ -2,14 +2,15 @@
 //!
 //! The program of a unit is compiled for it. Its continuous inputs at the top level are states whose
 //! derivative is zero, which the importer sets: so event indicators and the exact Jacobian see them as
-//! they see states. Other inputs are recorded ones with one sample. A fixed start value is a parameter
-//! of its own, so that an importer may set it.
+//! they see states. Other inputs are recorded ones with one sample. The start value of an input, and a
+//! fixed one of another variable, is a parameter of its own, so that an importer may set it. Strings are
+//! constants: for another value a model is translated again.
 
 use super::simulation::{self, Translated};
 use crate::Session;
 use crate::causalize;
 use crate::codegen::Program;
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::errors::FILE_ERROR;
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, RecordedInput, Variability, Variable};
@@ -20,20 +21,43 @@ use crate::syntax::ast::{
     CausalityPrefix, Comment, Equation, EquationKind, Expression, ExpressionKind,
 };
 use gapilib_fmi::description::Version;
-use gapilib_fmi::export::{Input, Kinds, Model, Unit};
+use gapilib_fmi::export::{Input, Kinds, Model, Text, Unit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+
+/// What a unit is to be.
+#[derive(Debug, Clone, Copy)]
+pub struct Form<'n> {
+    /// The version of the standard.
+    pub version: Version,
+    /// Who integrates.
+    pub kinds: Kinds,
+    /// The name of the model in the unit; that of the class if there is none.
+    pub name: Option<&'n str>,
+}
 
 /// What becomes of the variables of a model in a unit.
 #[derive(Default)]
 struct Made {
-    inputs: BTreeMap<String, Input>,
+    inputs: BTreeMap<String, MadeInput>,
     starts: BTreeMap<String, String>,
     hidden: BTreeSet<String>,
     /// Inputs, each with the parameter that is its derivative.
     rates: Vec<(String, String)>,
     quantities: BTreeMap<String, String>,
+    strings: BTreeMap<String, Text>,
+    /// Strings that are not in the unit.
+    left_out: Vec<String>,
     description: Option<String>,
+}
+
+/// What becomes of an input.
+struct MadeInput {
+    /// Whether it is a state, or a recorded input.
+    is_state: bool,
+    /// The parameter that holds its start value; none where it has the default of its type.
+    start: Option<String>,
+    default: f64,
 }
 
 /// Translates a model whose inputs an importer gives values.
@@ -51,12 +75,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<(), Vec<Diagnos
 ///
 /// # Errors
 /// What is wrong with the model; what it does that units cannot, with the place.
-pub fn unit(
-    session: &mut Session,
-    problem: &str,
-    version: Version,
-    kinds: Kinds,
-) -> Result<Unit, Vec<Diagnostic>> {
+pub fn unit(session: &mut Session, problem: &str, form: Form<'_>) -> Result<Unit, Vec<Diagnostic>> {
     translate(session, problem)?;
     let before = session.current_values();
     let mut made = Made::default();
@@ -64,10 +83,16 @@ pub fn unit(
         session.vary_current(|model, flat| prepared(model, flat.clone(), &mut made).map(Some));
     let unit = varied.and_then(|model| {
         let at = session.call_site();
-        of_program(session, problem, &model, &made, version, kinds)
-            .map_err(|fault| vec![fault.at(at)])
+        of_program(session, (problem, &model), &made, form).at(at).map_err(|error| vec![error])
     });
     session.restore_values(before);
+    if unit.is_ok() && !made.left_out.is_empty() {
+        let names: Vec<&str> = made.left_out.iter().map(String::as_str).collect();
+        let names = suggest::listed(&names);
+        let message =
+            format!("the unit has no {names}: Strings are in it where they are written as a text");
+        session.note(NOT_SUPPORTED, message);
+    }
     unit
 }
 
@@ -78,10 +103,9 @@ pub fn unit(
 pub fn exported(
     session: &mut Session,
     problem: &str,
-    version: Version,
-    kinds: Kinds,
+    form: Form<'_>,
 ) -> Result<Vec<u8>, Vec<Diagnostic>> {
-    let unit = unit(session, problem, version, kinds)?;
+    let unit = unit(session, problem, form)?;
     let at = session.call_site();
     let runtime = session.world.unit_runtime().map_err(|error| {
         let fault = fault!(
@@ -98,11 +122,9 @@ pub fn exported(
 
 fn of_program(
     session: &mut Session,
-    problem: &str,
-    model: &Arc<Translated>,
+    (problem, model): (&str, &Arc<Translated>),
     made: &Made,
-    version: Version,
-    kinds: Kinds,
+    form: Form<'_>,
 ) -> Result<Unit, Fault> {
     let program = &model.program;
     if let Some((what, span)) = program.needs_past() {
@@ -126,14 +148,44 @@ fn of_program(
     let exported = Model {
         program,
         name: problem,
+        unit_name: form.name.unwrap_or(problem),
         description: made.description.as_deref(),
-        inputs: made.inputs.clone(),
+        inputs: inputs(session, model, made)?,
         starts: made.starts.clone(),
         hidden: made.hidden.clone(),
         quantities: made.quantities.clone(),
+        strings: made.strings.clone(),
         values: values.collect(),
     };
-    Unit::new(&exported, version, kinds)
+    Unit::new(&exported, form.version, form.kinds)
+}
+
+/// The inputs with the start values that follow from the parameters as scripts have set them.
+fn inputs(
+    session: &mut Session,
+    model: &Arc<Translated>,
+    made: &Made,
+) -> Result<BTreeMap<String, Input>, Fault> {
+    let mut all = BTreeMap::new();
+    for (name, own) in &made.inputs {
+        let start = match &own.start {
+            None => own.default,
+            Some(parameter) => {
+                let found = session.numbers_of(model, std::slice::from_ref(parameter));
+                let found = found.map_err(|error| Fault::new(error.code, error.message.clone()))?;
+                found.and_then(|numbers| numbers.first().copied()).ok_or_else(|| {
+                    fault!(NOT_SUPPORTED, "the start value of the input `{name}` cannot be computed";
+                        help: "write it as a number")
+                })?
+            }
+        };
+        let input = match (own.is_state, &own.start) {
+            (true, Some(parameter)) => Input::State { parameter: parameter.clone(), start },
+            _ => Input::Recorded(start),
+        };
+        all.insert(name.clone(), input);
+    }
+    Ok(all)
 }
 
 /// The model of a unit.
@@ -157,12 +209,31 @@ fn prepared(
         match (is_input, is_continuous) {
             (true, true) => input_state(&mut flat, variable, made)?,
             (true, false) => recorded(&mut flat, variable, made)?,
-            (false, true) => start_parameter(&mut flat, variable, made),
-            (false, false) => {}
+            (false, _) if variable.base == BaseType::String => text(variable, made),
+            (false, _) if variable.variability > Variability::Parameter => {
+                start_parameter(&mut flat, variable, made);
+            }
+            (false, _) => {}
         }
     }
     let program = Program::compile(causalize::causalize(&flat)?)?;
     Ok(Translated::new(&model.problem, flat, program))
+}
+
+/// A String, which is a constant where it is written as a text.
+fn text(variable: &Variable, made: &mut Made) {
+    let value = variable.binding.as_ref().map(|binding| &binding.kind);
+    match (value, &variable.dims[..]) {
+        _ if variable.protected => {}
+        (Some(ExpressionKind::String(value)), [])
+            if variable.variability <= Variability::Parameter =>
+        {
+            let description = variable.description.as_ref().map(ToString::to_string);
+            let text = Text { value: value.to_string(), description };
+            made.strings.insert(variable.name.to_string(), text);
+        }
+        _ => made.left_out.push(variable.name.to_string()),
+    }
 }
 
 /// What a variable measures.
@@ -207,20 +278,13 @@ fn parameter(
 /// An input becomes a state: der(u) = rate, a parameter that is zero.
 fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Result<(), Diagnostic> {
     let unreadable = || fault!(NOT_SUPPORTED, "`{}` cannot be an input", input.name).at(input.span);
-    let filled = |value: &str| {
-        let sizes: String = input.dims.iter().map(|size| format!(", {size}")).collect();
-        let text =
-            if sizes.is_empty() { value.to_owned() } else { format!("fill({value}{sizes})") };
-        syntax::parse_expression(SourceId::NONE, &text).map_err(|_| unreadable())
-    };
+    let filled = |value: &str| filled(value, &input.dims).ok_or_else(unreadable);
     if flat.to_string().contains(&format!("der({})", input.name)) {
         return Err(reads_derivative(&input.name).at(input.span));
     }
     let start = match input.attributes.get("start").map(|start| &start.value) {
         None => filled("0.0")?,
-        // One number for all elements.
-        Some(one) if is_number(one) => filled(&syntax::print::expression(one))?,
-        Some(all) => all.clone(),
+        Some(start) => of_all_elements(start, &input.dims).ok_or_else(unreadable)?,
     };
     let (start_name, start_value) = parameter(flat, input, "start", made).ok_or_else(unreadable)?;
     let (rate_name, rate) = parameter(flat, input, "rate", made).ok_or_else(unreadable)?;
@@ -242,9 +306,25 @@ fn input_state(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Resul
     for name in element_names(input) {
         let of = |parameter: &str| format!("{parameter}{}", &name[input.name.len()..]);
         made.rates.push((name.clone(), of(&rate_name)));
-        made.inputs.insert(name.clone(), Input::State(of(&start_name)));
+        let start = Some(of(&start_name));
+        made.inputs.insert(name.clone(), MadeInput { is_state: true, start, default: 0.0 });
     }
     Ok(())
+}
+
+/// An expression for an array of these sizes, all elements of which have one value.
+fn filled(value: &str, dims: &[usize]) -> Option<Expression> {
+    let sizes: String = dims.iter().map(|size| format!(", {size}")).collect();
+    let text = if sizes.is_empty() { value.to_owned() } else { format!("fill({value}{sizes})") };
+    syntax::parse_expression(SourceId::NONE, &text).ok()
+}
+
+/// The value of an attribute of all elements: one number holds for each.
+fn of_all_elements(value: &Expression, dims: &[usize]) -> Option<Expression> {
+    match is_number(value) {
+        true => filled(&syntax::print::expression(value), dims),
+        false => Some(value.clone()),
+    }
 }
 
 fn is_number(e: &Expression) -> bool {
@@ -277,7 +357,7 @@ fn recorded(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Result<(
     if !input.dims.is_empty() {
         return Err(array(input));
     }
-    let first = match &input.base {
+    let default = match &input.base {
         BaseType::Enumeration(_) => 1.0,
         BaseType::Real | BaseType::Integer | BaseType::Boolean => 0.0,
         BaseType::String | BaseType::ExternalObject(_) | BaseType::Clock => {
@@ -287,19 +367,21 @@ fn recorded(flat: &mut FlatModel, input: &Variable, made: &mut Made) -> Result<(
             return Err(fault.at(input.span));
         }
     };
-    let start = match input.attributes.get("start").map(|start| &start.value.kind) {
-        Some(ExpressionKind::Integer(value)) => *value as f64,
-        Some(ExpressionKind::Real(value)) => *value,
-        Some(ExpressionKind::Boolean(value)) => f64::from(u8::from(*value)),
-        _ => first,
-    };
+    let start = input.attributes.get("start").map(|start| start.value.clone());
+    let start = start.and_then(|value| {
+        let (name, _) = parameter(flat, input, "start", made)?;
+        flat.variables.get_mut(name.as_str())?.binding = Some(value);
+        Some(name)
+    });
+    // The unit gives it its start value before anything is computed.
     flat.recorded.push(RecordedInput {
         name: input.name.clone(),
         times: [0.0].into(),
-        values: [start].into(),
+        values: [default].into(),
         is_held: true,
     });
-    made.inputs.insert(input.name.to_string(), Input::Recorded(start));
+    let own = MadeInput { is_state: false, start, default };
+    made.inputs.insert(input.name.to_string(), own);
     Ok(())
 }
 
@@ -309,15 +391,19 @@ fn start_parameter(flat: &mut FlatModel, variable: &Variable, made: &mut Made) {
         |attribute: &Attribute| matches!(attribute.value.kind, ExpressionKind::Boolean(true));
     let is_fixed = variable.attributes.get("fixed").is_some_and(is_true);
     let start = variable.attributes.get("start").filter(|start| !start.is_final);
-    let (Some(start), true, []) = (start, is_fixed, &variable.dims[..]) else { return };
+    let (Some(start), true) = (start, is_fixed) else { return };
+    let Some(value) = of_all_elements(&start.value, &variable.dims) else { return };
     let Some((name, reference)) = parameter(flat, variable, "start", made) else { return };
     if let Some(own) = flat.variables.get_mut(name.as_str()) {
-        own.binding = Some(start.value.clone());
+        own.binding = Some(value);
     }
     if let Some(own) = flat.variables.get_mut(&variable.name) {
         own.attributes.insert("start", Attribute { value: reference, is_final: false });
     }
-    made.starts.insert(variable.name.to_string(), name);
+    for element in element_names(variable) {
+        let of_element = format!("{name}{}", &element[variable.name.len()..]);
+        made.starts.insert(element, of_element);
+    }
 }
 
 /// The scalars of a variable, row-major.

@@ -26,6 +26,7 @@ use crate::{bail, causalize, fault, syntax};
 use indexmap::IndexMap;
 use regex::Regex;
 use rustc_hash::FxHashMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -66,6 +67,25 @@ pub struct Unfinished {
     pub why: Diagnostic,
     /// What was computed until then; `None` where it did not begin.
     pub until: Option<Box<Simulated>>,
+}
+
+impl Unfinished {
+    /// Writes what was computed to a result file, in the form that it has there; why it ended, with where
+    /// the results are.
+    pub(crate) fn kept(
+        self,
+        session: &mut Session,
+        path: &Path,
+        form: impl FnOnce(&mut Session, ResultTable) -> ResultTable,
+    ) -> Diagnostic {
+        match self.until {
+            None => self.why,
+            Some(until) => {
+                let table = form(session, until.table);
+                session.write_unfinished(path, &table, self.why)
+            }
+        }
+    }
 }
 
 impl From<Diagnostic> for Unfinished {
@@ -518,9 +538,9 @@ fn report_log(session: &mut Session, system: &System) {
         match warning {
             Some(code) => {
                 let message = format!("{text} (at t = {time})");
-                session.report(Fault::new(code, message).at(span).warning());
+                session.report(Fault::new(*code, message).at(*span).warning());
             }
-            None => session.print_of_script(&(text + "\n")),
+            None => session.print_of_script(&format!("{text}\n")),
         }
     }
     if omitted > 0 {

@@ -20,7 +20,7 @@ fn simulated(
     let settings = Settings { tolerance: 1e-8, ..Settings::default() };
     let ended = Simulator::new().run(&mut system, &settings, &mut rows);
     ended.map_err(|error| system.explain(&error).message.clone())?;
-    let warnings = system.log_messages().0.into_iter().map(|message| message.text).collect();
+    let warnings = system.log_messages().0.iter().map(|message| message.text.clone()).collect();
     let values = move |name: &str| {
         let at = program.find_variable(name).expect("the variable exists");
         let Access::Observed { column, .. } = program.variables()[at].access else {

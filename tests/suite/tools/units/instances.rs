@@ -319,3 +319,25 @@ fn the_functions_of_fmi_2_simulate_as_well() {
     close(x, (-1.0f64).exp(), 1e-7);
     assert_eq!(terminated, 0);
 }
+
+/// Strings are constants: they are read, and not set.
+#[test]
+fn strings_are_read() {
+    let unit = export("Named", Version::V3).unwrap();
+    let own = Instance::new(&unit, true);
+    own.initialize();
+    type Get =
+        unsafe extern "C" fn(*mut c_void, *const u32, usize, *mut *const c_char, usize) -> c_int;
+    type Set =
+        unsafe extern "C" fn(*mut c_void, *const u32, usize, *const *const c_char, usize) -> c_int;
+    let (reference, other) = (own.reference("label"), own.reference("x"));
+    let mut text: *const c_char = std::ptr::null();
+    let read = |reference: &u32, text: &mut *const c_char| unsafe {
+        function::<Get>("fmi3GetString")(own.pointer, reference, 1, text, 1)
+    };
+    assert_eq!(read(&reference, &mut text), 0);
+    assert_eq!(unsafe { CStr::from_ptr(text) }, c"two words");
+    let set = function::<Set>("fmi3SetString");
+    assert_eq!(unsafe { set(own.pointer, &reference, 1, &text, 1) }, 3);
+    assert_eq!(read(&other, &mut text), 3);
+}

@@ -8,7 +8,7 @@ mod exported;
 mod instances;
 
 use gapilib::Session;
-use gapilib::internals::script::models::exported::unit;
+use gapilib::internals::script::models::exported::{Form, unit};
 use gapilib::world::MemoryWorld;
 use gapilib_fmi::description::{Causality, Description, Initial, Version};
 use gapilib_fmi::export::{FILE, Kinds};
@@ -69,6 +69,12 @@ equation
   der(x) = -z;
   z + 0.1*z^3 + sin(z) = x;
 end Loop;
+model Named
+  parameter String label = \"two words\";
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -x;
+end Named;
 model Late
   Real x(start = 1, fixed = true);
 equation
@@ -211,9 +217,10 @@ struct Unpacked {
 fn export(class: &str, version: Version) -> Result<Unpacked, String> {
     let mut session = Session::new(Box::new(MemoryWorld::new()));
     session.load_text("Classes.mo", CLASSES).map_err(|errors| format!("{errors:?}"))?;
-    let unit = unit(&mut session, class, version, BOTH).map_err(|errors| {
-        errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("\n")
-    })?;
+    let unit =
+        unit(&mut session, class, Form { version, kinds: BOTH, name: None }).map_err(|errors| {
+            errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("\n")
+        })?;
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(FILE), unit.content.to_bytes().unwrap()).unwrap();
     Ok(Unpacked { folder, description: unit.description })
