@@ -26,6 +26,12 @@ pub(super) fn catch_all(interrupt: &Arc<AtomicBool>) {
     let _ = flag::register(signal_hook::consts::SIGINT, Arc::clone(interrupt));
 }
 
+/// Ctrl-C in the terminal does not end this process.
+pub(super) fn survive_interrupts() {
+    // Where it cannot be caught it ends the process as it always did.
+    let _ = flag::register(signal_hook::consts::SIGINT, Arc::default());
+}
+
 /// A write that exceeds the limit on the size of files fails with a message of its own, where the
 /// system would end the process.
 pub(super) fn survive_large_files() {

@@ -6,8 +6,14 @@
 use crate::FmuError;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Seek, Write};
+use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+
+/// Whether a path is that of a unit.
+pub fn is_unit(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fmu"))
+}
 
 /// The path of the description.
 pub const DESCRIPTION: &str = "modelDescription.xml";

@@ -1,5 +1,6 @@
 //! Functional mock-up units as models to identify.
 
+use super::model::settings_of;
 use super::{Instance, Model, Parameter};
 use crate::diag::Fault;
 use crate::errors::UNKNOWN_OUTPUT;
@@ -7,18 +8,12 @@ use crate::fault;
 use crate::fmi::description::{Causality, Variable};
 use crate::fmi::import::{
     Directions, FailureClass, Imported, InterfaceKind, Layout, NumberedPlan, Place, Plan, Samples,
-    is_parameter, is_triggered, starts, why_not_set,
+    is_parameter, is_recorded, starts, why_not_set,
 };
 use crate::sim::{
-    DaeSystem, Failure, OutputGrid, Settings, SimError, SimErrorKind, Simulator, Statistics,
-    Trajectory,
+    DaeSystem, Failure, Settings, SimError, SimErrorKind, Simulator, Statistics, Trajectory,
 };
 use std::sync::Arc;
-
-/// Output points where the unit gives no step.
-const INTERVALS: usize = 500;
-/// More output points than this are a mistake of the description.
-const MOST_INTERVALS: f64 = 1e6;
 
 /// A unit with what an experiment sets.
 #[derive(Clone)]
@@ -146,8 +141,8 @@ impl Model for ImportedModel {
     }
 
     fn names(&self) -> Vec<String> {
-        let has_value = |place| !is_triggered(self.unit.variable(place));
-        let scalars = self.layout.scalars().iter().filter(|scalar| has_value(scalar.place));
+        let has = |place| is_recorded(self.unit.variable(place));
+        let scalars = self.layout.scalars().iter().filter(|scalar| has(scalar.place));
         scalars.map(|scalar| scalar.name.clone()).collect()
     }
 
@@ -170,20 +165,7 @@ impl Model for ImportedModel {
     }
 
     fn settings(&self) -> Settings {
-        let (experiment, default) = (&self.unit.description.experiment, Settings::default());
-        let start = experiment.start.unwrap_or(default.start);
-        let stop = experiment.stop.unwrap_or(start + 1.0).max(start);
-        let intervals = experiment.step.map_or(INTERVALS, |step| {
-            let intervals = ((stop - start) / step).round();
-            if (1.0..=MOST_INTERVALS).contains(&intervals) { intervals as usize } else { INTERVALS }
-        });
-        Settings {
-            start,
-            stop,
-            output: OutputGrid::Intervals(intervals),
-            tolerance: experiment.tolerance.unwrap_or(default.tolerance),
-            ..default
-        }
+        settings_of(self.unit.description.experiment)
     }
 
     fn has_stop_time(&self) -> bool {

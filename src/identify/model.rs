@@ -1,8 +1,32 @@
 //! What the identification needs of a model: names, and systems to simulate.
 
 use crate::diag::{Diagnostic, Fault};
-use crate::sim::{DaeSystem, Settings, SimError, Simulator, Statistics, Trajectory};
+use crate::fmi::description::DefaultExperiment;
+use crate::sim::{DaeSystem, OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory};
 use serde::{Deserialize, Serialize};
+
+/// Output points where a model gives no interval.
+const INTERVALS: usize = 500;
+/// More output points than this are a mistake of the model.
+const MOST_INTERVALS: f64 = 1e6;
+
+/// The settings of a model that says this of its experiment.
+pub(super) fn settings_of(experiment: DefaultExperiment) -> Settings {
+    let default = Settings::default();
+    let start = experiment.start.unwrap_or(default.start);
+    let stop = experiment.stop.unwrap_or(start + 1.0).max(start);
+    let intervals = experiment.step.map_or(INTERVALS, |step| {
+        let intervals = ((stop - start) / step).round();
+        if (1.0..=MOST_INTERVALS).contains(&intervals) { intervals as usize } else { INTERVALS }
+    });
+    Settings {
+        start,
+        stop,
+        output: OutputGrid::Intervals(intervals),
+        tolerance: experiment.tolerance.unwrap_or(default.tolerance),
+        ..default
+    }
+}
 
 /// A model that can be simulated many times with different parameter values.
 pub trait Model: Send + Sync {

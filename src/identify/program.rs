@@ -1,20 +1,15 @@
 //! Compiled programs as models to identify.
 
+use super::model::settings_of;
 use super::{Instance, Model, Parameter, PortableModel};
 use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::{Diagnostic, Fault};
+use crate::fmi::description::DefaultExperiment;
 use crate::runtime::System;
-use crate::sim::{
-    DaeSystem, OutputGrid, Residual as _, Settings, SimError, Simulator, Statistics, Trajectory,
-};
+use crate::sim::{DaeSystem, Residual as _, Settings, SimError, Simulator, Statistics, Trajectory};
 use crate::source::with_source_table;
 use rustc_hash::FxHashSet;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Output points where the `experiment` annotation gives no interval.
-const INTERVALS: usize = 500;
-/// More output points than this are a mistake of the annotation.
-const MOST_INTERVALS: f64 = 1e6;
 
 /// A compiled model under the name that the script gave it.
 pub struct CompiledModel {
@@ -141,21 +136,13 @@ impl Model for CompiledModel {
     }
 
     fn settings(&self) -> Settings {
-        let experiment = self.program.experiment();
-        let default = Settings::default();
-        let start = experiment.start_time.unwrap_or(default.start);
-        let stop = experiment.stop_time.unwrap_or(start + 1.0).max(start);
-        let intervals = experiment.interval.map_or(INTERVALS, |interval| {
-            let intervals = ((stop - start) / interval).round();
-            if (1.0..=MOST_INTERVALS).contains(&intervals) { intervals as usize } else { INTERVALS }
-        });
-        Settings {
-            start,
-            stop,
-            output: OutputGrid::Intervals(intervals),
-            tolerance: experiment.tolerance.unwrap_or(default.tolerance),
-            ..default
-        }
+        let own = self.program.experiment();
+        settings_of(DefaultExperiment {
+            start: own.start_time,
+            stop: own.stop_time,
+            tolerance: own.tolerance,
+            step: own.interval,
+        })
     }
 
     fn has_stop_time(&self) -> bool {

@@ -125,6 +125,7 @@ impl Process for WorkerProcess {
         seconds: Option<f64>,
     ) -> Result<Answer, Ended> {
         let begin = Instant::now();
+        let mut cancelled: Option<Instant> = None;
         loop {
             match self.answers.recv_timeout(TICK) {
                 Ok(mut answer) => {
@@ -135,11 +136,16 @@ impl Process for WorkerProcess {
                 Err(RecvTimeoutError::Disconnected) => return Err(Ended::Itself(self.end())),
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            let is_cancelled = cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
+            if cancelled.is_none() && cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                // The end of the requests.
+                self.to = None;
+                cancelled = Some(Instant::now());
+            }
+            let is_ignored = cancelled.is_some_and(|since| since.elapsed() > LAST_WORDS);
             let is_late = seconds.is_some_and(|most| begin.elapsed().as_secs_f64() > most);
-            if is_cancelled || is_late {
+            if is_ignored || is_late {
                 self.kill();
-                return Err(if is_cancelled { Ended::Cancelled } else { Ended::TooSlow });
+                return Err(if is_ignored { Ended::Cancelled } else { Ended::TooSlow });
             }
         }
     }

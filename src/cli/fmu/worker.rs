@@ -4,6 +4,7 @@ use crate::fmi::description;
 use crate::fmi::import::{CallWatch, Unit, serve};
 use crate::limits;
 use crate::options::Limits;
+use crate::signals;
 use crate::terminal;
 use clap::Args;
 use std::fs::File;
@@ -60,10 +61,12 @@ fn work(arguments: &FmuWorkerArgs) -> io::Result<()> {
     let patience = patience()?;
     std::thread::spawn(move || watch(&watched, patience));
     let mut unit = Unit::new(&arguments.folder, description, calls);
-    let (mut from, mut to) = (BufReader::new(io::stdin()), BufWriter::new(to));
+    // Who asks is interrupted as well, and then says what becomes of the simulation.
+    signals::survive_interrupts();
+    let (from, mut to) = (BufReader::new(io::stdin()), BufWriter::new(to));
     static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
     let clock = || STARTED.elapsed().as_secs_f64();
-    serve(&mut unit, clock, || terminal::eprint(&format!("{ANSWERED}\n")), (&mut from, &mut to))
+    serve(&mut unit, clock, || terminal::eprint(&format!("{ANSWERED}\n")), (from, &mut to))
 }
 
 /// The standard output for the answers alone; what the unit prints goes to the error output.

@@ -75,8 +75,8 @@ impl Binary {
 }
 
 /// An instance, which is freed at its end.
-pub(super) struct Component<'b> {
-    binary: &'b Binary,
+pub(super) struct Component {
+    binary: Arc<Binary>,
     handle: Handle,
     log: Box<Log>,
     _callbacks: Box<Callbacks2>,
@@ -87,13 +87,13 @@ pub(super) fn text(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
-impl<'b> Component<'b> {
+impl Component {
     /// Makes an instance.
     pub fn new(
-        binary: &'b Binary,
+        binary: &Arc<Binary>,
         kind: InterfaceKind,
         identity: &Identity,
-    ) -> Result<Component<'b>, (CallError, Vec<super::LogMessage>)> {
+    ) -> Result<Component, (CallError, Vec<super::LogMessage>)> {
         let log = Box::new(Log::default());
         let environment = std::ptr::from_ref::<Log>(&log).cast_mut().cast::<c_void>();
         let callbacks = Box::new(Callbacks2 {
@@ -111,6 +111,7 @@ impl<'b> Component<'b> {
         binary.watch.leave();
         match made {
             Ok(handle) if !handle.is_null() => {
+                let binary = binary.clone();
                 Ok(Component { binary, handle, log, _callbacks: callbacks })
             }
             Ok(_) => {
@@ -127,7 +128,7 @@ impl<'b> Component<'b> {
     }
 
     /// The functions of its library.
-    pub(super) fn functions(&self) -> &'b Functions {
+    pub(super) fn functions(&self) -> &Functions {
         &self.binary.functions
     }
 
@@ -147,7 +148,7 @@ impl<'b> Component<'b> {
     }
 }
 
-impl Drop for Component<'_> {
+impl Drop for Component {
     fn drop(&mut self) {
         let free = match &self.binary.functions {
             Functions::V2(f) => f.free_instance.pointer,

@@ -81,7 +81,7 @@ fn judge(function: &'static str, status: Status) -> Result<(), CallError> {
 }
 
 /// Initialization and modes.
-impl Component<'_> {
+impl Component {
     /// Begins the initialization of a simulation.
     pub fn enter_initialization(
         &self,
@@ -204,7 +204,7 @@ impl Component<'_> {
 }
 
 /// Model exchange.
-impl Component<'_> {
+impl Component {
     /// Sets the time.
     pub fn set_time(&self, time: f64) -> Result<(), CallError> {
         match self.functions() {
@@ -296,7 +296,7 @@ impl Component<'_> {
 }
 
 /// Scheduled execution (FMI 3.0).
-impl Component<'_> {
+impl Component {
     /// Activates the part of a clock.
     pub fn activate(&self, clock: u32, time: f64) -> Result<(), CallError> {
         match self.functions() {
@@ -318,7 +318,7 @@ impl Component<'_> {
 }
 
 /// Co-simulation.
-impl Component<'_> {
+impl Component {
     /// Makes a step.
     pub fn step(&self, time: f64, length: f64) -> Result<StepEnd, CallError> {
         match self.functions() {
@@ -356,7 +356,7 @@ impl Component<'_> {
     }
 }
 
-impl Component<'_> {
+impl Component {
     /// The time at which the unit has ended the simulation within a step, if it has (FMI 2.0.5
     /// §4.2.4: `fmi2Terminated`, `fmi2LastSuccessfulTime`).
     fn terminated(&self) -> Option<f64> {
@@ -371,7 +371,7 @@ impl Component<'_> {
 }
 
 /// Values.
-impl Component<'_> {
+impl Component {
     /// Writes the values of variables of one kind, one after the other.
     pub fn get(&self, kind: Kind, references: &[u32], values: &mut [f64]) -> Result<(), CallError> {
         let count = references.len();

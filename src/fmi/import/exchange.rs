@@ -31,7 +31,7 @@ pub(super) struct States {
 
 /// A unit with its inputs and readings.
 pub(super) struct ExchangeSystem<'a> {
-    component: &'a Component<'a>,
+    component: &'a Component,
     inputs: Inputs<'a>,
     readings: Readings,
     states: States,
@@ -109,7 +109,7 @@ fn pattern(description: &Description, states: &[usize]) -> Pattern {
 impl<'a> ExchangeSystem<'a> {
     /// A system of an instance that has got its values.
     pub fn new(
-        component: &'a Component<'a>,
+        component: &'a Component,
         description: &Description,
         (inputs, readings): (Inputs<'a>, Readings),
         (settings, directions): (&'a Settings, Option<(Directions, &'a [f64])>),

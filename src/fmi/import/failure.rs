@@ -1,5 +1,6 @@
 //! How a simulation of a unit fails.
 
+use crate::sim::Statistics;
 use serde::{Deserialize, Serialize};
 
 /// Why a simulation failed.
@@ -30,4 +31,13 @@ pub struct SimulationFailure {
     pub class: FailureClass,
     /// Why, in one sentence without the time.
     pub message: String,
+    /// What it cost until then.
+    pub statistics: Box<Statistics>,
+}
+
+impl SimulationFailure {
+    /// A failure before any cost.
+    pub fn new(time: f64, class: FailureClass, message: String) -> SimulationFailure {
+        SimulationFailure { time, class, message, statistics: Box::default() }
+    }
 }

@@ -115,12 +115,7 @@ impl<'a> Inputs<'a> {
     }
 
     /// Gives the instance the values at `t`: of all inputs, or of those that change between events.
-    pub fn set(
-        &mut self,
-        component: &Component<'_>,
-        t: f64,
-        is_event: bool,
-    ) -> Result<(), CallError> {
+    pub fn set(&mut self, component: &Component, t: f64, is_event: bool) -> Result<(), CallError> {
         for input in &self.followed {
             let variable = &mut self.variables[input.variable];
             variable.values[input.samples.place.element] = input.value(t);

@@ -1,4 +1,4 @@
-//! The scalars of a unit: variables that are numbers, and the elements of arrays (FMI 3.0) with
+//! The scalars of a unit: variables that are numbers or Strings, and the elements of arrays (FMI 3.0) with
 //! subscripts from 1, `A[1,2]`. Sizes follow from start values of structural parameters, or from
 //! values that are given in their place.
 
@@ -31,6 +31,8 @@ pub struct Layout {
     /// Sizes of each variable.
     sizes: Vec<Vec<usize>>,
     scalars: Vec<Scalar>,
+    /// Strings.
+    strings: Vec<Scalar>,
     by_name: BTreeMap<String, usize>,
 }
 
@@ -49,29 +51,40 @@ impl Layout {
             layout.sizes.push(description.sizes(variable, value)?);
         }
         for (at, variable) in description.variables.iter().enumerate() {
-            if !is_number(variable) {
+            let is_text = variable.kind == Kind::String;
+            if !is_text && !is_number(variable) {
                 continue;
             }
             let aliases = variable.aliases.iter().map(|alias| alias.name.as_str());
             for name in std::iter::once(variable.name.as_str()).chain(aliases) {
-                layout.add(name, at);
+                layout.add(name, at, is_text);
             }
         }
         Ok(layout)
     }
 
-    fn add(&mut self, name: &str, variable: usize) {
+    fn add(&mut self, name: &str, variable: usize, is_text: bool) {
         let sizes = self.sizes[variable].clone();
         for element in 0..sizes.iter().product() {
             let name = format!("{name}{}", subscripts(&sizes, element));
+            let place = Place { variable, element };
+            if is_text {
+                self.strings.push(Scalar { name, place });
+                continue;
+            }
             self.by_name.entry(name.clone()).or_insert(self.scalars.len());
-            self.scalars.push(Scalar { name, place: Place { variable, element } });
+            self.scalars.push(Scalar { name, place });
         }
     }
 
     /// The scalars in the order of the description.
     pub fn scalars(&self) -> &[Scalar] {
         &self.scalars
+    }
+
+    /// The Strings in the order of the description.
+    pub fn strings(&self) -> &[Scalar] {
+        &self.strings
     }
 
     /// The scalar of this name.
@@ -94,8 +107,13 @@ fn is_number(variable: &Variable) -> bool {
     }
 }
 
+/// Whether results have a variable: it has values, and is not internal to the unit.
+pub fn is_recorded(variable: &Variable) -> bool {
+    !is_triggered(variable) && !variable.is_internal
+}
+
 /// Whether a variable is a clock that others trigger: an input that has no value.
-pub fn is_triggered(variable: &Variable) -> bool {
+fn is_triggered(variable: &Variable) -> bool {
     let by_others = variable.clock.as_ref().is_some_and(|own| own.variability == "triggered");
     variable.causality == Causality::Input && by_others
 }

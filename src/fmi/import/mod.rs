@@ -41,6 +41,8 @@ mod pool;
 mod scheduled;
 mod sources;
 #[cfg(feature = "host")]
+mod stepped;
+#[cfg(feature = "host")]
 mod unit;
 #[cfg(feature = "host")]
 mod values;
@@ -51,7 +53,7 @@ pub use calls::CallWatch;
 pub use directions::{Direction, Directions};
 pub use failure::{FailureClass, SimulationFailure};
 pub use imported::{Imported, is_parameter, why_not_set};
-pub use layout::{Layout, Place, Scalar, is_triggered, refusal, starts};
+pub use layout::{Layout, Place, Scalar, is_recorded, refusal, starts};
 pub use message::LogMessage;
 pub use plan::{InterfaceKind, Plan, Samples};
 pub use platform::library_path;

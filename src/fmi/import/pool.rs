@@ -39,8 +39,8 @@ pub trait Process: Send {
     /// # Errors
     /// How the process ended, in one sentence.
     fn send(&mut self, request: &Request) -> Result<(), String>;
-    /// Waits for the answer, at most until the flag is set or so many seconds have passed; then the
-    /// process is ended.
+    /// Waits for the answer. Where the flag is set the process is asked to answer with what it has; where
+    /// it does not, or so many seconds have passed, it is ended.
     ///
     /// # Errors
     /// How the process ended.
@@ -138,7 +138,7 @@ impl Pool {
                     (FailureClass::Time, "it takes more time than allowed".to_owned())
                 }
             };
-            SimulationFailure { time: settings.start, class, message }
+            SimulationFailure::new(settings.start, class, message)
         };
         let idle = locked(&self.idle).pop();
         let mut worker = match idle {
@@ -150,7 +150,10 @@ impl Pool {
             }
         };
         let answer = worker.simulate((plan, values), settings).map_err(failure)?;
-        locked(&self.idle).push(worker);
+        // One that was cancelled takes no requests any more.
+        if !settings.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            locked(&self.idle).push(worker);
+        }
         self.keep(answer.messages);
         out.replace(answer.time, answer.columns);
         answer.result

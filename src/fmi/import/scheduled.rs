@@ -7,26 +7,19 @@
 
 use super::binary::Component;
 use super::calls::CallError;
-use super::cosimulation::{Stopped, check_budget};
-use super::inputs::Inputs;
 use super::plan::Samples;
-use super::values::Readings;
+use super::stepped::{Stepped, Stopped};
 use crate::Description;
 use crate::description::{Causality, ClockInterval, Kind};
-use crate::sim::{Settings, SimErrorKind, Statistics, Trajectory, same_time};
-use std::sync::atomic::Ordering;
+use crate::sim::{Settings, SimErrorKind, Trajectory, same_time};
 
 /// More ticks at one time than this have no end.
 const MOST_AT_ONCE: u32 = 10_000;
 
 /// A simulation.
 pub(super) struct Scheduled<'a> {
-    component: &'a Component<'a>,
-    inputs: Inputs<'a>,
-    readings: Readings,
-    settings: &'a Settings,
+    pub run: Stepped<'a>,
     clocks: Vec<Clock>,
-    row: Vec<f64>,
 }
 
 /// An input clock.
@@ -70,7 +63,7 @@ impl Clock {
     }
 
     /// The first tick of a simulation that begins at a time.
-    fn begin(&mut self, component: &Component<'_>, start: f64) -> Result<(), CallError> {
+    fn begin(&mut self, component: &Component, start: f64) -> Result<(), CallError> {
         self.next = match &mut self.course {
             Course::Periodic { shift, interval, first, .. } => {
                 if interval.is_none() {
@@ -87,7 +80,7 @@ impl Clock {
     }
 
     /// The next tick after one at a time.
-    fn advance(&mut self, component: &Component<'_>, t: f64) -> Result<(), CallError> {
+    fn advance(&mut self, component: &Component, t: f64) -> Result<(), CallError> {
         self.next = match &mut self.course {
             Course::Periodic { interval, first, ticks, .. } => {
                 *ticks += 1;
@@ -107,12 +100,7 @@ impl Clock {
 
 impl<'a> Scheduled<'a> {
     /// A simulation of an instance that has got its values.
-    pub fn new(
-        component: &'a Component<'a>,
-        description: &Description,
-        (inputs, readings): (Inputs<'a>, Readings),
-        (settings, samples): (&'a Settings, &[Samples]),
-    ) -> Scheduled<'a> {
+    pub fn new(run: Stepped<'a>, description: &Description, samples: &[Samples]) -> Scheduled<'a> {
         let variables = description.variables.iter().enumerate();
         let own = variables.filter(|(_, variable)| {
             variable.kind == Kind::Clock && variable.causality == Causality::Input
@@ -121,92 +109,58 @@ impl<'a> Scheduled<'a> {
             let samples = samples.iter().find(|own| own.place.variable == at);
             Some(Clock::of(variable.clock.as_ref()?, variable.reference, samples))
         });
-        let clocks = clocks.collect();
-        Scheduled { component, inputs, readings, settings, clocks, row: Vec::new() }
+        Scheduled { run, clocks: clocks.collect() }
     }
 
     /// Simulates; there are rows at the output points, and before and after ticks.
-    pub fn run(&mut self, out: &mut Trajectory) -> Result<Statistics, (f64, Stopped)> {
-        let mut statistics = Statistics::default();
-        let mut t = self.settings.start;
-        let ended = self.ticks(&mut t, &mut statistics, out);
-        ended.map_err(|stopped| (t, stopped))?;
-        Ok(statistics)
-    }
-
-    fn begin(&mut self) -> Result<(), CallError> {
-        let Settings { start, stop, tolerance, .. } = *self.settings;
-        self.component.enter_initialization(Some(tolerance), (start, stop))?;
-        self.inputs.seek(start);
-        self.inputs.set(self.component, start, true)?;
-        self.component.exit_initialization()?;
+    pub fn simulate(&mut self, out: &mut Trajectory) -> Result<(), Stopped> {
+        let Settings { start, stop, .. } = *self.run.settings;
+        self.run.begin(out)?;
         for clock in &mut self.clocks {
-            clock.begin(self.component, start)?;
+            clock.begin(self.run.component, start)?;
         }
-        Ok(())
-    }
-
-    fn ticks(
-        &mut self,
-        t: &mut f64,
-        statistics: &mut Statistics,
-        out: &mut Trajectory,
-    ) -> Result<(), Stopped> {
-        let Settings { start, stop, .. } = *self.settings;
-        out.reset(self.readings.count());
-        self.row.resize(self.readings.count(), 0.0);
-        self.begin()?;
-        let deadline = self.settings.time_budget.map(|budget| (budget.clock)() + budget.seconds);
         let mut number = 0;
         loop {
-            let output = self.settings.output.point(start, stop, number);
+            let output = self.run.settings.output.point(start, stop, number);
             let tick = self.clocks.iter().filter_map(|clock| clock.next).reduce(f64::min);
             let tick = tick.filter(|tick| *tick <= stop || same_time(*tick, stop));
             let Some(next) = [output, tick].into_iter().flatten().reduce(f64::min) else {
                 return Ok(());
             };
-            *t = next;
-            check_budget(self.settings, deadline, statistics.time_events)?;
+            self.run.time = next;
+            self.run.check_budget(self.run.statistics.time_events)?;
             let is_due =
                 |time: Option<f64>| time.is_some_and(|time| time <= next || same_time(time, next));
             if is_due(tick) {
-                self.record(next, out)?;
-                self.activate(next, statistics)?;
+                self.run.record(out)?;
+                self.activate(next)?;
             }
             number += usize::from(is_due(output));
-            self.record(next, out)?;
+            self.run.record(out)?;
         }
     }
 
     /// Activates the parts of all clocks that tick at a time.
-    fn activate(&mut self, t: f64, statistics: &mut Statistics) -> Result<(), Stopped> {
+    fn activate(&mut self, t: f64) -> Result<(), Stopped> {
         let is_due = |clock: &Clock| clock.next.is_some_and(|next| next <= t || same_time(next, t));
+        let component = self.run.component;
         for _ in 0..MOST_AT_ONCE {
             let due = self.clocks.iter_mut().filter(|clock| is_due(clock));
             // The first of several with one priority.
             let Some(clock) = due.min_by_key(|clock| clock.priority) else { return Ok(()) };
-            self.inputs.seek(t);
-            self.inputs.set(self.component, t, true)?;
-            self.component.activate(clock.reference, t)?;
-            clock.advance(self.component, t)?;
-            statistics.time_events += 1;
+            self.run.inputs.seek(t);
+            self.run.inputs.set(component, t, true)?;
+            component.activate(clock.reference, t)?;
+            clock.advance(component, t)?;
+            self.run.statistics.time_events += 1;
             for clock in &mut self.clocks {
                 if let Course::Countdown = clock.course
-                    && let Some(wait) = self.component.interval(clock.reference)?
+                    && let Some(wait) = component.interval(clock.reference)?
                 {
                     clock.next = Some(t + wait);
                 }
             }
         }
         Err(Stopped::Kind(SimErrorKind::Chattering))
-    }
-
-    fn record(&mut self, t: f64, out: &mut Trajectory) -> Result<(), CallError> {
-        self.readings.read(self.component, &mut self.row)?;
-        out.push(t, &self.row);
-        if let Some(reached) = &self.settings.reached {
-            reached.store(t.to_bits(), Ordering::Relaxed);
-        }
-        Ok(())
     }
 }

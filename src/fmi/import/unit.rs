@@ -3,15 +3,16 @@
 use super::LogMessage;
 use super::binary::{Binary, Component, Identity};
 use super::calls::{CallError, CallWatch};
-use super::cosimulation::{CoSimulation, Stopped};
+use super::cosimulation::CoSimulation;
 use super::directions::Directions;
 use super::exchange::ExchangeSystem;
 use super::failure::{FailureClass, SimulationFailure};
 use super::inputs::Inputs;
 use super::layout::Layout;
 use super::plan::{InterfaceKind, Plan};
-use super::platform::library_path;
+use super::platform::{interface, library_path};
 use super::scheduled::Scheduled;
+use super::stepped::{Stepped, Stopped};
 use super::values::{Assignment, Readings};
 use crate::Description;
 use crate::description::Causality;
@@ -23,7 +24,10 @@ use std::sync::Arc;
 pub struct Unit {
     description: Description,
     folder: PathBuf,
-    binaries: Vec<(InterfaceKind, Binary)>,
+    binaries: Vec<(InterfaceKind, Arc<Binary>)>,
+    /// The instance of the simulation before, unless a process may have one alone: what instances share, such
+    /// as a file that was read, then outlives each.
+    before: Option<Component>,
     simulator: Simulator,
     watch: Arc<CallWatch>,
 }
@@ -35,6 +39,7 @@ impl Unit {
             description,
             folder: folder.to_owned(),
             binaries: Vec::new(),
+            before: None,
             simulator: Simulator::new(),
             watch,
         }
@@ -51,12 +56,10 @@ impl Unit {
         out: &mut Trajectory,
         messages: &mut Vec<LogMessage>,
     ) -> Result<Statistics, SimulationFailure> {
-        let at_start = |message: String| {
-            let time = settings.start;
-            SimulationFailure { time, class: FailureClass::Unit, message }
-        };
+        let at_start =
+            |message: String| SimulationFailure::new(settings.start, FailureClass::Unit, message);
         self.load(plan.kind).map_err(at_start)?;
-        let Unit { description, binaries, simulator, .. } = self;
+        let Unit { description, binaries, before, simulator, .. } = self;
         let loaded = binaries.iter().find(|(kind, _)| *kind == plan.kind);
         let Some((_, binary)) = loaded else { return Err(at_start("it is not loaded".to_owned())) };
         let layout = Layout::of(description, &structural_values(description, plan));
@@ -76,7 +79,12 @@ impl Unit {
             at_start(error.to_string())
         })?;
         let has_event_mode = identity.has_event_mode;
-        let component = &component;
+        *before = None;
+        let component =
+            match interface(description, plan.kind).is_ok_and(|own| own.is_single_instance) {
+                true => &component,
+                false => before.insert(component),
+            };
         let run = Run { component, description, layout: &layout, plan, settings, has_event_mode };
         let ended = run.simulate(values, simulator, out);
         let said = component.messages();
@@ -98,7 +106,7 @@ impl Unit {
         let binary =
             Binary::load(&self.folder.join(&path), self.description.version, self.watch.clone())
                 .map_err(|why| format!("`{path}` cannot be loaded: {why}"))?;
-        self.binaries.push((kind, binary));
+        self.binaries.push((kind, Arc::new(binary)));
         Ok(())
     }
 }
@@ -139,7 +147,7 @@ fn escaped(path: &str) -> String {
 
 /// One simulation with an instance of its own.
 struct Run<'a> {
-    component: &'a Component<'a>,
+    component: &'a Component,
     description: &'a Description,
     layout: &'a Layout,
     plan: &'a Plan,
@@ -162,16 +170,18 @@ impl Run<'_> {
         let parts = (inputs, Readings::new(description, layout, &plan.observed));
         let statistics = match plan.kind {
             InterfaceKind::CoSimulation => {
-                let how = (*settings, *has_event_mode);
                 let (inputs, readings) = parts;
                 let parts = (inputs.read_among(&plan.observed), readings);
-                let mut simulation = CoSimulation::new(component, description, parts, how);
-                simulation.run(out).map_err(of_stopped)?
+                let run = Stepped::new(component, parts, settings);
+                let mut simulation = CoSimulation::new(run, description, *has_event_mode);
+                let ended = simulation.simulate(out);
+                ended_as(ended, &simulation.run)?
             }
             InterfaceKind::ScheduledExecution => {
-                let how = (*settings, plan.inputs.as_slice());
-                let mut simulation = Scheduled::new(component, description, parts, how);
-                simulation.run(out).map_err(of_stopped)?
+                let run = Stepped::new(component, parts, settings);
+                let mut simulation = Scheduled::new(run, description, &plan.inputs);
+                let ended = simulation.simulate(out);
+                ended_as(ended, &simulation.run)?
             }
             InterfaceKind::ModelExchange => {
                 let directions = plan.differentiates.then(|| Directions::of(description, plan));
@@ -180,12 +190,15 @@ impl Run<'_> {
                 let system = ExchangeSystem::new(component, description, parts, how);
                 let mut system = system.map_err(at_start)?;
                 let run = simulator.run(&mut system, settings, out);
-                run.map_err(|error| match system.failure() {
-                    _ if system.refusal().is_some() => {
-                        refused(settings, system.refusal().unwrap_or_default())
-                    }
-                    Some(call) if is_of_call(error.kind) => of_call(error.time, call),
-                    _ => of_kind(error.time, error.kind),
+                run.map_err(|error| {
+                    let failure = match system.failure() {
+                        _ if system.refusal().is_some() => {
+                            refused(settings, system.refusal().unwrap_or_default())
+                        }
+                        Some(call) if is_of_call(error.kind) => of_call(error.time, call),
+                        _ => of_kind(error.time, error.kind),
+                    };
+                    SimulationFailure { statistics: Box::new(*simulator.statistics()), ..failure }
                 })?
             }
         };
@@ -200,19 +213,26 @@ fn is_of_call(kind: SimErrorKind) -> bool {
 }
 
 fn refused(settings: &Settings, why: &str) -> SimulationFailure {
-    let message = why.to_owned();
-    SimulationFailure { time: settings.start, class: FailureClass::Derivatives, message }
+    SimulationFailure::new(settings.start, FailureClass::Derivatives, why.to_owned())
 }
 
-fn of_stopped((time, stopped): (f64, Stopped)) -> SimulationFailure {
-    match stopped {
-        Stopped::Call(error) => of_call(time, error),
-        Stopped::Kind(kind) => of_kind(time, kind),
-    }
+/// How a simulation from point to point has ended.
+fn ended_as(
+    ended: Result<(), Stopped>,
+    run: &Stepped<'_>,
+) -> Result<Statistics, SimulationFailure> {
+    let (time, statistics) = (run.time, run.statistics);
+    ended.map(|()| statistics).map_err(|stopped| {
+        let failure = match stopped {
+            Stopped::Call(error) => of_call(time, error),
+            Stopped::Kind(kind) => of_kind(time, kind),
+        };
+        SimulationFailure { statistics: Box::new(statistics), ..failure }
+    })
 }
 
 fn of_call(time: f64, error: CallError) -> SimulationFailure {
-    SimulationFailure { time, class: FailureClass::Unit, message: error.to_string() }
+    SimulationFailure::new(time, FailureClass::Unit, error.to_string())
 }
 
 fn of_kind(time: f64, kind: SimErrorKind) -> SimulationFailure {
@@ -232,5 +252,5 @@ fn of_kind(time: f64, kind: SimErrorKind) -> SimulationFailure {
         | SimErrorKind::Initialization(_)
         | SimErrorKind::Evaluation(_) => (FailureClass::Solver, "an evaluation failed"),
     };
-    SimulationFailure { time, class, message: message.to_owned() }
+    SimulationFailure::new(time, class, message.to_owned())
 }

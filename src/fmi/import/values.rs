@@ -49,7 +49,7 @@ impl<'a> Assignment<'a> {
     }
 
     /// Sets structural parameters, then all others.
-    pub fn apply(&self, component: &Component<'_>) -> Result<(), CallError> {
+    pub fn apply(&self, component: &Component) -> Result<(), CallError> {
         let structural = |one: &&Assigned| one.is_structural;
         if self.variables.values().any(|one| structural(&one)) {
             component.enter_configuration()?;
@@ -66,7 +66,7 @@ impl<'a> Assignment<'a> {
 }
 
 impl Assigned {
-    fn apply(&self, component: &Component<'_>) -> Result<(), CallError> {
+    fn apply(&self, component: &Component) -> Result<(), CallError> {
         component.set(self.kind, &[self.reference], &self.values)
     }
 }
@@ -113,7 +113,7 @@ impl Readings {
     }
 
     /// Writes the values that the instance has now.
-    pub fn read(&mut self, component: &Component<'_>, out: &mut [f64]) -> Result<(), CallError> {
+    pub fn read(&mut self, component: &Component, out: &mut [f64]) -> Result<(), CallError> {
         for group in &mut self.groups {
             component.get(group.kind, &group.references, &mut group.values)?;
             group.picked.iter().for_each(|(from, to)| out[*to] = group.values[*from]);

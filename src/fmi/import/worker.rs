@@ -13,6 +13,10 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "host")]
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
+#[cfg(feature = "host")]
+use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(feature = "host")]
+use std::sync::{Arc, mpsc::channel};
 
 /// A message of more bytes is none of ours.
 const LONGEST: u32 = 1 << 31;
@@ -80,8 +84,8 @@ pub fn receive<T: for<'de> Deserialize<'de>>(from: &mut impl Read) -> io::Result
     postcard::from_bytes(&bytes).map(Some).map_err(io::Error::other)
 }
 
-/// Answers requests until there are no more. `before_answer` is called before an answer is sent: what
-/// the unit has printed until then belongs to it.
+/// Answers requests until there are no more; their end cancels the simulation that is running.
+/// `before_answer` is called before an answer is sent: what the unit has printed until then belongs to it.
 ///
 /// # Errors
 /// Those of reading and writing; a request that makes no sense.
@@ -90,17 +94,30 @@ pub fn serve(
     unit: &mut Unit,
     clock: fn() -> f64,
     before_answer: fn(),
-    (from, to): (&mut impl Read, &mut impl Write),
+    (mut from, to): (impl Read + Send + 'static, &mut impl Write),
 ) -> io::Result<()> {
     let mut plans: BTreeMap<u64, Plan> = BTreeMap::new();
     let mut trajectory = Trajectory::default();
-    while let Some(request) = receive::<Request>(from)? {
+    let (sender, requests) = channel();
+    let is_over = Arc::new(AtomicBool::new(false));
+    let cancel = is_over.clone();
+    std::thread::spawn(move || {
+        loop {
+            let request = receive::<Request>(&mut from);
+            let is_request = matches!(request, Ok(Some(_)));
+            if sender.send(request).is_err() || !is_request {
+                break is_over.store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    while let Some(request) = requests.recv().map_err(io::Error::other)?? {
         match request {
             Request::Plan(number, plan) => _ = plans.insert(number, plan),
             Request::Simulate { plan, values, settings } => {
                 let plan = plans.get(&plan).ok_or_else(|| io::Error::other("no such plan"))?;
-                let settings =
+                let mut settings =
                     settings.settings(clock).map_err(|fault| io::Error::other(fault.message))?;
+                settings.cancel = Some(cancel.clone());
                 let mut messages = Vec::new();
                 let asked = (plan, values.as_slice());
                 let result = unit.simulate(asked, &settings, &mut trajectory, &mut messages);
